@@ -1,0 +1,38 @@
+# make run   the low-speed experiment: archive and picture in out/
+# make test  lint, types and tests
+# All need python3 (3.11 or newer) and network access to a package index, nothing else.
+
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+
+.PHONY: run test lint clean
+.DELETE_ON_ERROR:
+
+run: $(VENV)/installed
+	mkdir -p out
+	$(BIN)/gearidae sweep cases/low_speed.toml --over coating.sam_fraction=1,0.8,0.6,0.5,0.47,0.45 \
+	    -o out/low_speed.nc --overwrite
+	$(BIN)/gearidae plot out/low_speed.nc -o out/low_speed.png
+
+test: lint
+	$(BIN)/python -m pytest -q
+
+lint: $(VENV)/installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+clean:
+	rm -rf $(VENV) out build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+
+# The package is installed in editable form: only a change of its requirements asks for more.
+$(VENV)/installed: pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "gearidae needs Python 3.11 or newer; try make PYTHON=python3.12")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	touch $@
+
+$(VENV)/installed-dev: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@

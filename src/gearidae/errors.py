@@ -1,0 +1,99 @@
+"""What gearidae raises when it cannot go on: bad input, or a solver in trouble."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["GearidaeError", "SceneError", "SolverError"]
+
+
+class GearidaeError(Exception):
+    """Base of every error that gearidae raises on purpose."""
+
+
+class SceneError(GearidaeError, ValueError):
+    """Bad input: says which key, what it held and what is allowed, in one line.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key of the scene (``coating.sam_fraction``), a file name or a command-line option.
+    value : object
+        The offending value.
+    allowed : str
+        What may stand there instead.
+    """
+
+    def __init__(self, key: str, value: object, allowed: str) -> None:
+        self.key = key
+        self.value = value
+        self.allowed = allowed
+        super().__init__(" ".join(f"{key} = {value}: {allowed}".split()))
+
+    def __reduce__(self) -> tuple[type[SceneError], tuple[str, object, str]]:
+        """Survive the trip between processes, which rebuilds an exception from its arguments."""
+        return type(self), (self.key, self.value, self.allowed)
+
+
+class SolverError(GearidaeError, RuntimeError):
+    """The integration could not go on; what had been computed until then is kept.
+
+    Parameters
+    ----------
+    message : str
+        What happened.
+    time : float
+        Simulated time reached [s].
+    state : dict of str to float
+        The state at that time, SI units.
+    last_event : str
+        The last recorded event, in words.
+    advice : str
+        What to try next.
+    dataset : xarray.Dataset, optional
+        The samples and events recorded up to `time`.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        time: float,
+        state: dict[str, float],
+        last_event: str,
+        advice: str,
+        dataset: xr.Dataset | None = None,
+    ) -> None:
+        self.message = message
+        self.time = time
+        self.state = state
+        self.last_event = last_event
+        self.advice = advice
+        self.dataset = dataset
+        where = ", ".join(f"{name} = {value:.6g}" for name, value in state.items())
+        super().__init__(f"{message} at t = {time:.9g} s ({where}); last event: {last_event}; {advice}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Survive the trip between processes with every field in place."""
+        return _rebuild_solver_error, (
+            self.message,
+            self.time,
+            self.state,
+            self.last_event,
+            self.advice,
+            self.dataset,
+        )
+
+
+def _rebuild_solver_error(
+    message: str,
+    time: float,
+    state: dict[str, float],
+    last_event: str,
+    advice: str,
+    dataset: xr.Dataset | None,
+) -> SolverError:
+    return SolverError(message, time=time, state=state, last_event=last_event, advice=advice, dataset=dataset)
