@@ -1,0 +1,12 @@
+"""One gear pair: the geometry of the mesh and the torques on it, on plain numbers in SI units."""
+
+from gearidae.mesh.involute import (
+    Geometry,
+    GeometryError,
+    check_geometry,
+    curvature_radii,
+    mesh_geometry,
+    separation,
+)
+
+__all__ = ["Geometry", "GeometryError", "check_geometry", "curvature_radii", "mesh_geometry", "separation"]

@@ -1,0 +1,34 @@
+"""What a user describes: a frozen, validated scene, its presets and its case files."""
+
+from gearidae.scene.case import load_case
+from gearidae.scene.dump import dump_case
+from gearidae.scene.gears import Gears, Mesh, StaticErrorHarmonic
+from gearidae.scene.keys import KeyInfo
+from gearidae.scene.presets import PRESETS, preset
+from gearidae.scene.run import Initial, Roller, Run
+from gearidae.scene.scene import Scene, describe_key, describe_keys
+from gearidae.scene.surface import Coating, Contact, Surface
+from gearidae.scene.torque import Drive, Harmonic, Load
+
+__all__ = [
+    "PRESETS",
+    "Coating",
+    "Contact",
+    "Drive",
+    "Gears",
+    "Harmonic",
+    "Initial",
+    "KeyInfo",
+    "Load",
+    "Mesh",
+    "Roller",
+    "Run",
+    "Scene",
+    "StaticErrorHarmonic",
+    "Surface",
+    "describe_key",
+    "describe_keys",
+    "dump_case",
+    "load_case",
+    "preset",
+]

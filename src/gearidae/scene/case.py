@@ -1,0 +1,79 @@
+"""Case files: one scene each, in TOML."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from pathlib import Path
+
+from gearidae.errors import SceneError
+from gearidae.scene.group import shorten
+from gearidae.scene.scene import Scene
+
+__all__ = ["load_case"]
+
+_LARGEST = 1_000_000  # bytes; a scene takes two thousand
+
+
+def load_case(path: str | os.PathLike[str]) -> Scene:
+    """Read a scene from a case file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A TOML file. Its ``name``, or else the file's own, becomes the scene's.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If there is no such file, it cannot be read, is no TOML, or describes no scene.
+    """
+    if not isinstance(path, (str, os.PathLike)):
+        raise SceneError("case file", shorten(path), "must be a path")
+    text = _read(path)
+    try:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        # Not TOMLDecodeError alone: integers of thousands of digits and bottomless nesting fail otherwise.
+        raise SceneError("case file", shorten(os.fspath(path)), f"is not TOML: {_line(error)}") from error
+    if not data:
+        raise SceneError("case file", shorten(os.fspath(path)), "is empty")
+    data.setdefault("name", _stem(path))
+    return Scene.from_dict(data)
+
+
+def _read(path: str | os.PathLike[str]) -> str:
+    """Read a file's text, no more of it than a case file may be long."""
+
+    def refuse(reason: str) -> SceneError:
+        return SceneError("case file", shorten(os.fspath(path)), reason)
+
+    try:
+        with Path(path).open("rb") as file:
+            content = file.read(_LARGEST + 1)
+    except FileNotFoundError as error:
+        raise refuse("no such file") from error
+    except IsADirectoryError as error:
+        raise refuse("is a folder, not a file") from error
+    except (OSError, ValueError, TypeError) as error:
+        raise refuse(f"cannot be read: {getattr(error, 'strerror', None) or error}") from error
+    if len(content) > _LARGEST:
+        raise refuse(f"is longer than {_LARGEST} bytes: not a case file")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise refuse("is not a text file in UTF-8") from error
+
+
+def _stem(path: str | os.PathLike[str]) -> str:
+    """Name a scene after its file, without what could not stand in a title."""
+    stem = "".join(char if char.isprintable() else "_" for char in Path(path).stem)
+    return stem.strip()[:200] or "scene"
+
+
+def _line(error: Exception) -> str:
+    return "nested too deeply" if isinstance(error, RecursionError) else str(error)

@@ -1,0 +1,87 @@
+"""A scene written as a case file, with units and a comment on every key."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from decimal import Decimal
+from typing import Any
+
+from gearidae.scene.group import Group
+from gearidae.scene.quantity import Quantity
+from gearidae.scene.scene import Scene
+
+__all__ = ["dump_case"]
+
+
+def dump_case(scene: Scene) -> str:
+    """Write a scene as the text of a case file.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    str
+        TOML; `load_case` makes an equal scene of it, to the last bit.
+    """
+    lines = [f"name = {_text(scene.name)}"]
+    for table in Scene.model_fields:
+        group = getattr(scene, table)
+        if isinstance(group, Group):
+            description = Scene.model_fields[table].description
+            lines += ["", f"[{table}]  # {description}", *_table(group)]
+            lines += [
+                line for name in type(group).model_fields for line in _list_of_tables(table, name, group)
+            ]
+    return "\n".join(lines) + "\n"
+
+
+def _table(group: Group) -> Iterator[str]:
+    """Write a table's plain keys, and its schedule."""
+    entries = []
+    for name, field in type(group).model_fields.items():
+        value = getattr(group, name)
+        if isinstance(value, tuple):
+            if value and not isinstance(value[0], Group):
+                knots = "".join(f"    [{time!r}, {torque!r}],\n" for time, torque in value)
+                entries.append((f"{name} = [\n{knots}]", field.description))
+            continue
+        quantity = next((one for one in field.metadata if isinstance(one, Quantity)), None)
+        entries.append((f"{name} = {_value(value, quantity)}", field.description))
+    width = max((len(text) for text, _ in entries if "\n" not in text), default=0)
+    for text, description in entries:
+        yield f"# {description}\n{text}" if "\n" in text else f"{text:<{width}}  # {description}"
+
+
+def _list_of_tables(table: str, name: str, group: Group) -> Iterator[str]:
+    value = getattr(group, name)
+    if isinstance(value, tuple):
+        for entry in value:
+            if isinstance(entry, Group):
+                yield from ("", f"[[{table}.{name}]]", *_table(entry))
+
+
+def _value(value: Any, quantity: Quantity | None) -> str:
+    """Write one value, with a unit that people use where it is exact."""
+    if isinstance(value, str):
+        return _text(value)
+    if quantity is None or quantity.unit == "1":
+        return repr(value)
+    if quantity.unit == "rad":
+        degrees = f"{math.degrees(value):.12g} deg"
+        if quantity.read(degrees) == value:
+            return _text(degrees)
+    unit, power = quantity.shown or (quantity.unit, 0)
+    number = Decimal(repr(value)).scaleb(-power)
+    plain = (
+        f"{number.normalize():f}" if -5 < number.adjusted() < 12 or not number else f"{number.normalize():e}"
+    )
+    return _text(f"{plain} {unit}")
+
+
+def _text(text: str) -> str:
+    """Write a text as a TOML basic string; printable ones need no more than JSON's escapes."""
+    return json.dumps(text, ensure_ascii=False)

@@ -1,0 +1,110 @@
+"""The common frame of every table of a scene: frozen, no unknown keys, one-line errors."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator, Mapping
+from numbers import Real
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from gearidae.errors import SceneError
+
+__all__ = ["Group", "did_you_mean", "shorten"]
+
+_LONGEST_VALUE = 60
+
+
+class Group(BaseModel):
+    """A table of a scene. Instances are immutable, comparable and hashable.
+
+    Raises
+    ------
+    SceneError
+        On construction, if a key is unknown, missing or holds what it may not.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    def __init__(self, **data: Any) -> None:
+        known = list(type(self).model_fields)
+        for key, value in data.items():
+            if key not in known:
+                raise SceneError(key, shorten(value), self._unknown(key, known))
+            for table in value if isinstance(value, (list, tuple)) else (value,):
+                if isinstance(table, Mapping) and not all(isinstance(inner, str) for inner in table):
+                    raise SceneError(key, shorten(table), "keys must be texts")
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise _scene_error(error) from error
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse: scenes are frozen."""
+        raise SceneError(name, shorten(value), "scenes cannot be changed in place; use scene.replace({...})")
+
+    @classmethod
+    def _unknown(cls, key: str, known: list[str]) -> str:
+        """Say what to write in place of an unknown `key`."""
+        return f"unknown key; {did_you_mean(key, known) or 'known are ' + ', '.join(known)}"
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return a question naming the known word closest to `word`, empty if none is close."""
+    close = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
+    return f"did you mean {close[0]}?" if close else ""
+
+
+def shorten(value: object) -> object:
+    """Return `value` fit for a message: numbers as they are, anything else as a short printable text."""
+    if isinstance(value, float) or (isinstance(value, int) and abs(value) < 10**_LONGEST_VALUE):
+        return value
+    try:
+        readable = isinstance(value, Real) or (
+            isinstance(value, str) and value.isprintable() and value.strip()
+        )
+        text = str(value) if readable else repr(value)
+    except Exception:  # rude objects, integers too long for Python to spell: the message must still come out
+        text = f"({type(value).__name__})"
+    return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
+
+
+def _scene_error(error: ValidationError) -> SceneError:
+    """Turn pydantic's report into one line: its first complaint, and how many there are besides."""
+    (key, value, allowed), *others = _complaints(error)
+    if others:
+        allowed += f" (and {len(others)} more {'error' if len(others) == 1 else 'errors'})"
+    return SceneError(key, value, allowed)
+
+
+def _complaints(error: ValidationError) -> Iterator[tuple[str, object, str]]:
+    """Yield key, value and what is allowed for every complaint, those of nested tables too."""
+    for one in error.errors(include_url=False):
+        where = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in one["loc"]).lstrip(
+            "."
+        )
+        reason = one.get("ctx", {}).get("error")
+        if isinstance(reason, SceneError):
+            inner = reason.__cause__
+            nested = (
+                _complaints(inner)
+                if isinstance(inner, ValidationError)
+                else [(reason.key, reason.value, reason.allowed)]
+            )
+            for key, value, allowed in nested:
+                yield f"{where}.{key}".lstrip("."), value, allowed
+        elif one["type"] == "missing":
+            yield where, "(missing)", f"is required: {_description(error.title, where)}"
+        elif one["type"] in ("model_type", "dict_type"):
+            yield where, shorten(one["input"]), "must be a table"
+        elif one["type"] == "literal_error":
+            yield where, shorten(one["input"]), f"must be {one['ctx']['expected']}"
+        else:
+            yield where, shorten(one["input"]), str(reason or one["msg"])
+
+
+def _description(title: str, name: str) -> str:
+    """Look up what a field of the table class `title` means."""
+    model = next(model for model in Group.__subclasses__() if model.__name__ == title)
+    return model.model_fields[name].description or name

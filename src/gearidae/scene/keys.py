@@ -1,0 +1,166 @@
+"""Every key a scene has: what it means, its unit, its default; and how to set one by its dotted name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, get_args
+
+from pydantic.fields import FieldInfo
+
+from gearidae.errors import SceneError
+from gearidae.scene.group import Group, did_you_mean, shorten
+from gearidae.scene.quantity import Count, Quantity
+
+__all__ = ["KeyInfo", "find_key", "keys_of", "put"]
+
+_LONGEST_KEY = 200
+
+
+@dataclass(frozen=True, slots=True)
+class KeyInfo:
+    """What there is to know about one key of a scene.
+
+    Attributes
+    ----------
+    key : str
+        Dotted name; entries of a list of tables go without their number (``drive.harmonic.amplitude``).
+    unit : str
+        SI unit, ``"1"`` for pure numbers and counts, empty for texts and lists.
+    required : bool
+        Whether it must be given once its table is.
+    default : object
+        Its value when not given; None if required.
+    allowed : str
+        What it may hold, in words.
+    description : str
+        What it means.
+    """
+
+    key: str
+    unit: str
+    required: bool
+    default: Any
+    allowed: str
+    description: str
+
+
+@cache
+def keys_of(model: type[Group]) -> tuple[KeyInfo, ...]:
+    """List every key of a table and of the tables in it, in the order of a case file."""
+    return tuple(_walk(model, ""))
+
+
+def find_key(model: type[Group], key: str, value: object = "(key)") -> KeyInfo:
+    """Look up one dotted key, ignoring the numbers of list entries; `value` is what the message shows.
+
+    Raises
+    ------
+    SceneError
+        If there is no such key.
+    """
+    if not isinstance(key, str) or len(key) > _LONGEST_KEY:
+        raise SceneError(
+            str(shorten(key)), shorten(value), "is no key; a key is a short text, such as run.duration"
+        )
+    plain = ".".join(part for part in key.split(".") if not part.isdecimal())
+    known = {info.key: info for info in keys_of(model)}
+    if plain not in known:
+        raise SceneError(str(shorten(key)), shorten(value), _unknown(plain, [*known, *model.model_fields]))
+    return known[plain]
+
+
+def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> None:
+    """Set one dotted key, or a whole table, in the plain tables of a scene.
+
+    Parameters
+    ----------
+    model : type of Group
+        The scene's model.
+    data : dict
+        Tables as ``Scene.to_dict`` gives them; changed in place.
+    key : str
+        Dotted name. ``drive.harmonic.0.amplitude`` names a list's entry; a list of one needs no number.
+    value : object
+        What to put there; None for a table takes it away.
+
+    Raises
+    ------
+    SceneError
+        If there is no such key, or the scene lacks the table it belongs to.
+    """
+    value = value.model_dump(mode="json") if isinstance(value, Group) else value
+    if isinstance(key, str) and key in model.model_fields:
+        data[key] = deepcopy(value) if isinstance(value, dict) else value  # dotted keys may change it later
+        return
+    find_key(model, key, value)
+    *path, last = key.split(".")
+    inside: Any = data
+    for part in path:
+        inside = _entry(inside, part)
+    if isinstance(inside, list) and len(inside) == 1 and not last.isdecimal():
+        inside = inside[0]
+    if isinstance(inside, dict):
+        inside[last] = value
+    elif isinstance(inside, list) and _entry(inside, last) is not None:
+        inside[int(last)] = value
+    else:
+        raise SceneError(key, shorten(value), "this scene has no such table or entry to change")
+
+
+def _entry(inside: Any, part: str) -> Any:
+    """Go one step down a dotted key; None where that leads nowhere."""
+    if isinstance(inside, dict):
+        return inside.get(part)
+    if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
+        return inside[int(part)]
+    return None
+
+
+def _walk(model: type[Group], prefix: str) -> Iterator[KeyInfo]:
+    for name, field in model.model_fields.items():
+        key = f"{prefix}{name}"
+        table, is_list = _table(field.annotation)
+        if table is None or is_list:
+            yield _describe(key, field)
+        if table is not None:
+            yield from _walk(table, f"{key}.")
+
+
+def _table(annotation: Any) -> tuple[type[Group] | None, bool]:
+    """Find the model that a field holds, alone or in a list."""
+    if isinstance(annotation, type) and issubclass(annotation, Group):
+        return annotation, False
+    for inner in get_args(annotation):
+        if isinstance(inner, type) and issubclass(inner, Group):
+            return inner, Ellipsis in get_args(annotation)
+    return None, False
+
+
+def _describe(key: str, field: FieldInfo) -> KeyInfo:
+    number = next((one for one in field.metadata if isinstance(one, (Quantity, Count))), None)
+    choices = [one for one in get_args(field.annotation) if isinstance(one, str)]
+    if number is not None:
+        allowed = number.allowed().removeprefix("must be ")
+    elif choices:
+        allowed = "one of " + ", ".join(choices)
+    else:
+        allowed = "a text" if field.annotation is str else "a list"
+    return KeyInfo(
+        key=key,
+        unit=number.unit if isinstance(number, Quantity) else "1" if number else "",
+        required=field.is_required(),
+        default=None if field.is_required() else field.default,
+        allowed=allowed,
+        description=field.description or "",
+    )
+
+
+def _unknown(key: str, known: list[str]) -> str:
+    """Say what an unknown dotted key may have meant."""
+    last = key.rpartition(".")[2]
+    homes = " or ".join(name for name in known if name.rpartition(".")[2] == last)
+    question = f"did you mean {homes}?" if homes else did_you_mean(key, known)
+    return f"unknown key; {question or 'gearidae.scene.describe_keys() lists them'}"

@@ -1,0 +1,159 @@
+"""Types of the numbers in a scene: each carries its SI unit and what it may be.
+
+Used as ``Annotated`` metadata, so that a model's fields hold plain floats and ints, and the list of keys, the
+messages and the written case files all come from one place.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from gearidae.scene.units import from_text
+
+__all__ = ["Count", "Quantity"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Bounded:
+    """Shared by `Quantity` and `Count`: limits, and their wording.
+
+    Attributes
+    ----------
+    above, at_least, below, at_most : float, optional
+        Limits, the first and third exclusive.
+    """
+
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+
+    def admits(self, value: float) -> bool:
+        """Whether `value` keeps to the limits."""
+        return (
+            (self.above is None or value > self.above)
+            and (self.at_least is None or value >= self.at_least)
+            and (self.below is None or value < self.below)
+            and (self.at_most is None or value <= self.at_most)
+        )
+
+    def range(self) -> str:
+        """Return the limits in words, empty without any."""
+        if self.at_least is not None and self.at_most is not None:
+            return f"in {self.at_least:g}..{self.at_most:g}"
+        words = (
+            ("above", self.above),
+            ("at least", self.at_least),
+            ("below", self.below),
+            ("at most", self.at_most),
+        )
+        return " and ".join(f"{word} {limit:g}" for word, limit in words if limit is not None)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Let pydantic call `read` in place of its own conversion."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, value: object) -> float:
+        """Turn what the user gave into a number within the limits."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quantity(_Bounded):
+    """A float in SI units.
+
+    Attributes
+    ----------
+    unit : str
+        SI unit in pint's spelling, ``"1"`` for a pure number.
+    shown : tuple of (str, int), optional
+        Unit in which `dump_case` writes it, and the power of ten that this unit is.
+    """
+
+    unit: str
+    shown: tuple[str, int] | None = None
+
+    def read(self, value: object) -> float:
+        """Read a number in SI or a text with a unit.
+
+        Parameters
+        ----------
+        value : object
+            What the user gave.
+
+        Returns
+        -------
+        float
+
+        Raises
+        ------
+        ValueError
+            Saying what is allowed.
+        """
+        number = from_text(value, self.unit) if isinstance(value, str) else _as_float(value)
+        if number is None:
+            raise ValueError(self.allowed())
+        if not math.isfinite(number):
+            raise ValueError("must be a finite number")
+        if not self.admits(number):
+            raise ValueError(f"must {self._wanted()}")
+        return number
+
+    def allowed(self) -> str:
+        """Return what may stand here, in words."""
+        if self.unit == "1":
+            return "must be a number" + (f" {self.range()}" if self.range() else "")
+        return f"must be a number in {self.unit} or a text with a unit" + (
+            f", {self.range()} {self.unit}" if self.range() else ""
+        )
+
+    def _wanted(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{'lie' if self.range().startswith('in ') else 'be'} {self.range()}{unit}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Count(_Bounded):
+    """A whole number."""
+
+    def read(self, value: object) -> int:
+        """Read a whole number, also one written as 1e4.
+
+        Parameters
+        ----------
+        value : object
+            What the user gave.
+
+        Returns
+        -------
+        int
+
+        Raises
+        ------
+        ValueError
+            Saying what is allowed.
+        """
+        number = _as_float(value)
+        if number is None or not number.is_integer() or not self.admits(number):
+            raise ValueError(self.allowed())
+        return int(number)
+
+    def allowed(self) -> str:
+        """Return what may stand here, in words."""
+        return f"must be a whole number {self.range()}"
+
+
+def _as_float(value: object) -> float | None:
+    """Convert a number of any kind, None for what is no number; infinite for what no float can hold."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf

@@ -1,0 +1,52 @@
+"""Where a run starts and how long it is, and the roller that may take the gears' place."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from gearidae.scene.group import Group
+from gearidae.scene.quantity import Count, Quantity
+
+__all__ = ["Initial", "Roller", "Run"]
+
+
+class Initial(Group):
+    """How the gears start; the pinion turns just so fast that the gap does not change at first."""
+
+    gear_speed: Annotated[float, Quantity(unit="rad/s")] = Field(default=0.0, description="speed of the gear")
+    gap: Annotated[float, Quantity(unit="m", shown=("nm", -9))] = Field(description="gap of the drive flank")
+    mesh_phase: Annotated[float, Quantity(unit="1", at_least=0, below=1)] = Field(
+        default=0.3, description="position of pair 0 on the path of contact, in base pitches"
+    )
+
+
+class Run(Group):
+    """How long, how finely sampled, how accurate."""
+
+    duration: Annotated[float, Quantity(unit="s", above=0, shown=("ms", -3))] = Field(
+        description="simulated time"
+    )
+    samples: Annotated[int, Count(at_least=2, at_most=100_000_000)] = Field(
+        default=10_001, description="uniform samples, both ends included"
+    )
+    rtol: Annotated[float, Quantity(unit="1", at_least=1e-12, at_most=0.1)] = Field(
+        default=1e-6, description="relative tolerance of the solver"
+    )
+
+
+class Roller(Group):
+    """A roller dropped on a flat, both with the scene's surface: ``m z'' = W(z)``."""
+
+    radius: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("um", -6))] = Field(
+        description="radius, R"
+    )
+    mass: Annotated[float, Quantity(unit="kg", above=0, at_most=1e3)] = Field(description="mass, m")
+    width: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("um", -6))] = Field(
+        description="length along the axis, L"
+    )
+    speed: Annotated[float, Quantity(unit="m/s", at_least=0)] = Field(description="speed towards the flat")
+    height: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("nm", -9))] = Field(
+        description="mean gap at the start"
+    )

@@ -1,0 +1,255 @@
+"""The scene: everything a run is made of, checked as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from gearidae.errors import SceneError
+from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
+from gearidae.scene.gears import Gears, Mesh
+from gearidae.scene.group import Group, did_you_mean, shorten
+from gearidae.scene.keys import KeyInfo, find_key, keys_of, put
+from gearidae.scene.run import Initial, Roller, Run
+from gearidae.scene.surface import Coating, Contact, Surface
+from gearidae.scene.torque import Drive, Load
+
+__all__ = ["Scene", "describe_key", "describe_keys"]
+
+_GEAR_TABLES = ("gears", "mesh", "drive", "load", "initial")
+_DEEPEST_OVERLAP = 8.0  # rms roughnesses that the mean planes may overlap at the start
+
+
+def _named(value: object) -> str:
+    if isinstance(value, str) and value.isprintable() and 0 < len(value.strip()) <= 200:
+        return value
+    raise ValueError("must be a printable line of 1..200 characters")
+
+
+class Scene(Group):
+    """A gear pair, or a roller, ready to be run. All quantities are SI floats.
+
+    Give ``gears``, ``mesh``, ``drive`` and ``initial`` (``load`` if there is one), or ``roller`` in their
+    place; ``surface`` and ``run`` always. Numbers are SI; texts carry their unit ("34.715 um").
+
+    Attributes
+    ----------
+    name : str
+        What the scene is called in titles.
+    gears, mesh, drive, load, initial : Gears, Mesh, Drive, Load, Initial or None
+        The gear pair; None in a scene with a roller.
+    roller : Roller or None
+        The roller; None in a scene with gears.
+    surface, coating, contact : Surface, Coating, Contact
+        The flanks. Without a table ``coating`` they are bare.
+    run : Run
+
+    Raises
+    ------
+    SceneError
+        On construction, naming the first key that is wrong.
+
+    Examples
+    --------
+    >>> from gearidae import preset
+    >>> worn = preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5})
+    >>> worn.coating.sam_fraction
+    0.5
+    """
+
+    name: Annotated[str, BeforeValidator(_named)] = Field(
+        default="scene", description="what the scene is called"
+    )
+    gears: Gears | None = Field(default=None, description="the two gears")
+    mesh: Mesh | None = Field(default=None, description="how their teeth meet")
+    drive: Drive | None = Field(default=None, description="torque on the pinion")
+    load: Load | None = Field(default=None, description="torque that resists the gear")
+    initial: Initial | None = Field(default=None, description="how the gears start")
+    roller: Roller | None = Field(default=None, description="a roller in place of the gears")
+    surface: Surface = Field(description="the rough flanks")
+    coating: Coating = Field(default=Coating(sam_fraction=0.0), description="the monolayer on them")
+    contact: Contact = Field(default=Contact(), description="laws of contact")
+    run: Run = Field(description="how long and how accurate")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_load(cls, data: Any) -> Any:
+        """Let gears run free where no load is given."""
+        if isinstance(data, dict) and data.get("gears") is not None and data.get("load") is None:
+            return {**data, "load": Load()}
+        return data
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        """Check what no table can check alone."""
+        given = [table for table in _GEAR_TABLES if getattr(self, table) is not None]
+        if self.roller is not None:
+            if given:
+                raise SceneError(
+                    given[0],
+                    "(given)",
+                    f"a scene has a roller or gears, not both; a roller takes no {given[0]}",
+                )
+            return self
+        for table in ("gears", "mesh", "drive", "initial"):
+            if table not in given:
+                raise SceneError(table, "(missing)", "is required in a scene without a roller")
+        self._check_mesh()
+        return self
+
+    def _check_mesh(self) -> None:
+        """Refuse gears that cannot mesh, and starts from within the teeth."""
+        gears, mesh, initial = self.gears, self.mesh, self.initial
+        assert gears is not None
+        assert mesh is not None
+        assert initial is not None
+        geometry = self.geometry
+        if mesh.backlash >= geometry.base_pitch / 2:
+            raise SceneError(
+                "mesh.backlash",
+                mesh.backlash,
+                f"must be below half a base pitch, {geometry.base_pitch / 2:.4g} m",
+            )
+        slope = sum(abs(one.order * one.amplitude) for one in mesh.static_error)
+        if slope >= gears.pinion_base_radius:
+            raise SceneError(
+                "mesh.static_error",
+                f"(slope {slope:.4g} m/rad)",
+                f"orders times amplitudes must add up to less than R1, {gears.pinion_base_radius:g} m",
+            )
+        overlap = _DEEPEST_OVERLAP * self.surface.roughness
+        if not -overlap <= initial.gap <= mesh.backlash + overlap:
+            raise SceneError(
+                "initial.gap",
+                initial.gap,
+                f"must lie in {-overlap:.4g}..{mesh.backlash + overlap:.4g} m, or flanks would overlap",
+            )
+
+    @property
+    def geometry(self) -> Geometry:
+        """The gears' mesh geometry.
+
+        Raises
+        ------
+        SceneError
+            If such gears cannot mesh, or the scene has none.
+        """
+        if self.gears is None:
+            raise SceneError("gears", "(missing)", "a scene with a roller has no mesh geometry")
+        gears = self.gears
+        try:
+            return mesh_geometry(
+                gears.pinion_base_radius, gears.pinion_teeth, gears.gear_teeth, gears.pressure_angle
+            )
+        except GeometryError as error:
+            key = error.parameter
+            raise SceneError(f"gears.{key}", getattr(gears, key), error.reason) from error
+
+    @property
+    def coated_surface(self) -> Surface:
+        """The surface where the monolayer covers it: the same, with the coating's energy."""
+        return self.surface.model_copy(update={"energy": self.coating.energy})
+
+    def replace(self, changes: Mapping[str, Any]) -> Self:
+        """Return a scene with some keys changed, checked anew.
+
+        Parameters
+        ----------
+        changes : mapping of str to object
+            Dotted keys (``"coating.sam_fraction"``, ``"drive.harmonic.0.amplitude"``) or names of whole
+            tables (None takes a table away) and what to put there, as in a case file.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            If a key is unknown or what it is to hold is not allowed.
+        """
+        if not isinstance(changes, Mapping):
+            raise SceneError("replace", shorten(changes), "must be a mapping from dotted keys to values")
+        data = self.to_dict()
+        for key, value in changes.items():
+            put(type(self), data, key, value)
+        return type(self).from_dict(data)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the scene as plain tables, lists, texts and SI numbers, ready for JSON.
+
+        Returns
+        -------
+        dict
+            ``Scene.from_dict`` makes an equal scene of it, to the last bit.
+        """
+        data: dict[str, Any] = self.model_dump(mode="json", exclude_none=True)
+        for table in ("drive", "load"):
+            if table in data and not data[table]["schedule"]:
+                del data[table]["schedule"]
+        return data
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """Make a scene from tables, as a case file or `to_dict` gives them.
+
+        Parameters
+        ----------
+        data : mapping
+            Tables by name; quantities are SI numbers or texts with a unit.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            If anything in it is wrong.
+        """
+        if not isinstance(data, Mapping):
+            raise SceneError("scene", shorten(data), "must be a mapping of tables")
+        for key in data:
+            if not isinstance(key, str):
+                raise SceneError(str(shorten(key)), "(key)", "keys must be texts")
+        return cls(**data)
+
+    @classmethod
+    def _unknown(cls, key: str, known: list[str]) -> str:
+        """Point at the table that a key without one belongs to."""
+        homes = [info.key for info in describe_keys() if info.key.rpartition(".")[2] == key]
+        if homes and not did_you_mean(key, known):
+            return f"unknown key; did you mean {' or '.join(homes)}?"
+        return super()._unknown(key, known)
+
+
+def describe_keys() -> tuple[KeyInfo, ...]:
+    """List every key of a scene in the order of a case file.
+
+    Returns
+    -------
+    tuple of KeyInfo
+    """
+    return keys_of(Scene)
+
+
+def describe_key(key: str) -> KeyInfo:
+    """Look up one key.
+
+    Parameters
+    ----------
+    key : str
+        Dotted name; numbers of list entries are ignored (``drive.harmonic.0.amplitude``).
+
+    Returns
+    -------
+    KeyInfo
+
+    Raises
+    ------
+    SceneError
+        If there is no such key.
+    """
+    return find_key(Scene, key)

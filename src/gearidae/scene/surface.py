@@ -1,0 +1,53 @@
+"""The rough flanks, their coating, and the laws chosen for their contact."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from gearidae.scene.group import Group
+from gearidae.scene.quantity import Quantity
+
+__all__ = ["Coating", "Contact", "Surface"]
+
+Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100)]
+
+
+class Surface(Group):
+    """Both flanks: the same elastic solid with the same Gaussian roughness."""
+
+    youngs_modulus: Annotated[float, Quantity(unit="Pa", at_least=1e3, at_most=1e14, shown=("GPa", 9))] = (
+        Field(description="Young's modulus")
+    )
+    poisson_ratio: Annotated[float, Quantity(unit="1", above=-1, below=0.5)] = Field(
+        description="Poisson's ratio"
+    )
+    energy: Energy = Field(description="surface energy of the bare flank; the work of adhesion is twice that")
+    asperity_density: Annotated[
+        float, Quantity(unit="1/m^2", at_least=1, at_most=1e20, shown=("1/um^2", 12))
+    ] = Field(description="asperities per area, N")
+    asperity_radius: Annotated[float, Quantity(unit="m", above=0, at_most=0.1, shown=("nm", -9))] = Field(
+        description="tip radius of the asperities, beta"
+    )
+    roughness: Annotated[float, Quantity(unit="m", above=0, at_most=0.1, shown=("nm", -9))] = Field(
+        description="rms height of the asperities, sigma"
+    )
+
+
+class Coating(Group):
+    """The self-assembled monolayer and how much of it is left; it changes the surface energy alone."""
+
+    sam_fraction: Annotated[float, Quantity(unit="1", at_least=0, at_most=1)] = Field(
+        description="share of the flank that the monolayer still covers, f"
+    )
+    energy: Energy = Field(default=0.1, description="surface energy where the monolayer covers the flank")
+
+
+class Contact(Group):
+    """Which laws of contact to use."""
+
+    model: Literal["auto", "asperity", "elastic"] = Field(
+        default="auto", description="asperity: teeth stay rigid; elastic: they deflect too; auto: as needed"
+    )
+    asperity: Literal["jkr", "dmt", "hertz"] = Field(default="jkr", description="force law of one asperity")

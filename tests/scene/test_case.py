@@ -1,0 +1,137 @@
+"""Case files: those shipped, and everything that is none."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from gearidae.errors import SceneError
+from gearidae.scene import dump_case, load_case, preset
+
+SHIPPED = ["alternating", "braking", "high_speed", "low_speed", "roller_fast", "roller_slow", "start_up"]
+
+
+def test_shipped_cases(cases: Path) -> None:
+    assert sorted(path.stem for path in cases.glob("*.toml")) == SHIPPED
+    for name in SHIPPED:
+        assert load_case(cases / f"{name}.toml").name == name
+
+
+@pytest.mark.parametrize(
+    ("case", "name"),
+    [
+        ("high_speed", "teodorescu2009"),
+        ("low_speed", "teodorescu2009_low_speed"),
+        ("roller_slow", "roller_slow"),
+        ("roller_fast", "roller_fast"),
+    ],
+)
+def test_cases_are_the_presets(cases: Path, case: str, name: str) -> None:
+    assert load_case(str(cases / f"{case}.toml")).replace({"name": name}) == preset(name)
+
+
+@pytest.mark.parametrize("case", ["start_up", "braking", "alternating"])
+def test_long_cases_drive_the_papers_gears_by_schedule(cases: Path, case: str) -> None:
+    scene, paper = load_case(cases / f"{case}.toml"), preset("teodorescu2009")
+    assert (scene.gears, scene.mesh, scene.surface, scene.load) == (
+        paper.gears,
+        paper.mesh,
+        paper.surface,
+        paper.load,
+    )
+    assert scene.drive is not None
+    assert paper.drive is not None
+    highest = scene.drive.torque + max(torque for _, torque in scene.drive.schedule)
+    assert highest == pytest.approx(paper.drive.torque, rel=1e-12)  # a sum of two decimals
+    assert scene.drive.schedule[-1][0] < scene.run.duration
+
+
+def test_name_may_be_given(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(dump_case(preset("roller_slow")))
+    assert load_case(path).name == "roller_slow"
+
+
+@pytest.mark.parametrize("stem", [" ", "a\nb", "x" * 230])
+def test_odd_file_names_still_name_a_scene(tmp_path: Path, stem: str) -> None:
+    path = tmp_path / f"{stem}.toml"
+    path.write_text(dump_case(preset("roller_slow")).partition("\n")[2])
+    assert load_case(path).name
+
+
+def test_byte_order_mark_and_windows_line_ends(tmp_path: Path) -> None:
+    path = tmp_path / "roller_slow.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + dump_case(preset("roller_slow")).replace("\n", "\r\n").encode())
+    assert load_case(path) == preset("roller_slow")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "is empty"),
+        (b"# nothing but a comment\n", "is empty"),
+        (b"[gears\n", "is not TOML"),
+        (b"name = 1\nname = 2\n", "is not TOML"),
+        (b"x = " + b"[" * 20_000, "is not TOML: nested too deeply"),
+        (b"x = " + b"9" * 10_000, "is not TOML"),
+        (b"\xff\xfe\x00", "is not a text file in UTF-8"),
+        (b"\x00\x01\x02", "is not TOML"),
+        (b"#" * 2_000_000, "is longer than"),
+    ],
+)
+def test_files_that_are_no_case(tmp_path: Path, content: bytes, reason: str) -> None:
+    path = tmp_path / "case.toml"
+    path.write_bytes(content)
+    with pytest.raises(SceneError, match=reason) as caught:
+        load_case(path)
+    assert caught.value.key == "case file"
+    assert "\n" not in str(caught.value)
+
+
+def test_files_that_are_not_there(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"nowhere\.toml: no such file|\.\.\.: no such file"):
+        load_case(tmp_path / "nowhere.toml")
+    with pytest.raises(SceneError, match="is a folder"):
+        load_case(tmp_path)
+    with pytest.raises(SceneError, match="cannot be read"):
+        load_case("nul\0byte.toml")
+    with pytest.raises(SceneError, match="cannot be read"):
+        load_case("x" * 100_000)
+
+
+@pytest.mark.parametrize("path", [None, 0, b"x.toml", ["x"]])
+def test_paths_that_are_none(path: Any) -> None:
+    with pytest.raises(SceneError, match="must be a path"):
+        load_case(path)
+
+
+def test_files_that_must_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: Any) -> None:  # file modes would not stop a superuser's test run
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", refuse)
+    with pytest.raises(SceneError, match="cannot be read: Permission denied"):
+        load_case(tmp_path / "case.toml")
+
+
+@pytest.mark.parametrize(
+    ("line", "wrong", "key"),
+    [
+        ('roughness = "6 nm"', "roughness = nan", "surface.roughness"),
+        ('roughness = "6 nm"', "roughness = -inf", "surface.roughness"),
+        ('roughness = "6 nm"', "roughness = 2024-01-01", "surface.roughness"),
+        ('roughness = "6 nm"', "roughnes = 6e-9", "surface.roughnes"),
+        ("[gears]", "[geers]", "geers"),
+        ("[drive]", "[drive]\nschedule = [[0.0, 1e-12], [0.0, 0.0]]", "drive.schedule"),
+        ("[drive]", "[drive]\nschedule = []", "drive.schedule"),
+        ("[gears]", "gap = 1\n[gears]", "gap"),
+    ],
+)
+def test_wrong_lines_are_named(tmp_path: Path, cases: Path, line: str, wrong: str, key: str) -> None:
+    text = (cases / "low_speed.toml").read_text()
+    assert line in text
+    path = tmp_path / "case.toml"
+    path.write_text(text.replace(line, wrong))
+    with pytest.raises(SceneError) as caught:
+        load_case(path)
+    assert caught.value.key == key

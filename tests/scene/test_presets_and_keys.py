@@ -1,0 +1,115 @@
+"""The paper's numbers, and the list of all keys."""
+
+import math
+from typing import Any
+
+import pytest
+
+from gearidae.errors import SceneError
+from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, preset
+
+# Every key that users' scripts rely on.
+CONTRACT = {
+    "gears": "pinion_inertia gear_inertia pinion_base_radius pinion_teeth gear_teeth pressure_angle "
+    "face_width",
+    "mesh": "backlash tip_relief_radius damping static_error static_error.order static_error.amplitude "
+    "static_error.phase",
+    "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness",
+    "coating": "sam_fraction energy",
+    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase",
+    "load": "torque harmonic drag schedule harmonic.amplitude harmonic.frequency harmonic.phase",
+    "initial": "gear_speed gap mesh_phase",
+    "run": "duration samples rtol",
+    "roller": "radius mass width speed height",
+    "contact": "model asperity",
+}
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_are_valid_and_bear_their_name(name: str) -> None:
+    assert preset(name).name == name
+
+
+@pytest.mark.parametrize("name", ["teodorescu", "", None, 5, [], "roller"])
+def test_unknown_presets(name: Any) -> None:
+    with pytest.raises(SceneError, match="known are teodorescu2009, teodorescu2009_low_speed, roller_slow"):
+        preset(name)
+
+
+def test_high_speed_starts_in_its_steady_state() -> None:
+    """M10 = (R1/R2) (M20 + alpha w^2), to the four digits that the speed is given with."""
+    scene = preset("teodorescu2009")
+    assert scene.drive is not None
+    assert scene.load is not None
+    assert scene.initial is not None
+    at_gear = scene.drive.torque * scene.geometry.base_radius_gear / scene.geometry.base_radius_pinion
+    speed = math.sqrt((at_gear - scene.load.torque) / scene.load.drag)
+    assert scene.initial.gear_speed == pytest.approx(speed, rel=1e-4)
+
+
+def test_low_speed_torque_balances_the_drag() -> None:
+    scene = preset("teodorescu2009_low_speed")
+    assert scene.drive is not None
+    assert scene.load is not None
+    assert scene.initial is not None
+    at_gear = scene.drive.torque * scene.geometry.base_radius_gear / scene.geometry.base_radius_pinion
+    assert at_gear == pytest.approx(
+        scene.load.drag * scene.initial.gear_speed**2, rel=1e-12
+    )  # rounding alone
+    assert scene.initial.gap == pytest.approx(6 * scene.surface.roughness, rel=1e-12)
+
+
+def test_equivalent_mass_of_the_pair() -> None:
+    """1 / (R1^2/I1 + R2^2/I2) = 2.53e-12 kg, to the digits stated."""
+    scene = preset("teodorescu2009")
+    assert scene.gears is not None
+    mass = 1 / (
+        scene.geometry.base_radius_pinion**2 / scene.gears.pinion_inertia
+        + scene.geometry.base_radius_gear**2 / scene.gears.gear_inertia
+    )
+    assert mass == pytest.approx(2.53e-12, abs=5e-15)
+
+
+def test_presets_share_one_surface() -> None:
+    assert len({preset(name).surface for name in PRESETS}) == 1
+
+
+def test_every_key_is_described() -> None:
+    keys = describe_keys()
+    expected = ["name", *(f"{table}.{name}" for table, names in CONTRACT.items() for name in names.split())]
+    assert sorted(info.key for info in keys) == sorted(expected)
+    for info in keys:
+        assert info.description, info.key
+        assert info.allowed, info.key
+        assert info.required == (info.default is None), info.key
+
+
+@pytest.mark.parametrize(
+    ("key", "unit"),
+    [
+        ("gears.pinion_inertia", "kg m^2"),
+        ("coating.sam_fraction", "1"),
+        ("gears.pinion_teeth", "1"),
+        ("load.drag", "N m s^2/rad^2"),
+        ("drive.harmonic.0.frequency", "Hz"),
+        ("contact.model", ""),
+    ],
+)
+def test_units_of_keys(key: str, unit: str) -> None:
+    assert describe_key(key).unit == unit
+
+
+def test_described_defaults_are_those_of_scenes() -> None:
+    scene = preset("teodorescu2009")
+    data = scene.to_dict()
+    del data["run"]["rtol"], data["run"]["samples"], data["mesh"]["tip_relief_radius"]
+    plain = Scene.from_dict(data)
+    assert plain.mesh is not None
+    assert plain.run.rtol == describe_key("run.rtol").default
+    assert plain.run.samples == describe_key("run.samples").default
+    assert plain.mesh.tip_relief_radius == describe_key("mesh.tip_relief_radius").default
+
+
+def test_unknown_keys_have_no_description() -> None:
+    with pytest.raises(SceneError, match=r"did you mean run\.duration\?"):
+        describe_key("run.duratoin")

@@ -1,0 +1,114 @@
+"""Texts with a unit: exact factors, and a plain answer to everything that is none."""
+
+import math
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gearidae.scene.units import from_text
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("34.715 um", "m", 34.715e-6),
+        ("34.715um", "m", 34.715e-6),
+        ("34.715 µm", "m", 34.715e-6),  # micro sign
+        ("34.715 μm", "m", 34.715e-6),  # Greek mu
+        ("  +3.4715e1 um ", "m", 34.715e-6),
+        ("\u22121 nm", "m", -1e-9),  # typographic minus
+        (".5 mm", "m", 0.5e-3),
+        ("161 GPa", "Pa", 161e9),
+        ("0.6 ug", "kg", 6e-10),
+        ("169 / um^2", "1/m^2", 1.69e14),
+        ("169 1/um**2", "1/m^2", 1.69e14),
+        ("169 um^-2", "1/m^2", 1.69e14),
+        ("169 µm⁻²", "1/m^2", 1.69e14),
+        ("8e-18 N·m·s²/rad²", "N m s^2/rad^2", 8e-18),
+        ("8e-18 N m s^2", "N m s^2/rad^2", 8e-18),
+        ("24.3 pN*m", "N m", 2.43e-11),
+        ("0.1 J/(m^2)", "J/m^2", 0.1),
+        ("10 kHz", "Hz", 10e3),
+        ("60 rpm", "rad/s", 2 * math.pi),
+        ("1 turn/s", "rad/s", 2 * math.pi),
+        ("20 deg", "rad", math.radians(20)),
+        ("20°", "rad", math.radians(20)),
+        ("0.5", "1", 0.5),
+        ("50 %", "1", 0.5),
+        ("50 percent", "1", 0.5),
+        ("0 m", "m", 0.0),
+    ],
+)
+def test_reads_exactly(text: str, unit: str, value: float) -> None:
+    """Factors are decimals of 28 digits, so the result is the float nearest to what was written."""
+    assert from_text(text, unit) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "reason"),
+    [
+        ("34.7", "m", "lacks a unit"),
+        ("20", "rad", "lacks a unit"),
+        ("34.7 kg", "m", "does not fit"),
+        ("3 um^2", "m", "does not fit"),
+        ("20 degC", "m", "does not fit"),
+        ("3 dB", "m", "does not fit"),
+        ("3 deg", "1", "does not fit"),
+        ("50 %", "rad", "does not fit"),
+        ("100 rpm", "Hz", "does not fit"),
+        ("100 rad/s", "Hz", "does not fit"),
+        ("100 kHz", "rad/s", "does not fit"),
+        ("3 parsnip", "m", "not a known unit"),
+        ("3 dB", "1", "not a known unit"),
+        ("3 m +", "m", "is not a unit"),
+        ("3 m/", "m", "not a known unit"),
+        ("3 ((m", "m", "not a known unit"),
+        ("3 2 m", "m", "is not a unit"),
+        ("3 __import__('os')", "m", "is not a unit"),
+        ("1,5 um", "m", "is not a unit"),
+        ("9**9**9**9 m", "m", "is not a unit"),
+        ("1 m**9**9**9", "m", "is not a unit"),
+        ("1 m^99999999", "m", "is not a unit"),
+        ("um", "m", "must be a number with a unit"),
+        ("nan m", "m", "must be a number with a unit"),
+        ("inf m", "m", "must be a number with a unit"),
+        ("", "m", "must be a number with a unit"),
+        ("abc", "1", "must be a number"),
+        ("1 " + "m" * 1000, "m", "must be a number with a unit"),
+        ("1e99999999999999999999 m", "m", "finite"),
+    ],
+)
+def test_refuses(text: str, unit: str, reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        from_text(text, unit)
+
+
+@given(st.text(max_size=40), st.sampled_from(["m", "rad", "1", "Hz", "N m s^2/rad^2"]))
+def test_any_text_is_read_or_refused(text: str, unit: str) -> None:
+    try:
+        value = from_text(text, unit)
+    except ValueError:
+        return
+    assert isinstance(value, float)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_written_numbers_come_back(value: float) -> None:
+    assert from_text(f"{value!r} m", "m") == value
+
+
+def test_pint_is_loaded_only_for_texts() -> None:
+    """A scene of plain numbers must not pay for pint, a text must load it."""
+    program = (
+        "import sys\n"
+        "from gearidae.scene import preset\n"
+        "scene = preset('teodorescu2009').replace({'coating.sam_fraction': 0.5})\n"
+        "assert 'pint' not in sys.modules\n"
+        "assert not {'numba', 'scipy', 'xarray', 'matplotlib'} & set(sys.modules)\n"
+        "scene.replace({'initial.gap': '30 nm'})\n"
+        "assert 'pint' in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
