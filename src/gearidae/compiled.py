@@ -1,0 +1,75 @@
+"""Compile with numba, once per machine, and never run what has gone stale.
+
+Numba's own cache looks at the file of the function it compiles, not at the files of the functions that this one
+calls, and not at the SUNDIALS library. So gearidae keeps its compiled code in a folder named after everything
+that went into it: its own sources and the versions of Python, numba, llvmlite and scikit-sundae.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+from platformdirs import user_cache_path
+
+__all__ = ["cache_folder", "compiled", "compiled_callback"]
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+COMPILED_PACKAGES = ("contact", "engine", "compiled.py", "records.py")
+
+
+@cache
+def cache_folder() -> Path:
+    """Where the compiled code of exactly these sources and library versions is kept.
+
+    Under ``NUMBA_CACHE_DIR`` if that is set, else in the user's cache folder.
+    """
+    root = Path(__file__).parent
+    digest = hashlib.sha256(sys.version.encode())
+    for name in ("numba", "llvmlite", "numpy", "scikit-sundae"):
+        digest.update(f"{name} {version(name)}".encode())
+    for package in COMPILED_PACKAGES:
+        path = root / package
+        for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+            digest.update(source.read_bytes())
+    base = os.environ.get("NUMBA_CACHE_DIR")
+    folder = Path(base) / "gearidae" if base else user_cache_path("gearidae")
+    return folder / digest.hexdigest()[:16]
+
+
+@contextmanager
+def _own_cache() -> Iterator[None]:
+    """Let numba choose gearidae's cache folder while a function is being declared."""
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(cache_folder())
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before
+
+
+def compiled(function: F) -> F:
+    """Compile a numerical function on first use; it runs without the GIL and divides as IEEE 754 says."""
+    with _own_cache():
+        dispatcher: Any = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    return cast("F", dispatcher)
+
+
+def compiled_callback(signature: Any) -> Callable[[F], Any]:
+    """Compile a C callback of this signature at once, or take it from the cache."""
+
+    def decorate(function: F) -> Any:
+        with _own_cache():
+            return numba.cfunc(signature, cache=True)(function)
+
+    return decorate
