@@ -1,0 +1,96 @@
+"""Where everything lies in the one flat array that the compiled residual reads.
+
+SUNDIALS hands its callbacks a single pointer, so all that a scene comes down to travels in one float64 array:
+constants, the tooth pairs' histories, the torque laws and the tables of the force law. The names below are offsets
+into it. Everything is scaled: lengths by the roughness sigma, forces by a reference load of the scene, and time by
+``tau = sqrt(m sigma / F)``, so that states, rates and forces are of order one whatever the speed.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+# -- constants -------------------------------------------------------------------------------------------------------
+KIND: Final = 0  # GEARS or ROLLER
+SIGMA: Final = 1  # length unit [m]
+TAU: Final = 2  # time unit [s]
+FORCE: Final = 3  # force unit [N]
+BASE_PITCH: Final = 4  # [m]
+GEAR_RADIUS: Final = 5  # R2 [m]
+PINION_RADIUS: Final = 6  # R1 [m]
+PINION_TEETH: Final = 7
+PINION_SHARE: Final = 8  # R1^2 tau^2 F / (I1 sigma): acceleration along the line of action per unit force
+GEAR_SHARE: Final = 9  # R2^2 tau^2 F / (I2 sigma); for a roller tau^2 F / (m sigma)
+HALF_BACKLASH: Final = 10  # b / sigma
+PHASE_RATE: Final = 11  # sigma / pb: turns the gear's surface velocity into the rate of its phase
+PATH: Final = 12  # path of contact in pitches (the contact ratio)
+COAST_PHASE: Final = 13  # 2 approach / pb + 1/2: mirrors the coast flank about the pitch point
+RELIEF: Final = 14  # pb^2 / (rho sigma): curvature of the tip relief
+RELIEF_SLOPE: Final = 15  # pb / rho
+REACH: Final = 16  # how far outside the path a pair may still touch, in pitches
+START_RADIUS: Final = 17  # pinion's radius of curvature where contact begins, in pitches
+SUM_RADIUS: Final = 18  # sum of both radii of curvature, in pitches
+DAMPING: Final = 19  # viscous mesh damping, scaled
+DRAG: Final = 20  # alpha, scaled: force per squared surface velocity
+CUTOFF: Final = 21  # gap beyond which the force is taken as zero
+ENGAGE: Final = 22  # gap of contact onset and separation
+LOADING_AT: Final = 23  # loading branch of both materials together, in forces
+MATERIALS: Final = 24  # records of the materials that stretch: bare first
+MATERIAL: Final = 3  # numbers in each
+M_FORCE: Final = 0  # force scale per sqrt(radius / pitch), with the material's share of the surface
+M_STRETCH: Final = 1  # stretch limit dc / sigma; 0 where there is no hysteresis worth following
+M_TABLE: Final = 2  # offset of its force law
+DRY: Final = 30  # dry resistance at the gear: 1 if the scene has any
+SLOTS: Final = 31  # pairs per flank whose history is kept, a power of two
+ERROR_ORDERS: Final = 32  # number of harmonics of the static transmission error
+ERROR_AT: Final = 33  # where they begin: order, amplitude / sigma, phase
+DRIVE_AT: Final = 34  # where the torque laws begin
+LOAD_AT: Final = 35
+END: Final = 36  # end of the run, scaled
+TOTAL_SLOTS: Final = 37  # both flanks
+EVENT_LIMIT: Final = 38  # events allowed within one EVENT_WINDOW of simulated time
+EVENT_WINDOW: Final = 39  # [tau]
+HISTORIES: Final = 40  # where the pairs' histories begin, and the size of one
+HISTORY: Final = 41
+BRANCH: Final = 42  # size of a material's branch at the end of a history; 0 if none is kept
+
+# -- what changes during a run ---------------------------------------------------------------------------------------
+TURNS: Final = 48  # whole pitches taken out of the phase
+SLIP: Final = 49  # direction of the gear's slip against dry resistance: -1, +1; 0 while it is held at rest
+LAST_TIME: Final = 50  # last accepted time
+MARK_LOW: Final = 51  # phases of the nearest mesh entries and exits
+MARK_HIGH: Final = 52
+LAST_FLANK: Final = 53  # flank of the last onset, -1 before the first
+WINDOW_START: Final = 54  # of the bound on the event rate
+WINDOW_COUNT: Final = 55
+NEXT_KNOT: Final = 56  # index of the coming schedule knot among all knots
+NEAR: Final = 57  # two flags: drive and coast flank close enough for any pair to touch
+CONSTANTS: Final = 64
+
+# -- the history of a tooth pair, in the slot `pair mod SLOTS` of its flank ------------------------------------------
+PAIR: Final = 0  # number of the pair, counted without TURNS; what the slot is about
+WAY: Final = 1  # sign of the gap rate; 0 at the very start
+LAST_GAP: Final = 2  # gap and gap rate at the last accepted time
+LAST_RATE: Final = 3
+TOUCHING: Final = 4  # 1 between onset and separation
+JOINED: Final = 5  # per material, height above which asperities are joined at the last turning point
+TORN: Final = 7  # per material, 1 once full stretch has been reached on the way apart
+BRANCHES: Final = 9  # per material, the force law's branch at JOINED
+
+GEARS: Final = 0.0
+ROLLER: Final = 1.0
+
+# -- a torque law ----------------------------------------------------------------------------------------------------
+# constant, number of harmonics, number of schedule points, then (amplitude, angular frequency, phase) of each
+# harmonic and (time, value) of each point, forces and times scaled.
+LAW_CONSTANT: Final = 0
+LAW_HARMONICS: Final = 1
+LAW_POINTS: Final = 2
+LAW_SEGMENT: Final = 3  # index of the schedule's current segment: set at knots, never inside a step
+LAW_BODY: Final = 4
+
+# -- states ----------------------------------------------------------------------------------------------------------
+U: Final = 0  # dynamic transmission error (a roller's height) / sigma
+V: Final = 1  # its rate
+PHASE: Final = 2  # gear's turn in base pitches, less TURNS
+W: Final = 3  # gear's surface velocity at the base circle

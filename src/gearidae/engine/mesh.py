@@ -1,0 +1,164 @@
+"""Tooth pairs in mesh: gap, rate and force of each, from the scaled state (Teodorescu et al. 2009, Eqs. 4-6).
+
+A pair is known by its number i. On the drive flank it stands ``phase - i`` pitches along the path of contact, on the
+coast flank, mirrored about the pitch point and half a pitch later, ``COAST_PHASE + i - phase``. All functions take
+the flat array of `layout` and the state's numbers, and are compiled.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+from gearidae.contact.history import extreme_gap, joined_height
+from gearidae.contact.law import branch_value, loading_value, set_branch, stretched_value
+from gearidae.engine import layout as at
+
+__all__ = [
+    "first_pair",
+    "history_slot",
+    "last_pair",
+    "material_stretch",
+    "pair_force",
+    "pair_gap",
+    "set_joined",
+    "static_error",
+]
+
+Floats = NDArray[np.float64]
+
+
+@compiled
+def first_pair(d: Floats, coast: int, phase: float) -> int:
+    """Lowest number of the pairs within reach of a flank."""
+    if coast:
+        return math.ceil(phase - d[at.COAST_PHASE] - d[at.REACH])
+    return math.ceil(phase - d[at.PATH] - d[at.REACH])
+
+
+@compiled
+def last_pair(d: Floats, coast: int, phase: float) -> int:
+    """Highest number of the pairs within reach of a flank."""
+    if coast:
+        return math.floor(phase - d[at.COAST_PHASE] + d[at.PATH] + d[at.REACH])
+    return math.floor(phase + d[at.REACH])
+
+
+@compiled
+def history_slot(d: Floats, coast: int, pair: int) -> int:
+    """Offset of a pair's history; slots go round, with at least as many of them as pairs can be within reach."""
+    slots = int(d[at.SLOTS])
+    return int(d[at.HISTORIES]) + int(d[at.HISTORY]) * (coast * slots + (pair & (slots - 1)))
+
+
+@compiled
+def pair_gap(
+    d: Floats, coast: int, pair: int, u: float, v: float, phase: float, w: float
+) -> tuple[float, float, float, float]:
+    """Gap, its rate, slope of the separation ds/dxi, and the place along the path clipped to it (in pitches)."""
+    along = d[at.COAST_PHASE] + pair - phase if coast else phase - pair
+    path = d[at.PATH]
+    inside = min(max(along, 0.0), path)
+    outside = along - inside
+    toward = -v if not coast else v
+    gap = d[at.HALF_BACKLASH] + (u if coast else -u)
+    if outside == 0.0:
+        return gap, toward, 0.0, inside
+    slope = d[at.RELIEF_SLOPE] * outside
+    gap += 0.5 * d[at.RELIEF] * outside * outside
+    turn = -w if coast else w
+    return gap, toward + slope * turn, slope, inside
+
+
+@compiled
+def pair_force(
+    d: Floats, slot: int, known: bool, t: float, gap: float, rate: float, inside: float
+) -> tuple[float, float]:
+    """Force of one pair and its slope in the gap, scaled, with the pair's own history.
+
+    Within a step that has turned the pair round, the history first goes through the turning point.
+    """
+    force, slope = loading_value(d, int(d[at.LOADING_AT]), gap)
+    if known:
+        turned = d[slot + at.WAY] * rate < 0.0
+        turning_gap = gap
+        if turned:
+            turning_gap = extreme_gap(
+                t - d[at.LAST_TIME], d[slot + at.LAST_GAP], d[slot + at.LAST_RATE], gap, rate
+            )
+        for material in range(2):
+            record = at.MATERIALS + at.MATERIAL * material
+            limit = d[record + at.M_STRETCH]
+            if limit == 0.0:
+                continue
+            joined = d[slot + at.JOINED + material]
+            if turned:
+                joined = joined_height(joined, turning_gap, limit)
+            stretch = gap - joined
+            if stretch <= 0.0:
+                continue
+            if stretch < limit and not turned and d[at.BRANCH] > 0.0:
+                first = slot + at.BRANCHES + material * int(d[at.BRANCH])
+                q, dq = branch_value(d[first:], stretch)
+            else:
+                q, dq = stretched_value(d[int(d[record + at.M_TABLE]) :], gap, joined)
+            force += d[record + at.M_FORCE] * q
+            slope += d[record + at.M_FORCE] * dq
+    if d[at.KIND] == at.ROLLER:
+        return force, slope
+    pinion = d[at.START_RADIUS] + inside
+    radius = math.sqrt(pinion * (d[at.SUM_RADIUS] - pinion) / d[at.SUM_RADIUS])
+    return force * radius, slope * radius
+
+
+@compiled
+def material_stretch(d: Floats, material: int) -> float:
+    """Stretch limit of a material, bare or coated, over sigma; 0 where it has no hysteresis to follow."""
+    return d[at.MATERIALS + at.MATERIAL * material + at.M_STRETCH]
+
+
+@compiled
+def set_joined(d: Floats, slot: int, material: int, joined: float) -> None:
+    """Store the joined height of a turning point, and work out the branch that starts from it."""
+    d[slot + at.JOINED + material] = joined
+    size = int(d[at.BRANCH])
+    if size > 0:
+        first = slot + at.BRANCHES + material * size
+        set_branch(
+            d[int(d[at.MATERIALS + at.MATERIAL * material + at.M_TABLE]) :], joined, d[first : first + size]
+        )
+
+
+@compiled
+def static_error(d: Floats, u: float, phase: float) -> tuple[float, float, float, float]:
+    """Pinion's angle, static transmission error e, and its first two derivatives over R1 and R1^2, scaled.
+
+    ``R1 phi1 - e(phi1) = u + R2 phi2`` is solved by Newton's method: e is small against R1.
+
+    Returns
+    -------
+    angle, e, e1, e2 : float
+        phi1 [rad], ``e / sigma``, ``e' / R1`` and ``e'' sigma / R1^2``.
+    """
+    radius = d[at.PINION_RADIUS] / d[at.SIGMA]
+    turns = (d[at.TURNS] % d[at.PINION_TEETH] + phase) / d[at.PINION_TEETH]
+    rigid = 2.0 * math.pi * turns + u / radius
+    angle = rigid
+    e = e1 = e2 = 0.0
+    count = int(d[at.ERROR_ORDERS])
+    first = int(d[at.ERROR_AT])
+    for _ in range(4 if count else 0):
+        e = e1 = e2 = 0.0
+        for k in range(count):
+            order, amplitude, shift = d[first + 3 * k], d[first + 3 * k + 1], d[first + 3 * k + 2]
+            c = amplitude * math.cos(order * angle + shift)
+            s = amplitude * math.sin(order * angle + shift)
+            e += c
+            e1 -= order * s / radius
+            e2 -= order * order * c / (radius * radius)
+        step = (angle - rigid - e / radius) / (1.0 - e1)
+        angle -= step
+    return angle, e, e1, e2

@@ -1,0 +1,368 @@
+"""The native driver: SUNDIALS IDA driven from one compiled loop with compiled callbacks.
+
+Python sees only full blocks: `advance` steps, follows histories, handles roots and writes samples until a block of
+output is full, a budget of steps is used up, or the run is over, and can be called again where it left off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numba import carray, types  # type: ignore[attr-defined]
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled, compiled_callback
+from gearidae.engine import layout as at
+from gearidae.engine import sundials as sun
+from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, guard, handle, pass_knot
+from gearidae.engine.observe import observe
+from gearidae.engine.problem import Problem
+from gearidae.engine.residual import jacobian, residual
+from gearidae.engine.run import BLOCK_EVENTS, BLOCK_ROWS, BLOCK_STEPS, Block, Ending, Tally, ending_of_flag
+from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
+
+__all__ = ["run"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+_HUGE = 1 << 40  # carray wants a length; the callbacks never look at it
+
+# Handles: addresses of what SUNDIALS has made.
+CONTEXT, SOLVER, Y, YP, DKY, TOLERANCES, MATRIX, LINEAR, HANDLES = range(9)
+
+# Progress of a run, kept between calls of `advance`.
+(
+    NEXT_SAMPLE,
+    ROWS,
+    EVENTS,
+    PENDING,
+    DONE,
+    ERROR,
+    STEPS,
+    RESIDUALS,
+    JACOBIANS,
+    ERROR_FAILURES,
+    CONVERGENCE_FAILURES,
+    RESTARTS,
+    GUARD_CALLS,
+    PROGRESS,
+) = range(14)
+CHATTER = 1  # progress[ERROR] when events crowd; negative numbers are IDA's own
+
+
+@compiled_callback(types.int32(types.float64, types.intp, types.intp, types.intp, _REALS))
+def _residual(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
+    d = carray(data, (_HUGE,))
+    residual(
+        d,
+        t,
+        carray(sun.N_VGetArrayPointer(yy), (4,)),
+        carray(sun.N_VGetArrayPointer(yp), (4,)),
+        carray(sun.N_VGetArrayPointer(rr), (4,)),
+    )
+    return 0
+
+
+@compiled_callback(
+    types.int32(
+        types.float64,
+        types.float64,
+        types.intp,
+        types.intp,
+        types.intp,
+        types.intp,
+        _REALS,
+        types.intp,
+        types.intp,
+        types.intp,
+    )
+)
+def _jacobian(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
+    d = carray(data, (_HUGE,))
+    jacobian(
+        d, t, cj, carray(sun.N_VGetArrayPointer(yy), (4,)), carray(sun.SUNDenseMatrix_Data(matrix), (16,))
+    )
+    return 0
+
+
+@compiled_callback(types.int32(types.float64, types.intp, types.intp, _REALS, _REALS))
+def _guard(t, yy, yp, out, data):  # type: ignore[no-untyped-def]
+    d = carray(data, (_HUGE,))
+    carray(out, (1,))[0] = guard(d, t, carray(sun.N_VGetArrayPointer(yy), (4,)))
+    return 0
+
+
+def callbacks() -> Ints:
+    """Addresses of residual, Jacobian and guard."""
+    return np.array([_residual.address, _jacobian.address, _guard.address], dtype=np.int64)
+
+
+@compiled
+def open_solver(
+    handles: Ints, calls: Ints, d: Floats, y: Floats, yp: Floats, dky: Floats, atol: Floats
+) -> int:
+    """Create IDA with a dense linear solver over the caller's arrays; 0 if all went well.
+
+    Parameters
+    ----------
+    handles : ndarray of int64, shape (HANDLES,)
+        Filled in.
+    calls : ndarray of int64, shape (3,)
+        From `callbacks`.
+    d, y, yp, dky, atol : ndarray
+        User data, state, rates, work space and absolute tolerances: must outlive the solver.
+    """
+    n = y.size
+    flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
+    if flag != 0:
+        return flag
+    context = handles[CONTEXT]
+    sun.SUNContext_ClearErrHandlers(context)
+    handles[Y] = sun.N_VMake_Serial(n, y.ctypes.data, context)
+    handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
+    handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
+    handles[TOLERANCES] = sun.N_VMake_Serial(n, atol.ctypes.data, context)
+    handles[MATRIX] = sun.SUNDenseMatrix(n, n, context)
+    handles[LINEAR] = sun.SUNLinSol_Dense(handles[Y], handles[MATRIX], context)
+    solver = sun.IDACreate(context)
+    handles[SOLVER] = solver
+    flag |= sun.IDAInit(solver, calls[0], d[at.LAST_TIME], handles[Y], handles[YP])
+    flag |= sun.IDASVtolerances(solver, 0.0, handles[TOLERANCES])
+    flag |= sun.IDASetUserData(solver, d.ctypes.data)
+    flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
+    flag |= sun.IDASetJacFn(solver, calls[1])
+    flag |= sun.IDASetMaxNumSteps(solver, -1)
+    falling = np.full(1, -1, np.int32)
+    flag |= sun.IDARootInit(solver, 1, calls[2])
+    flag |= sun.IDASetRootDirection(solver, falling.ctypes.data)
+    flag |= sun.IDASetNoInactiveRootWarn(solver)
+    return flag
+
+
+@compiled
+def close(handles: Ints) -> None:
+    """Free what `open_solver` has made."""
+    cell = np.empty(1, np.int64)
+    if handles[SOLVER] != 0:
+        cell[0] = handles[SOLVER]
+        sun.IDAFree(cell.ctypes.data)
+    if handles[LINEAR] != 0:
+        sun.SUNLinSolFree(handles[LINEAR])
+    if handles[MATRIX] != 0:
+        sun.SUNMatDestroy(handles[MATRIX])
+    for k in (Y, YP, DKY, TOLERANCES):
+        if handles[k] != 0:
+            sun.N_VDestroy(handles[k])
+    if handles[CONTEXT] != 0:
+        cell[0] = handles[CONTEXT]
+        sun.SUNContext_Free(cell.ctypes.data)
+    handles[:] = 0
+
+
+@compiled
+def _count(solver: int, progress: Ints) -> None:
+    """Add IDA's counters, which start from zero at each re-initialisation."""
+    cell = np.zeros(1, np.int64)
+    sun.IDAGetNumSteps(solver, cell.ctypes.data)
+    progress[STEPS] += cell[0]
+    sun.IDAGetNumResEvals(solver, cell.ctypes.data)
+    progress[RESIDUALS] += cell[0]
+    sun.IDAGetNumJacEvals(solver, cell.ctypes.data)
+    progress[JACOBIANS] += cell[0]
+    sun.IDAGetNumErrTestFails(solver, cell.ctypes.data)
+    progress[ERROR_FAILURES] += cell[0]
+    sun.IDAGetNumNonlinSolvConvFails(solver, cell.ctypes.data)
+    progress[CONVERGENCE_FAILURES] += cell[0]
+    sun.IDAGetNumGEvals(solver, cell.ctypes.data)
+    progress[GUARD_CALLS] += cell[0]
+
+
+@compiled
+def _start(
+    solver: int,
+    handles: Ints,
+    d: Floats,
+    t: float,
+    y: Floats,
+    yp: Floats,
+    scale: Floats,
+    rtol: float,
+    stop: float,
+) -> int:
+    """Set consistent rates and the first step, and (re-)initialise IDA at t."""
+    set_rates(d, t, y, yp)
+    flag = sun.IDAReInit(solver, t, handles[Y], handles[YP])
+    flag |= sun.IDASetInitStep(solver, first_step(d, t, y, yp, scale, rtol, stop - t))
+    flag |= sun.IDASetStopTime(solver, stop)
+    return flag
+
+
+@compiled
+def advance(
+    handles: Ints,
+    d: Floats,
+    y: Floats,
+    yp: Floats,
+    dky: Floats,
+    clock: Floats,
+    scale: Floats,
+    rtol: float,
+    end: float,
+    knots: Floats,
+    total: int,
+    rows: Floats,
+    events: Floats,
+    progress: Ints,
+    budget: int,
+) -> float:
+    """Run until a block of output is full, `budget` steps are done or the run is over.
+
+    Parameters
+    ----------
+    handles : ndarray of int64
+        From `open_solver`.
+    d, y, yp, dky : ndarray
+        The arrays given to `open_solver`.
+    clock : ndarray, shape (1,)
+        Time reached, over tau.
+    scale, rtol, end, knots
+        See `gearidae.engine.problem.Problem`.
+    total : int
+        Number of samples in the whole run.
+    rows : ndarray, shape (m, columns)
+        Samples of this block.
+    events : ndarray, shape (k, 5)
+        Events of this block.
+    progress : ndarray of int64, shape (PROGRESS,)
+        Where the run stands; ROWS and EVENTS are set to zero by the caller between calls.
+    budget : int
+        Steps to do at most.
+
+    Returns
+    -------
+    float
+        Time reached, over tau.
+    """
+    solver = handles[SOLVER]
+    spacing = end / (total - 1)
+    knot = int(d[at.NEXT_KNOT])
+    stop = knots[knot] if knot < knots.size else end
+    room = events.shape[0] - EVENTS_AT_ONCE
+    flag = progress[PENDING] - 1
+    if progress[PENDING] < 0:  # the very first call
+        progress[ERROR] = _start(solver, handles, d, clock[0], y, yp, scale, rtol, stop)
+        progress[PENDING] = 0
+    while progress[ERROR] == 0 and progress[DONE] == 0 and budget > 0 and progress[EVENTS] < room:
+        if progress[PENDING] == 0:
+            flag = sun.IDASolve(solver, end, clock.ctypes.data, handles[Y], handles[YP], sun.IDA_ONE_STEP)
+            budget -= 1
+            if flag < 0:
+                progress[ERROR] = flag
+                break
+        t = clock[0]
+        sample = progress[NEXT_SAMPLE] * spacing if progress[NEXT_SAMPLE] < total - 1 else end
+        while sample <= t and progress[NEXT_SAMPLE] < total and progress[ROWS] < rows.shape[0]:
+            sun.IDAGetDky(solver, sample, 0, handles[DKY])
+            observe(d, sample, dky, rows[progress[ROWS]])
+            progress[ROWS] += 1
+            progress[NEXT_SAMPLE] += 1
+            sample = progress[NEXT_SAMPLE] * spacing if progress[NEXT_SAMPLE] < total - 1 else end
+        if sample <= t and progress[NEXT_SAMPLE] < total:  # the block is full: the step waits with its flag
+            progress[PENDING] = flag + 1
+            break
+        progress[PENDING] = 0
+        accept(d, t, y)
+        restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
+        if flag == sun.IDA_ROOT_RETURN:
+            progress[EVENTS], action = handle(d, t, y, events, progress[EVENTS])
+            restart |= action == RESTART
+            if action == CROWDED:
+                progress[ERROR] = CHATTER
+        elif flag == sun.IDA_TSTOP_RETURN:
+            if knot < knots.size:
+                progress[EVENTS] = pass_knot(d, t, events, progress[EVENTS])
+                knot += 1
+                stop = knots[knot] if knot < knots.size else end
+                restart = True
+            else:
+                progress[DONE] = 1
+        if restart and progress[DONE] == 0 and progress[ERROR] == 0:
+            _count(solver, progress)
+            rebase(d, y)
+            progress[RESTARTS] += 1
+            progress[ERROR] = _start(solver, handles, d, t, y, yp, scale, rtol, stop)
+    if progress[DONE] != 0 or progress[ERROR] != 0:
+        _count(solver, progress)
+    return float(clock[0])
+
+
+def run(problem: Problem, rtol: float, total: int, tally: Tally) -> Iterator[Block]:
+    """Run a problem from its start, block by block.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its data change as the run goes on.
+    rtol : float
+        Relative tolerance.
+    total : int
+        Number of samples, the first at time 0 and the last at the end.
+    tally : Tally
+        Filled in; complete once the last block is out.
+
+    Yields
+    ------
+    Block
+    """
+    d, y = problem.data, problem.start.copy()
+    yp, dky, clock = np.zeros_like(y), np.zeros_like(y), np.zeros(1)
+    atol = rtol * problem.tolerance_scale
+    rows, events = np.empty((BLOCK_ROWS, len(problem.columns))), np.empty((BLOCK_EVENTS, 5))
+    handles, progress = np.zeros(HANDLES, np.int64), np.zeros(PROGRESS, np.int64)
+    progress[PENDING] = -1
+    observe(d, 0.0, y, rows[0])
+    progress[[ROWS, NEXT_SAMPLE]] = 1
+    try:
+        if open_solver(handles, callbacks(), d, y, yp, dky, atol) != 0:
+            tally.ending = Ending.SOLVER_FAILURE
+            return
+        while progress[DONE] == 0 and progress[ERROR] == 0:
+            time = advance(
+                handles,
+                d,
+                y,
+                yp,
+                dky,
+                clock,
+                problem.tolerance_scale,
+                rtol,
+                problem.end,
+                problem.knots,
+                total,
+                rows,
+                events,
+                progress,
+                BLOCK_STEPS,
+            )
+            _fill_tally(tally, progress)
+            yield Block(
+                rows[: progress[ROWS]].copy(), events[: progress[EVENTS]].copy(), time * problem.time_unit
+            )
+            progress[[ROWS, EVENTS]] = 0
+    finally:
+        close(handles)
+
+
+def _fill_tally(tally: Tally, progress: Ints) -> None:
+    tally.steps = int(progress[STEPS])
+    tally.residual_evaluations = int(progress[RESIDUALS])
+    tally.jacobian_evaluations = int(progress[JACOBIANS])
+    tally.error_test_failures = int(progress[ERROR_FAILURES])
+    tally.convergence_failures = int(progress[CONVERGENCE_FAILURES])
+    tally.restarts = int(progress[RESTARTS])
+    tally.guard_evaluations = int(progress[GUARD_CALLS])
+    tally.ending = ending_of_flag(int(progress[ERROR]))

@@ -1,0 +1,222 @@
+"""The portable driver: the same residual, Jacobian and guard through scikit-sundae's public API.
+
+Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. Steps, histories
+and events are those of the native driver; between steps it interpolates for itself, because the API has no dense
+output.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sksundae.ida import IDA
+
+from gearidae.compiled import compiled
+from gearidae.engine import layout as at
+from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, guard, handle, pass_knot
+from gearidae.engine.observe import observe
+from gearidae.engine.problem import Problem
+from gearidae.engine.residual import jacobian, residual
+from gearidae.engine.run import BLOCK_EVENTS, BLOCK_ROWS, Block, Ending, Tally, ending_of_flag, sample_time
+from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
+
+__all__ = ["run"]
+
+Floats = NDArray[np.float64]
+
+_BLOCK_STEPS = 5_000  # some tenths of a second
+_TSTOP, _ROOT = 1, 2  # flags of IDA's
+_POINTS = 6  # returns that an interpolation looks back over
+_CROWDED = 0.3  # of the way to be interpolated: the least distance of the third point
+
+
+def run(problem: Problem, rtol: float, total: int, tally: Tally) -> Iterator[Block]:
+    """Run a problem from its start, block by block; see `gearidae.engine.native.run`."""
+    d, y, t = problem.data, problem.start.copy(), 0.0
+    knots = [*problem.knots, problem.end]
+    output = _Output(problem, total)
+    output.sample(t, y, _Trail(t, y, y))
+    solver, trail = _start(problem, rtol, t, y, knots[0], tally)
+    steps = 0
+    while knots:
+        result = solver.step(knots[-1], method="onestep", tstop=knots[0])
+        flag = result.status
+        steps += flag != _ROOT
+        if flag < 0 or not np.isfinite(result.y).all():
+            tally.ending = ending_of_flag(flag) if flag < 0 else Ending.NOT_FINITE
+            break
+        t, y = result.t, result.y
+        trail.add(t, y, result.yp)
+        yield from output.sample(t, y, trail)
+        accept(d, t, y)
+        restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
+        if flag == _ROOT:
+            solver.forget_events()
+            output.event_count, action = handle(d, t, y, output.events, output.event_count)
+            restart |= action == RESTART
+            if action == CROWDED:
+                tally.ending = Ending.CHATTER
+                break
+        elif flag == _TSTOP:
+            knots.pop(0)
+            if knots:
+                output.event_count = pass_knot(d, t, output.events, output.event_count)
+                restart = True
+        if restart and knots:
+            rebase(d, y)
+            tally.restarts += 1
+            solver.count(tally)
+            solver, trail = _start(problem, rtol, t, y, knots[0], tally)
+        if steps % _BLOCK_STEPS == 0 or output.event_count > BLOCK_EVENTS - EVENTS_AT_ONCE:
+            yield output.flush(t)
+    tally.steps = steps
+    solver.count(tally)
+    yield output.flush(t)
+
+
+class _Solver:
+    """scikit-sundae's IDA over fresh callbacks, since it keeps the event history on the function it is given."""
+
+    def __init__(self, problem: Problem, atol: Floats, step: float) -> None:
+        d, n = problem.data, problem.start.size
+        self._guard_calls = 0
+        column_major = np.empty(n * n)
+
+        def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
+            residual(d, t, y, yp, out)
+
+        def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
+            jacobian(d, t, cj, y, column_major)
+            out[:] = column_major.reshape(n, n).T
+
+        def falling(t: float, y: Floats, yp: Floats, out: Floats) -> None:
+            self._guard_calls += 1
+            out[0] = guard(d, t, y)
+
+        self._events: Any = falling
+        self._events.direction = [-1]
+        self._ida = IDA(
+            resfn,
+            jacfn=jacfn,
+            eventsfn=falling,
+            num_events=1,
+            rtol=0.0,
+            atol=atol,
+            first_step=step,
+            max_num_steps=10_000_000,
+        )
+        self._last: Any = None
+
+    def begin(self, t: float, y: Floats, yp: Floats) -> None:
+        self._ida.init_step(t, y, yp)
+
+    def step(self, t: float, method: str, tstop: float) -> Any:
+        self._last = self._ida.step(t, method=method, tstop=tstop)
+        return self._last
+
+    def forget_events(self) -> None:
+        """Drop the history, which would be copied whole at every further step."""
+        for name in ("_i", "_t", "_y", "_yp"):
+            getattr(self._events, name).clear()
+
+    def count(self, tally: Tally) -> None:
+        """Add this solver's counters."""
+        if self._last is not None:
+            tally.residual_evaluations += int(self._last.nfev)
+            tally.jacobian_evaluations += int(self._last.njev)
+        tally.guard_evaluations += self._guard_calls
+
+
+def _start(
+    problem: Problem, rtol: float, t: float, y: Floats, stop: float, tally: Tally
+) -> tuple[_Solver, _Trail]:
+    """Set consistent rates and the first step, and start a fresh IDA at t."""
+    d, yp = problem.data, np.zeros_like(y)
+    set_rates(d, t, y, yp)
+    step = first_step(d, t, y, yp, problem.tolerance_scale, rtol, stop - t)
+    solver = _Solver(problem, rtol * problem.tolerance_scale, step)
+    solver.begin(t, y, yp)
+    return solver, _Trail(t, y, yp)
+
+
+class _Output:
+    """Collects samples and events into blocks."""
+
+    def __init__(self, problem: Problem, total: int) -> None:
+        self._problem, self._total = problem, total
+        self._next = 0
+        self._rows = np.empty((BLOCK_ROWS, len(problem.columns)))
+        self._row_count = 0
+        self.events = np.empty((BLOCK_EVENTS, 5))
+        self.event_count = 0
+
+    def sample(self, t: float, y: Floats, trail: _Trail) -> Iterator[Block]:
+        """Write the samples up to t; hands out full blocks on the way."""
+        blocks = []
+        while (
+            self._next < self._total
+            and (at_time := sample_time(self._next, self._total, self._problem.end)) <= t
+        ):
+            state = y if at_time == t else trail.at(at_time)
+            observe(self._problem.data, at_time, state, self._rows[self._row_count])
+            self._next += 1
+            self._row_count += 1
+            if self._row_count == BLOCK_ROWS:
+                blocks.append(self.flush(at_time))
+        return iter(blocks)
+
+    def flush(self, t: float) -> Block:
+        """Hand out what has been collected."""
+        block = Block(
+            self._rows[: self._row_count].copy(),
+            self.events[: self.event_count].copy(),
+            t * self._problem.time_unit,
+        )
+        self._row_count = self.event_count = 0
+        return block
+
+
+class _Trail:
+    """Where the last few returns were, for Hermite interpolation of degree five between the last two.
+
+    The third point must not crowd the others: what the solver returns is smooth only to the tolerance, and divided
+    differences over a short way (a root just before a step's end) would magnify that.
+    """
+
+    def __init__(self, t: float, y: Floats, yp: Floats) -> None:
+        self._points = [(t, y.copy(), yp.copy())]
+
+    def add(self, t: float, y: Floats, yp: Floats) -> None:
+        self._points = [*self._points[1 - _POINTS :], (t, y.copy(), yp.copy())]
+
+    def at(self, t: float) -> Floats:
+        *earlier, before, after = self._points
+        apart = _CROWDED * (after[0] - before[0])
+        third = [point for point in earlier if before[0] - point[0] >= apart][-1:]
+        times, states, rates = zip(*third, before, after, strict=True)
+        return _hermite(np.array(times), np.array(states), np.array(rates), t)
+
+
+@compiled
+def _hermite(times: Floats, states: Floats, rates: Floats, t: float) -> Floats:
+    """Newton's divided differences over doubled nodes: states and rates at all of them are met."""
+    count, n = states.shape
+    size = 2 * count
+    nodes = np.empty(size)
+    table = np.empty((size, n))
+    for i in range(count):
+        nodes[2 * i] = nodes[2 * i + 1] = times[i]
+        table[2 * i] = table[2 * i + 1] = states[i]
+    for level in range(1, size):
+        for i in range(size - 1, level - 1, -1):
+            if nodes[i] == nodes[i - level]:
+                table[i] = rates[i // 2]
+            else:
+                table[i] = (table[i] - table[i - 1]) / (nodes[i] - nodes[i - level])
+    value = table[size - 1].copy()
+    for i in range(size - 2, -1, -1):
+        value = value * (t - nodes[i]) + table[i]
+    return value

@@ -1,0 +1,286 @@
+"""From a scene to the numbers that the compiled residual reads."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.contact.jkr import asperity_of
+from gearidae.contact.law import (
+    GAP_HIGH,
+    GAP_LOW,
+    H_STRETCH,
+    HEADER,
+    N_LOADING,
+    STRETCH_HIGH,
+    branch_length,
+    force_scale,
+    law_table,
+    law_value,
+)
+from gearidae.engine import layout as at
+from gearidae.engine.events import begin
+from gearidae.engine.mesh import material_stretch
+from gearidae.engine.torque import pack_torque
+from gearidae.errors import SceneError
+from gearidae.mesh.involute import Geometry
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.scene import Drive, Load, Scene
+
+__all__ = ["Problem", "make_problem"]
+
+Floats = NDArray[np.float64]
+
+FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
+CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
+EVENTS_PER_TAU = 20_000  # more than this is chatter
+
+
+@dataclass(slots=True)
+class Problem:
+    """One scene, scaled and ready to run; a driver changes `data` in place.
+
+    Attributes
+    ----------
+    data : ndarray
+        See `layout`.
+    start : ndarray, shape (n,)
+        Scaled state at time 0.
+    tolerance_scale : ndarray, shape (n,)
+        What an error of 1 means for each state: times rtol, the absolute tolerances.
+    end : float
+        Duration over tau.
+    knots : ndarray
+        Times of the schedules' points inside the run, over tau, increasing.
+    columns : tuple of str
+        What `observe` writes.
+    skipped : dict
+        What this scene does not need.
+    """
+
+    data: Floats
+    start: Floats
+    tolerance_scale: Floats
+    end: float
+    knots: Floats
+    columns: tuple[str, ...]
+    skipped: dict[str, int]
+
+    @property
+    def time_unit(self) -> float:
+        """The scene's tau [s]."""
+        return float(self.data[at.TAU])
+
+
+def make_problem(scene: Scene) -> Problem:
+    """Scale a scene and tabulate its force laws.
+
+    Raises
+    ------
+    SceneError
+        If the scene is beyond what the engine can do.
+    """
+    if scene.contact.model == "elastic":
+        raise SceneError("contact.model", "elastic", "is not available in a run yet; use asperity or auto")
+    return _gear_problem(scene) if scene.roller is None else _roller_problem(scene)
+
+
+def _gear_problem(scene: Scene) -> Problem:
+    gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
+    assert gears
+    assert mesh
+    assert start
+    assert drive
+    assert load
+    geometry, sigma = scene.geometry, scene.surface.roughness
+    r1, r2, pitch = geometry.base_radius_pinion, geometry.base_radius_gear, geometry.base_pitch
+    pinion_mass, gear_mass = gears.pinion_inertia / r1**2, gears.gear_inertia / r2**2
+    mass = 1.0 / (1.0 / pinion_mass + 1.0 / gear_mass)
+    force = _reference_force(scene, mass)
+    tau = math.sqrt(mass * sigma / force)
+    speed = sigma / tau
+
+    head = _geometry_constants(geometry, mesh.tip_relief_radius, sigma)
+    head[[at.TAU, at.FORCE]] = tau, force
+    head[[at.PINION_SHARE, at.GEAR_SHARE]] = mass / pinion_mass, mass / gear_mass
+    head[at.HALF_BACKLASH] = 0.5 * mesh.backlash / sigma
+    head[at.DAMPING] = mesh.damping * speed / force
+    head[at.DRAG] = load.drag / r2**3 * speed**2 / force
+    head[at.DRY] = float(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
+    head[at.SLIP] = np.sign(start.gear_speed) if head[at.DRY] else 1.0
+    contact = _contact(
+        head, scene, gears.face_width, math.sqrt(2.0 * pitch * sigma), math.sqrt(0.25 * head[at.SUM_RADIUS])
+    )
+    head[at.REACH] = math.sqrt(2.0 * (head[at.CUTOFF] - GAP_LOW) / head[at.RELIEF])
+    slots = 2 ** math.ceil(math.log2(head[at.PATH] + 2.0 * head[at.REACH]))
+
+    errors = [x for h in mesh.static_error for x in (h.order, h.amplitude / sigma, h.phase)]
+    head[at.ERROR_ORDERS] = len(mesh.static_error)
+    laws = (_torque(drive, tau, force * r1), _torque(load, tau, force * r2))
+    data = _assemble(head, 2, slots, contact, np.array(errors), *laws)
+    knots = {t / tau for shaft in (drive, load) for t, _ in shaft.schedule if 0.0 < t < scene.run.duration}
+
+    relief = _relief(head, start.mesh_phase)
+    u = head[at.HALF_BACKLASH] + relief - start.gap / sigma
+    y0 = np.array([u, 0.0, start.mesh_phase, start.gear_speed * r2 / speed])
+    begin(data, 0.0, y0)
+    # an error in the phase matters by the gap it opens where tip relief is steepest
+    scale = np.array([1.0, 1.0, 1.0 / (head[at.RELIEF] * head[at.REACH]), 1.0])
+    skipped = _skipped(data, scene) | {
+        "static_error": int(not errors),
+        "harmonics": int(not drive.harmonic and not load.harmonic),
+        "dry_resistance": int(head[at.DRY] == 0.0),
+    }
+    end = scene.run.duration / tau
+    return Problem(data, y0, scale, end, np.array(sorted(knots)), GEAR_COLUMNS, skipped)
+
+
+def _geometry_constants(geometry: Geometry, tip_relief_radius: float, sigma: float) -> Floats:
+    """The constants of a gear pair that geometry alone decides."""
+    pitch = geometry.base_pitch
+    head = np.zeros(at.CONSTANTS)
+    head[at.KIND] = at.GEARS
+    head[at.SIGMA], head[at.BASE_PITCH] = sigma, pitch
+    head[[at.PINION_RADIUS, at.GEAR_RADIUS]] = geometry.base_radius_pinion, geometry.base_radius_gear
+    head[at.PINION_TEETH] = geometry.pinion_teeth
+    head[at.PHASE_RATE] = sigma / pitch
+    head[at.PATH] = geometry.contact_ratio
+    head[at.COAST_PHASE] = 2.0 * geometry.approach / pitch + 0.5
+    head[at.RELIEF] = pitch**2 / (tip_relief_radius * sigma)
+    head[at.RELIEF_SLOPE] = pitch / tip_relief_radius
+    head[at.START_RADIUS] = (geometry.tangent_pinion - geometry.approach) / pitch
+    head[at.SUM_RADIUS] = (geometry.tangent_pinion + geometry.tangent_gear) / pitch
+    head[at.LAST_FLANK] = -1.0
+    return head
+
+
+def _roller_problem(scene: Scene) -> Problem:
+    roller = scene.roller
+    assert roller is not None
+    sigma = scene.surface.roughness
+    speed = roller.speed if roller.speed != 0.0 else 1e3 * sigma / scene.run.duration
+    force = roller.mass * speed**2 / sigma
+    tau = sigma / abs(speed)
+    head = np.zeros(at.CONSTANTS)
+    head[at.KIND] = at.ROLLER
+    head[at.SIGMA], head[at.TAU], head[at.FORCE] = sigma, tau, force
+    head[at.GEAR_SHARE] = 1.0
+    head[at.LAST_FLANK] = -1.0
+    contact = _contact(head, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
+    none = np.zeros(at.LAW_BODY)
+    data = _assemble(head, 1, 1, contact, np.zeros(0), none, none)
+    y0 = np.array([roller.height / sigma, -roller.speed * tau / sigma])
+    begin(data, 0.0, y0)
+    end = scene.run.duration / tau
+    return Problem(data, y0, np.ones(2), end, np.zeros(0), ROLLER_COLUMNS, _skipped(data, scene))
+
+
+def _skipped(data: Floats, scene: Scene) -> dict[str, int]:
+    """What the contact of this scene does not need."""
+    fraction = scene.coating.sam_fraction
+    return {
+        "bare_surface": int(fraction == 1.0),
+        "coated_surface": int(fraction == 0.0),
+        "bare_hysteresis": int(material_stretch(data, 0) == 0.0),
+        "coated_hysteresis": int(material_stretch(data, 1) == 0.0),
+    }
+
+
+def _torque(shaft: Drive | Load, tau: float, unit: float) -> Floats:
+    """A shaft's torque law as the residual reads it."""
+    harmonics = [(h.amplitude, h.frequency, h.phase) for h in shaft.harmonic]
+    return pack_torque(shaft.torque, harmonics, list(shaft.schedule), tau, unit)
+
+
+def _largest(shaft: Drive | Load) -> float:
+    """Bound of a shaft's prescribed torque [N m]."""
+    steady = abs(shaft.torque) + sum(abs(h.amplitude) for h in shaft.harmonic)
+    return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
+
+
+def _reference_force(scene: Scene, mass: float) -> float:
+    """Load along the line of action that this scene is about [N]: from the torques, else from the motion."""
+    assert scene.drive
+    assert scene.load
+    assert scene.initial
+    geometry, speed = scene.geometry, scene.initial.gear_speed
+    force = max(
+        _largest(scene.drive) / geometry.base_radius_pinion,
+        (_largest(scene.load) + scene.load.drag * speed**2) / geometry.base_radius_gear,
+    )
+    if force == 0.0:
+        force = mass * (speed * geometry.base_radius_gear) ** 2 / geometry.base_pitch
+    return force if force > 0.0 else mass * scene.surface.roughness * (1e3 / scene.run.duration) ** 2
+
+
+def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest: float) -> list[Floats]:
+    """Force scales, stretch limits, and the gaps where contact begins to count and to exist at all.
+
+    Returns
+    -------
+    list of ndarray
+        The loading branch of both materials together, and the force law of each.
+    """
+    fraction = scene.coating.sam_fraction
+    reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
+    loading = np.zeros(8 * N_LOADING)
+    tables = []
+    for material, (surface, share) in enumerate(
+        ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
+    ):
+        tip = asperity_of(surface)
+        limit = tip.stretch_limit / surface.roughness
+        if limit > STRETCH_HIGH:
+            raise SceneError(
+                "surface.roughness",
+                surface.roughness,
+                f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
+            )
+        table = law_table(limit, scene.contact.asperity) if share > 0.0 else np.zeros(HEADER)
+        scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
+        force = share * scale * footprint / head[at.FORCE]
+        record = at.MATERIALS + at.MATERIAL * material
+        head[record + at.M_FORCE] = force
+        head[record + at.M_STRETCH] = table[H_STRETCH]
+        tables.append(table)
+        if share > 0.0:
+            loading += force * table[HEADER : HEADER + loading.size]
+            for floor, gap in reach.items():
+                reach[floor] = max(gap, _outermost(table, force * widest, floor))
+    head[at.CUTOFF], head[at.ENGAGE] = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
+    return [loading, *tables]
+
+
+def _outermost(table: Floats, scale: float, floor: float) -> float:
+    """Widest gap at which this surface's force still exceeds `floor`, on a grid of an eighth."""
+    for gap in np.arange(GAP_HIGH, GAP_LOW, -0.125):
+        largest = max(abs(law_value(table, gap, joined)[0]) for joined in (gap, -math.inf))
+        if scale * largest > floor:
+            return float(gap)
+    return GAP_LOW
+
+
+def _assemble(
+    head: Floats, flanks: int, slots: int, contact: list[Floats], errors: Floats, drive: Floats, load: Floats
+) -> Floats:
+    """Put the flat array together and note where its parts are."""
+    head[at.SLOTS], head[at.TOTAL_SLOTS] = slots, flanks * slots
+    head[at.EVENT_LIMIT], head[at.EVENT_WINDOW] = EVENTS_PER_TAU, 1.0
+    head[at.BRANCH] = max(branch_length(table) for table in contact[1:])
+    head[at.HISTORY] = at.BRANCHES + 2 * head[at.BRANCH]
+    histories = np.zeros(int(head[at.HISTORY]) * flanks * slots)
+    parts = [head, histories, errors, drive, load, *contact]
+    starts = np.cumsum([0] + [part.size for part in parts])
+    head[[at.HISTORIES, at.ERROR_AT, at.DRIVE_AT, at.LOAD_AT, at.LOADING_AT]] = starts[1:6]
+    for material in range(2):
+        head[at.MATERIALS + at.MATERIAL * material + at.M_TABLE] = starts[6 + material]
+    return np.concatenate(parts)
+
+
+def _relief(head: Floats, phase: float) -> float:
+    """Tip relief of pair 0 at the start, over sigma."""
+    outside = phase - min(max(phase, 0.0), head[at.PATH])
+    return float(0.5 * head[at.RELIEF] * outside**2)

@@ -1,0 +1,97 @@
+"""What the two drivers share: blocks of output, counters, and the names of what can go wrong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "BLOCK_EVENTS",
+    "BLOCK_ROWS",
+    "BLOCK_STEPS",
+    "Block",
+    "Ending",
+    "Tally",
+    "ending_of_flag",
+    "sample_time",
+]
+
+Floats = NDArray[np.float64]
+
+BLOCK_ROWS = 16_384
+"""Samples in a full block."""
+BLOCK_EVENTS = 16_384
+"""Events in a full block."""
+BLOCK_STEPS = 50_000
+"""Steps after which a driver comes back to Python in any case: some tens of milliseconds."""
+
+
+class Ending(Enum):
+    """How a run ended: its status in the dataset, and a sentence."""
+
+    FINISHED = ("finished", "")
+    CHATTER = ("chatter", "events crowded without bound: the contact chatters")
+    STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
+    NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
+    TOO_ACCURATE = ("too_accurate", "the tolerance asks for more than double precision can give")
+    SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
+    NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
+
+    @property
+    def status(self) -> str:
+        """Name, as in the dataset."""
+        return self.value[0]
+
+    @property
+    def message(self) -> str:
+        """A sentence; empty when finished."""
+        return self.value[1]
+
+
+_FLAGS = {-2: Ending.TOO_ACCURATE, -3: Ending.STEP_UNDERFLOW, -4: Ending.NO_CONVERGENCE, 1: Ending.CHATTER}
+
+
+def ending_of_flag(flag: int) -> Ending:
+    """Name an error flag of IDA's (negative) or of the event handling (positive)."""
+    return Ending.FINISHED if flag == 0 else _FLAGS.get(flag, Ending.SOLVER_FAILURE)
+
+
+@dataclass(slots=True)
+class Block:
+    """Output of a stretch of a run.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (n, columns)
+        Samples that follow those of the block before, SI units.
+    events : ndarray, shape (m, 5)
+        Time [s], kind, pair, flank, gap rate [m/s].
+    time : float
+        Simulated time reached [s].
+    """
+
+    rows: Floats
+    events: Floats
+    time: float
+
+
+@dataclass(slots=True)
+class Tally:
+    """Counters of a run and how it ended, filled in by the driver as it goes."""
+
+    steps: int = 0
+    residual_evaluations: int = 0
+    jacobian_evaluations: int = 0
+    error_test_failures: int = 0
+    convergence_failures: int = 0
+    restarts: int = 0
+    guard_evaluations: int = 0
+    ending: Ending = field(default=Ending.FINISHED)
+
+
+def sample_time(index: int, total: int, end: float) -> float:
+    """Scaled time of a sample; the last one is the end itself, whatever the rounding."""
+    return end if index == total - 1 else index * (end / (total - 1))
