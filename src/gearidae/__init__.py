@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from gearidae.archive import open_archive
     from gearidae.errors import GearidaeError, SceneError, SolverError
     from gearidae.scene import Scene, load_case, preset
-    from gearidae.simulate import simulate
-    from gearidae.sweep import sweep
+    from gearidae.simulation import simulate
+    from gearidae.sweeping import sweep
 
 __version__ = "0.1.0"
 
@@ -50,8 +50,8 @@ _HOME: dict[str, str | None] = {
     "open_archive": "gearidae.archive",
     "plot": None,
     "preset": "gearidae.scene",
-    "simulate": "gearidae.simulate",
-    "sweep": "gearidae.sweep",
+    "simulate": "gearidae.simulation",
+    "sweep": "gearidae.sweeping",
 }
 
 

@@ -88,7 +88,7 @@ N_LOADING: Final = round((GAP_HIGH - GAP_LOW) * KNOTS_PER_SIGMA)
 GAUSS: Final = 16
 
 # A branch: t at one joined height, for all stretches.
-B_LIMIT: Final = 0
+B_SHARE: Final = 0  # 1 / D
 B_PIECES: Final = 1
 B_END: Final = 2  # t at full stretch
 B_BODY: Final = 3  # then eight powers for each piece in v
@@ -405,7 +405,7 @@ def set_branch(table: Floats, joined: float, branch: Floats) -> None:
     u2 = u * u
     u4 = u2 * u2
     decay = math.exp(-0.5 * joined * joined) if joined > 0.0 else 1.0
-    branch[B_LIMIT] = table[H_STRETCH]
+    branch[B_SHARE] = 1.0 / table[H_STRETCH]
     branch[B_PIECES] = table[H_PIECES]
     branch[B_END] = decay * _power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)
     size = (DEGREE + 1) * pieces
@@ -417,7 +417,8 @@ def set_branch(table: Floats, joined: float, branch: Floats) -> None:
 @compiled
 def branch_value(branch: Floats, stretch: float) -> tuple[float, float]:
     """t(Z, S) and its slope in S on a branch, 0 <= S <= D."""
-    v = math.sqrt(1.0 - stretch / branch[B_LIMIT])
+    share = branch[B_SHARE]
+    v = math.sqrt(max(1.0 - stretch * share, 0.0))
     place = v * branch[B_PIECES]
     piece = min(int(place), int(branch[B_PIECES]) - 1)
     r = 2.0 * (place - piece) - 1.0
@@ -429,7 +430,7 @@ def branch_value(branch: Floats, stretch: float) -> tuple[float, float]:
         3.0 * branch[k + _A3] + 4.0 * branch[k + _A4] * r
     ) * r2
     d += ((5.0 * branch[k + _A5] + 6.0 * branch[k + _A6] * r) + 7.0 * branch[k + _A7] * r2) * r4
-    return branch[B_END] + v * v * f, -(f + place * d) / branch[B_LIMIT]
+    return branch[B_END] + v * v * f, -(f + place * d) * share
 
 
 @compiled

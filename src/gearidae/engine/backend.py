@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from types import ModuleType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearidae.engine.problem import Problem, make_problem
 from gearidae.engine.run import Block, Tally
@@ -48,7 +49,7 @@ def choose_backend(backend: str = "auto") -> str:
 
 
 def _driver(backend: str) -> ModuleType:
-    # imported late: the native driver's callbacks need the SUNDIALS library loaded before they are
+    # imported late: the native driver compiles its callbacks, or reads them from disk, when it is imported
     if backend == "native":
         from gearidae.engine import native
 
@@ -58,7 +59,14 @@ def _driver(backend: str) -> ModuleType:
     return portable
 
 
-def run_blocks(problem: Problem, rtol: float, samples: int, backend: str, tally: Tally) -> Iterator[Block]:
+def run_blocks(
+    problem: Problem,
+    rtol: float,
+    samples: int,
+    backend: str,
+    tally: Tally,
+    resume: NDArray[np.float64] | None = None,
+) -> Iterator[Block]:
     """Run a problem and hand out its output block by block; `tally` is filled in on the way.
 
     Parameters
@@ -72,8 +80,10 @@ def run_blocks(problem: Problem, rtol: float, samples: int, backend: str, tally:
     backend : {"native", "sksundae"}
         From `choose_backend`.
     tally : Tally
+    resume : ndarray, optional
+        Checkpoint of an earlier run of the same problem with the same settings and backend, to go on from.
     """
-    blocks: Iterator[Block] = _driver(backend).run(problem, rtol, samples, tally)
+    blocks: Iterator[Block] = _driver(backend).run(problem, rtol, samples, tally, resume)
     return blocks
 
 
@@ -144,7 +154,7 @@ def solve(
     )
 
 
-def _events(table: np.ndarray) -> Events:
+def _events(table: NDArray[np.float64]) -> Events:
     return Events(
         time=np.ascontiguousarray(table[:, 0]),
         kind=table[:, 1].astype(np.int8),

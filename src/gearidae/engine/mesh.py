@@ -110,7 +110,7 @@ def pair_force(
     if d[at.KIND] == at.ROLLER:
         return force, slope
     pinion = d[at.START_RADIUS] + inside
-    radius = math.sqrt(pinion * (d[at.SUM_RADIUS] - pinion) / d[at.SUM_RADIUS])
+    radius = math.sqrt(pinion - pinion * pinion * d[at.SUM_CURVATURE])
     return force * radius, slope * radius
 
 

@@ -20,10 +20,25 @@ from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, gua
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.residual import jacobian, residual
-from gearidae.engine.run import BLOCK_EVENTS, BLOCK_ROWS, BLOCK_STEPS, Block, Ending, Tally, ending_of_flag
+from gearidae.engine.run import (
+    BLOCK_EVENTS,
+    BLOCK_ROWS,
+    BLOCK_STEPS,
+    CHECKPOINT_STEPS,
+    Block,
+    Ending,
+    Tally,
+    ending_of_flag,
+    sample_time,
+)
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
 __all__ = ["run"]
+
+if (
+    _reason := sun.unavailable()
+):  # loads the library as well, without which the callbacks below would abort the process
+    raise ImportError(_reason)
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -49,8 +64,9 @@ CONTEXT, SOLVER, Y, YP, DKY, TOLERANCES, MATRIX, LINEAR, HANDLES = range(9)
     CONVERGENCE_FAILURES,
     RESTARTS,
     GUARD_CALLS,
+    SINCE,
     PROGRESS,
-) = range(14)
+) = range(15)
 CHATTER = 1  # progress[ERROR] when events crowd; negative numbers are IDA's own
 
 
@@ -126,6 +142,7 @@ def open_solver(
     handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
     handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
     handles[TOLERANCES] = sun.N_VMake_Serial(n, atol.ctypes.data, context)
+    sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
     handles[MATRIX] = sun.SUNDenseMatrix(n, n, context)
     handles[LINEAR] = sun.SUNLinSol_Dense(handles[Y], handles[MATRIX], context)
     solver = sun.IDACreate(context)
@@ -248,30 +265,30 @@ def advance(
         Time reached, over tau.
     """
     solver = handles[SOLVER]
-    spacing = end / (total - 1)
     knot = int(d[at.NEXT_KNOT])
     stop = knots[knot] if knot < knots.size else end
     room = events.shape[0] - EVENTS_AT_ONCE
     flag = progress[PENDING] - 1
-    if progress[PENDING] < 0:  # the very first call
+    if progress[PENDING] < 0:  # a fresh start
         progress[ERROR] = _start(solver, handles, d, clock[0], y, yp, scale, rtol, stop)
         progress[PENDING] = 0
     while progress[ERROR] == 0 and progress[DONE] == 0 and budget > 0 and progress[EVENTS] < room:
         if progress[PENDING] == 0:
             flag = sun.IDASolve(solver, end, clock.ctypes.data, handles[Y], handles[YP], sun.IDA_ONE_STEP)
             budget -= 1
+            progress[SINCE] += 1
             if flag < 0:
                 progress[ERROR] = flag
                 break
         t = clock[0]
-        sample = progress[NEXT_SAMPLE] * spacing if progress[NEXT_SAMPLE] < total - 1 else end
-        while sample <= t and progress[NEXT_SAMPLE] < total and progress[ROWS] < rows.shape[0]:
+        sample = sample_time(progress[NEXT_SAMPLE], total, end)
+        while sample <= t and progress[ROWS] < rows.shape[0]:
             sun.IDAGetDky(solver, sample, 0, handles[DKY])
             observe(d, sample, dky, rows[progress[ROWS]])
             progress[ROWS] += 1
             progress[NEXT_SAMPLE] += 1
-            sample = progress[NEXT_SAMPLE] * spacing if progress[NEXT_SAMPLE] < total - 1 else end
-        if sample <= t and progress[NEXT_SAMPLE] < total:  # the block is full: the step waits with its flag
+            sample = sample_time(progress[NEXT_SAMPLE], total, end)
+        if sample <= t:  # the block is full: the step waits with its flag
             progress[PENDING] = flag + 1
             break
         progress[PENDING] = 0
@@ -290,18 +307,25 @@ def advance(
                 restart = True
             else:
                 progress[DONE] = 1
-        if restart and progress[DONE] == 0 and progress[ERROR] == 0:
+        checkpoint = progress[SINCE] >= CHECKPOINT_STEPS
+        if (restart or checkpoint) and progress[DONE] == 0 and progress[ERROR] == 0:
             _count(solver, progress)
             rebase(d, y)
             progress[RESTARTS] += 1
+            if checkpoint:
+                progress[SINCE] = 0
+                progress[PENDING] = -1
+                break
             progress[ERROR] = _start(solver, handles, d, t, y, yp, scale, rtol, stop)
     if progress[DONE] != 0 or progress[ERROR] != 0:
         _count(solver, progress)
     return float(clock[0])
 
 
-def run(problem: Problem, rtol: float, total: int, tally: Tally) -> Iterator[Block]:
-    """Run a problem from its start, block by block.
+def run(
+    problem: Problem, rtol: float, total: int, tally: Tally, resume: Floats | None = None
+) -> Iterator[Block]:
+    """Run a problem, block by block.
 
     Parameters
     ----------
@@ -310,23 +334,29 @@ def run(problem: Problem, rtol: float, total: int, tally: Tally) -> Iterator[Blo
     rtol : float
         Relative tolerance.
     total : int
-        Number of samples, the first at time 0 and the last at the end.
+        Number of samples, the first at time 0 and the last at the end; 0 for none.
     tally : Tally
         Filled in; complete once the last block is out.
+    resume : ndarray, optional
+        Checkpoint of an earlier run of the same problem, tolerance and sampling, to go on from.
 
     Yields
     ------
     Block
     """
-    d, y = problem.data, problem.start.copy()
-    yp, dky, clock = np.zeros_like(y), np.zeros_like(y), np.zeros(1)
-    atol = rtol * problem.tolerance_scale
+    d, y, clock = problem.data, problem.start.copy(), np.zeros(1)
+    yp, dky = np.zeros_like(y), np.zeros_like(y)
     rows, events = np.empty((BLOCK_ROWS, len(problem.columns))), np.empty((BLOCK_EVENTS, 5))
     handles, progress = np.zeros(HANDLES, np.int64), np.zeros(PROGRESS, np.int64)
     progress[PENDING] = -1
-    observe(d, 0.0, y, rows[0])
-    progress[[ROWS, NEXT_SAMPLE]] = 1
+    if resume is not None:
+        clock[0] = problem.restore(resume, y, progress)
+        progress[[ROWS, EVENTS]] = 0
+    elif total > 0:
+        observe(d, 0.0, y, rows[0])
+        progress[[ROWS, NEXT_SAMPLE]] = 1
     try:
+        atol = rtol * problem.tolerance_scale
         if open_solver(handles, callbacks(), d, y, yp, dky, atol) != 0:
             tally.ending = Ending.SOLVER_FAILURE
             return
@@ -349,8 +379,12 @@ def run(problem: Problem, rtol: float, total: int, tally: Tally) -> Iterator[Blo
                 BLOCK_STEPS,
             )
             _fill_tally(tally, progress)
+            ready = progress[PENDING] < 0 or progress[DONE] != 0
             yield Block(
-                rows[: progress[ROWS]].copy(), events[: progress[EVENTS]].copy(), time * problem.time_unit
+                rows[: progress[ROWS]].copy(),
+                events[: progress[EVENTS]].copy(),
+                time * problem.time_unit,
+                problem.checkpoint(time, y, progress) if ready else None,
             )
             progress[[ROWS, EVENTS]] = 0
     finally:

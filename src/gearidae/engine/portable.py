@@ -20,7 +20,16 @@ from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, gua
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.residual import jacobian, residual
-from gearidae.engine.run import BLOCK_EVENTS, BLOCK_ROWS, Block, Ending, Tally, ending_of_flag, sample_time
+from gearidae.engine.run import (
+    BLOCK_EVENTS,
+    BLOCK_ROWS,
+    CHECKPOINT_STEPS,
+    Block,
+    Ending,
+    Tally,
+    ending_of_flag,
+    sample_time,
+)
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
 __all__ = ["run"]
@@ -33,23 +42,37 @@ _POINTS = 6  # returns that an interpolation looks back over
 _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third point
 
 
-def run(problem: Problem, rtol: float, total: int, tally: Tally) -> Iterator[Block]:
-    """Run a problem from its start, block by block; see `gearidae.engine.native.run`."""
+# The run's counters, kept in checkpoints.
+_NEXT_SAMPLE, _STEPS, _RESIDUALS, _JACOBIANS, _GUARD_CALLS, _RESTARTS, _COUNTERS = range(7)
+
+
+def run(
+    problem: Problem, rtol: float, total: int, tally: Tally, resume: Floats | None = None
+) -> Iterator[Block]:
+    """Run a problem, block by block; see `gearidae.engine.native.run`."""
     d, y, t = problem.data, problem.start.copy(), 0.0
-    knots = [*problem.knots, problem.end]
+    counters = np.zeros(_COUNTERS, np.int64)
     output = _Output(problem, total)
-    output.sample(t, y, _Trail(t, y, y))
-    solver, trail = _start(problem, rtol, t, y, knots[0], tally)
-    steps = 0
+    if resume is not None:
+        t = problem.restore(resume, y, counters)
+        output.next_sample = int(counters[_NEXT_SAMPLE])
+        tally.steps, tally.residual_evaluations, tally.jacobian_evaluations = map(int, counters[1:4])
+        tally.guard_evaluations, tally.restarts = map(int, counters[4:])
+    else:
+        output.sample(t, y, _Trail(t, y, y))
+    knots = [*problem.knots[int(d[at.NEXT_KNOT]) :], problem.end]
+    solver, trail = _start(problem, rtol, t, y, knots[0])
+    since = 0
     while knots:
         result = solver.step(knots[-1], method="onestep", tstop=knots[0])
+        since += 1
         flag = result.status
-        steps += flag != _ROOT
         if flag < 0 or not np.isfinite(result.y).all():
             tally.ending = ending_of_flag(flag) if flag < 0 else Ending.NOT_FINITE
             break
         t, y = result.t, result.y
         trail.add(t, y, result.yp)
+        tally.steps += flag != _ROOT
         yield from output.sample(t, y, trail)
         accept(d, t, y)
         restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
@@ -65,16 +88,31 @@ def run(problem: Problem, rtol: float, total: int, tally: Tally) -> Iterator[Blo
             if knots:
                 output.event_count = pass_knot(d, t, output.events, output.event_count)
                 restart = True
-        if restart and knots:
+        checkpoint = since >= CHECKPOINT_STEPS
+        if (restart or checkpoint) and knots:
             rebase(d, y)
             tally.restarts += 1
             solver.count(tally)
-            solver, trail = _start(problem, rtol, t, y, knots[0], tally)
-        if steps % _BLOCK_STEPS == 0 or output.event_count > BLOCK_EVENTS - EVENTS_AT_ONCE:
+            if checkpoint:
+                since = 0
+                yield output.flush(t, _checkpoint(problem, t, y, output, tally))
+            solver, trail = _start(problem, rtol, t, y, knots[0])
+        elif since % _BLOCK_STEPS == 0 or output.event_count > BLOCK_EVENTS - EVENTS_AT_ONCE:
             yield output.flush(t)
-    tally.steps = steps
     solver.count(tally)
-    yield output.flush(t)
+    yield output.flush(t, None if knots else _checkpoint(problem, t, y, output, tally))
+
+
+def _checkpoint(problem: Problem, t: float, y: Floats, output: _Output, tally: Tally) -> Floats:
+    counters = [
+        output.next_sample,
+        tally.steps,
+        tally.residual_evaluations,
+        tally.jacobian_evaluations,
+        tally.guard_evaluations,
+        tally.restarts,
+    ]
+    return problem.checkpoint(t, y, np.array(counters, np.int64))
 
 
 class _Solver:
@@ -96,8 +134,8 @@ class _Solver:
             self._guard_calls += 1
             out[0] = guard(d, t, y)
 
-        self._events: Any = falling
-        self._events.direction = [-1]
+        vars(falling)["direction"] = [-1]
+        self._history = vars(falling)  # scikit-sundae keeps the events there
         self._ida = IDA(
             resfn,
             jacfn=jacfn,
@@ -120,7 +158,7 @@ class _Solver:
     def forget_events(self) -> None:
         """Drop the history, which would be copied whole at every further step."""
         for name in ("_i", "_t", "_y", "_yp"):
-            getattr(self._events, name).clear()
+            self._history[name].clear()
 
     def count(self, tally: Tally) -> None:
         """Add this solver's counters."""
@@ -130,9 +168,7 @@ class _Solver:
         tally.guard_evaluations += self._guard_calls
 
 
-def _start(
-    problem: Problem, rtol: float, t: float, y: Floats, stop: float, tally: Tally
-) -> tuple[_Solver, _Trail]:
+def _start(problem: Problem, rtol: float, t: float, y: Floats, stop: float) -> tuple[_Solver, _Trail]:
     """Set consistent rates and the first step, and start a fresh IDA at t."""
     d, yp = problem.data, np.zeros_like(y)
     set_rates(d, t, y, yp)
@@ -147,7 +183,7 @@ class _Output:
 
     def __init__(self, problem: Problem, total: int) -> None:
         self._problem, self._total = problem, total
-        self._next = 0
+        self.next_sample = 0
         self._rows = np.empty((BLOCK_ROWS, len(problem.columns)))
         self._row_count = 0
         self.events = np.empty((BLOCK_EVENTS, 5))
@@ -157,23 +193,24 @@ class _Output:
         """Write the samples up to t; hands out full blocks on the way."""
         blocks = []
         while (
-            self._next < self._total
-            and (at_time := sample_time(self._next, self._total, self._problem.end)) <= t
+            self.next_sample < self._total
+            and (at_time := sample_time(self.next_sample, self._total, self._problem.end)) <= t
         ):
             state = y if at_time == t else trail.at(at_time)
             observe(self._problem.data, at_time, state, self._rows[self._row_count])
-            self._next += 1
+            self.next_sample += 1
             self._row_count += 1
             if self._row_count == BLOCK_ROWS:
                 blocks.append(self.flush(at_time))
         return iter(blocks)
 
-    def flush(self, t: float) -> Block:
+    def flush(self, t: float, checkpoint: Floats | None = None) -> Block:
         """Hand out what has been collected."""
         block = Block(
             self._rows[: self._row_count].copy(),
             self.events[: self.event_count].copy(),
             t * self._problem.time_unit,
+            checkpoint,
         )
         self._row_count = self.event_count = 0
         return block

@@ -74,6 +74,38 @@ class Problem:
         """The scene's tau [s]."""
         return float(self.data[at.TAU])
 
+    def checkpoint(self, time: float, state: Floats, counters: NDArray[np.int64]) -> Floats:
+        """Everything that changes in a run, as one array of fixed length.
+
+        Parameters
+        ----------
+        time : float
+            Time reached, over tau.
+        state : ndarray, shape (n,)
+            Scaled state there.
+        counters : ndarray of int64
+            The driver's own counters.
+        """
+        changing = self.data[: int(self.data[at.LOADING_AT])]
+        return np.concatenate([[time], state, counters, changing])
+
+    def restore(self, checkpoint: Floats, state: Floats, counters: NDArray[np.int64]) -> float:
+        """Take a checkpoint back, in place, and return its time over tau.
+
+        Raises
+        ------
+        SceneError
+            If the checkpoint is not of this problem.
+        """
+        changing = int(self.data[at.LOADING_AT])
+        if checkpoint.size != 1 + state.size + counters.size + changing:
+            raise SceneError("checkpoint", f"{checkpoint.size} numbers", "is not of this scene")
+        ends = np.cumsum([1, state.size, counters.size])
+        state[:] = checkpoint[ends[0] : ends[1]]
+        counters[:] = checkpoint[ends[1] : ends[2]]
+        self.data[:changing] = checkpoint[ends[2] :]
+        return float(checkpoint[0])
+
 
 def make_problem(scene: Scene) -> Problem:
     """Scale a scene and tabulate its force laws.
@@ -112,7 +144,11 @@ def _gear_problem(scene: Scene) -> Problem:
     head[at.DRY] = float(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
     head[at.SLIP] = np.sign(start.gear_speed) if head[at.DRY] else 1.0
     contact = _contact(
-        head, scene, gears.face_width, math.sqrt(2.0 * pitch * sigma), math.sqrt(0.25 * head[at.SUM_RADIUS])
+        head,
+        scene,
+        gears.face_width,
+        math.sqrt(2.0 * pitch * sigma),
+        math.sqrt(0.25 / head[at.SUM_CURVATURE]),
     )
     head[at.REACH] = math.sqrt(2.0 * (head[at.CUTOFF] - GAP_LOW) / head[at.RELIEF])
     slots = 2 ** math.ceil(math.log2(head[at.PATH] + 2.0 * head[at.REACH]))
@@ -152,7 +188,7 @@ def _geometry_constants(geometry: Geometry, tip_relief_radius: float, sigma: flo
     head[at.RELIEF] = pitch**2 / (tip_relief_radius * sigma)
     head[at.RELIEF_SLOPE] = pitch / tip_relief_radius
     head[at.START_RADIUS] = (geometry.tangent_pinion - geometry.approach) / pitch
-    head[at.SUM_RADIUS] = (geometry.tangent_pinion + geometry.tangent_gear) / pitch
+    head[at.SUM_CURVATURE] = pitch / (geometry.tangent_pinion + geometry.tangent_gear)
     head[at.LAST_FLANK] = -1.0
     return head
 

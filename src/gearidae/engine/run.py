@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -27,6 +30,8 @@ BLOCK_EVENTS = 16_384
 """Events in a full block."""
 BLOCK_STEPS = 50_000
 """Steps after which a driver comes back to Python in any case: some tens of milliseconds."""
+CHECKPOINT_STEPS = 200_000
+"""Steps between checkpoints. Every run starts IDA afresh there, so that a resumed run is the same run."""
 
 
 class Ending(Enum):
@@ -71,11 +76,14 @@ class Block:
         Time [s], kind, pair, flank, gap rate [m/s].
     time : float
         Simulated time reached [s].
+    checkpoint : ndarray, optional
+        All that it takes to go on from the end of this block; present at checkpoints and at the end.
     """
 
     rows: Floats
     events: Floats
     time: float
+    checkpoint: Floats | None = None
 
 
 @dataclass(slots=True)
@@ -92,6 +100,9 @@ class Tally:
     ending: Ending = field(default=Ending.FINISHED)
 
 
+@compiled
 def sample_time(index: int, total: int, end: float) -> float:
-    """Scaled time of a sample; the last one is the end itself, whatever the rounding."""
+    """Scaled time of a sample: the first at 0, the last at the end itself, none beyond."""
+    if index >= total:
+        return math.inf
     return end if index == total - 1 else index * (end / (total - 1))

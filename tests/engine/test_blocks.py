@@ -1,0 +1,99 @@
+"""Cutting a run into blocks changes nothing; resuming from a checkpoint neither."""
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.engine import native, portable, solve
+from gearidae.engine.backend import run_blocks
+from gearidae.engine.problem import make_problem
+from gearidae.engine.run import Tally
+
+SCENE = gd.preset("teodorescu2009_low_speed").replace(
+    {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 301}
+)
+
+
+def collect(blocks):
+    parts = list(blocks)
+    return np.concatenate([b.rows for b in parts]), np.concatenate([b.events for b in parts]), parts
+
+
+@pytest.fixture(params=["native", "sksundae"])
+def backend(request):
+    return request.param
+
+
+def test_small_blocks_hold_the_same_run(backend, monkeypatch):
+    whole = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
+    module = native if backend == "native" else portable
+    monkeypatch.setattr(module, "BLOCK_ROWS", 7)
+    monkeypatch.setattr(module, "BLOCK_EVENTS", 150)
+    if backend == "native":
+        monkeypatch.setattr(module, "BLOCK_STEPS", 13)
+    pieces = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
+    assert len(pieces[2]) > 40
+    np.testing.assert_array_equal(pieces[0], whole[0])
+    np.testing.assert_array_equal(pieces[1], whole[1])
+
+
+def test_a_resumed_run_is_the_same_run(monkeypatch):
+    """Through scikit-sundae, where the distance of checkpoints is not compiled in; one is taken every 500 steps."""
+    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 500)
+    tally = Tally()
+    rows, events, blocks = collect(run_blocks(make_problem(SCENE), 1e-6, 301, "sksundae", tally))
+    stops = [i for i, b in enumerate(blocks) if b.checkpoint is not None][:-1]
+    assert len(stops) >= 3
+    for stop in stops:
+        again = Tally()
+        rest = collect(run_blocks(make_problem(SCENE), 1e-6, 301, "sksundae", again, blocks[stop].checkpoint))
+        before = blocks[: stop + 1]
+        np.testing.assert_array_equal(np.concatenate([*(b.rows for b in before), rest[0]]), rows)
+        np.testing.assert_array_equal(np.concatenate([*(b.events for b in before), rest[1]]), events)
+        assert again == tally
+
+
+def test_a_native_run_resumes_exactly():
+    scene = gd.preset("teodorescu2009").replace(
+        {"coating.sam_fraction": 0.3, "run.duration": 2.5e-3, "run.samples": 2001}
+    )
+    tally = Tally()
+    rows, events, blocks = collect(run_blocks(make_problem(scene), 1e-6, 2001, "native", tally))
+    (stop, *_) = [i for i, b in enumerate(blocks) if b.checkpoint is not None]
+    assert stop < len(blocks) - 1
+    again = Tally()
+    rest = collect(run_blocks(make_problem(scene), 1e-6, 2001, "native", again, blocks[stop].checkpoint))
+    before = blocks[: stop + 1]
+    np.testing.assert_array_equal(np.concatenate([*(b.rows for b in before), rest[0]]), rows)
+    np.testing.assert_array_equal(np.concatenate([*(b.events for b in before), rest[1]]), events)
+    assert again == tally
+
+
+def test_a_foreign_checkpoint_is_refused():
+    with pytest.raises(gd.SceneError, match="checkpoint"):
+        list(run_blocks(make_problem(SCENE), 1e-6, 301, "native", Tally(), np.zeros(5)))
+
+
+def test_phase_is_taken_back_without_a_trace(monkeypatch):
+    """Whole pitches move out of the phase now and then; angle, pairs and motion go on as if nothing had been."""
+    plain = solve(gd.preset("teodorescu2009"), rtol=1e-7, t_end=2e-4, samples=501, backend="sksundae")
+    monkeypatch.setattr(portable, "PHASE_HIGH", 5.0)
+    monkeypatch.setattr(portable, "rebase", lambda d, y: _rebase_now(d, y))
+    shifted = solve(gd.preset("teodorescu2009"), rtol=1e-7, t_end=2e-4, samples=501, backend="sksundae")
+    assert shifted.statistics.restarts > 0
+    # each restart changes the steps, and with them the error: some hundred times the tolerance of 1e-7 per step
+    for name in ("gear_speed", "gear_angle", "transmission_error"):
+        swing = np.ptp(plain.samples[name])
+        np.testing.assert_allclose(shifted.samples[name], plain.samples[name], atol=5e-5 * swing)
+    passages = [r.events.pair[np.isin(r.events.kind, (4, 5))] for r in (plain, shifted)]
+    np.testing.assert_array_equal(*passages)
+
+
+def _rebase_now(d, y):
+    from gearidae.engine import start
+
+    start.rebase.py_func.__globals__["PHASE_HIGH"] = 5.0
+    try:
+        start.rebase.py_func(d, y)
+    finally:
+        start.rebase.py_func.__globals__["PHASE_HIGH"] = 4096.0
