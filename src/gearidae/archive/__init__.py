@@ -1,0 +1,17 @@
+"""Results: labelled datasets and the netCDF4 files that hold them."""
+
+from gearidae.archive.dataset import combine, dimension_names, to_dataset
+from gearidae.archive.netcdf import check_target, open_archive, save
+from gearidae.archive.provenance import SCHEMA_VERSION
+from gearidae.archive.variables import Variable
+
+__all__ = [
+    "SCHEMA_VERSION",
+    "Variable",
+    "check_target",
+    "combine",
+    "dimension_names",
+    "open_archive",
+    "save",
+    "to_dataset",
+]

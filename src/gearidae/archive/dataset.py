@@ -1,0 +1,216 @@
+"""From what the engine hands up to one labelled dataset: a single run, or all runs of a sweep."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae.archive.provenance import provenance, surface_regimes
+from gearidae.archive.variables import EVENTS, RUN, SAM_FRACTION, SAMPLES, TIME, by_name, columns
+from gearidae.errors import SceneError
+from gearidae.records import Solution
+from gearidae.scene import Scene, describe_key
+
+__all__ = ["combine", "dimension_names", "to_dataset"]
+
+_COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
+_RESERVED = {*by_name(), "event", "scene", "coordinates"}
+
+
+def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
+    """Label one run.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene exactly as it was run.
+    solution : Solution
+        What the engine handed up.
+
+    Returns
+    -------
+    xarray.Dataset
+        Samples along ``time``, events along ``event``, scalar coordinate ``sam_fraction``; provenance, scene,
+        solver statistics and status as attributes. Everything in SI units.
+    """
+    fraction = scene.coating.sam_fraction
+    variables: dict[Hashable, Any] = {
+        name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in _columns(scene)
+    }
+    variables |= _event_variables([solution], np.array([fraction]))
+    return xr.Dataset(
+        variables,
+        coords={
+            "time": ("time", solution.time, TIME.attributes),
+            "sam_fraction": ((), fraction, SAM_FRACTION.attributes),
+        },
+        attrs={
+            **provenance(scene, f"simulated {solution.time[-1] if len(solution.time) else 0.0:g} s"),
+            "status": solution.status,
+            "message": solution.message,
+            **_totals([solution]),
+            **surface_regimes(scene),
+        },
+    )
+
+
+def combine(
+    scene: Scene,
+    swept: Mapping[str, Sequence[Any]],
+    scenes: Sequence[Scene],
+    solutions: Sequence[Solution],
+) -> xr.Dataset:
+    """Stack the runs of a sweep into one dataset.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene that the runs were derived from.
+    swept : mapping of str to sequence
+        Values of every swept key, in SI units.
+    scenes, solutions : sequence
+        The runs in the order of ``itertools.product`` over the swept values (the last key changes fastest). A
+        run that produced nothing has empty arrays and says why in its status.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `to_dataset`, with one dimension per swept key in front of ``time``. Samples that a run did not
+        reach are NaN. Events are ragged and therefore lie on one flat ``event`` dimension, labelled by
+        ``event_<dimension>``. Status and solver statistics are variables along the swept dimensions, their
+        totals attributes.
+    """
+    names = dimension_names(swept)
+    dims = tuple(names.values())
+    shape = tuple(len(values) for values in swept.values())
+    labels = {names[key]: _labels(key, names[key], values) for key, values in swept.items()}
+
+    time = max((solution.time for solution in solutions), key=len)
+    variables: dict[Hashable, Any] = {}
+    for name in _columns(scene):
+        stacked = np.empty((len(solutions), len(time)))
+        for row, solution in zip(stacked, solutions, strict=True):
+            samples = _samples(solution, name)
+            row[: len(samples)] = samples
+            row[len(samples) :] = np.nan
+        variables[name] = ((*dims, "time"), stacked.reshape(*shape, len(time)), SAMPLES[name].attributes)
+
+    fractions = np.array([each.coating.sam_fraction for each in scenes])
+    variables |= _event_variables(solutions, fractions)
+    counts = [len(solution.events) for solution in solutions]
+    for position, (dim, label) in enumerate(labels.items()):
+        if dim != "sam_fraction":
+            index = np.unravel_index(np.arange(len(solutions)), shape)[position]
+            attributes = {
+                "long_name": f"{dim} of the run the event belongs to",
+                "units": label.attrs["units"],
+            }
+            variables[f"event_{dim}"] = (("event",), np.repeat(label.values[index], counts), attributes)
+
+    for name, variable in RUN.items():
+        source = [s if name in ("status", "message") else s.statistics for s in solutions]
+        values = np.array([getattr(each, name) for each in source], dtype=variable.dtype)
+        variables[name] = (dims, values.reshape(shape), variable.attributes)
+
+    coords: dict[Hashable, Any] = {"time": ("time", time, TIME.attributes)}
+    coords.update(labels)
+    if "sam_fraction" not in dims:
+        coords["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
+    done = sum(solution.status == "finished" for solution in solutions)
+    return xr.Dataset(
+        variables,
+        coords=coords,
+        attrs={
+            **provenance(scene, f"swept {len(solutions)} runs", swept=tuple(swept)),
+            "swept": json.dumps(dict(swept), allow_nan=False),
+            "status": "finished" if done == len(solutions) else "partial",
+            "message": "" if done == len(solutions) else f"{done} of {len(solutions)} runs finished",
+            **_totals(solutions),
+            **surface_regimes(scene),
+        },
+    )
+
+
+def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
+    """Name the dimension of every swept key.
+
+    The last part of the key (``coating.sam_fraction`` gives ``sam_fraction``), unless that is taken by
+    another swept key or by a variable of the dataset; then the whole key with underscores (``roller_speed``).
+
+    Parameters
+    ----------
+    keys : sequence of str
+        Dotted keys of the scene.
+
+    Returns
+    -------
+    dict of str to str
+        Key to dimension, in the given order.
+    """
+    last = [key.rpartition(".")[2] for key in keys]
+    names = {}
+    for key, short in zip(keys, last, strict=True):
+        taken = last.count(short) > 1 or short in _RESERVED
+        names[key] = key.replace(".", "_") if taken and key != "coating.sam_fraction" else short
+    return names
+
+
+def _samples(solution: Solution, name: str) -> NDArray[np.float64]:
+    """Return the samples of a column; a run that could not even start has none."""
+    return solution.samples.get(name, np.empty(0))
+
+
+def _columns(scene: Scene) -> tuple[str, ...]:
+    return columns(is_roller=scene.roller is not None)
+
+
+def _labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:
+    """Coordinate of a swept key: its numbers or words; lists are numbered and spelled out in `comment`."""
+    attributes = _key_attributes(key)
+    if all(isinstance(value, int | float) and not isinstance(value, bool) for value in values):
+        return xr.Variable(dim, np.array(values), attributes)
+    if all(isinstance(value, str) for value in values):
+        return xr.Variable(dim, np.array(values, dtype=np.str_), attributes)
+    attributes["comment"] = "numbers of the values " + json.dumps(list(values), allow_nan=False)
+    return xr.Variable(dim, np.arange(len(values)), attributes)
+
+
+def _key_attributes(key: str) -> dict[str, Any]:
+    """CF attributes of a swept key, from the scene's own description of it."""
+    if key == "coating.sam_fraction":
+        return SAM_FRACTION.attributes
+    try:
+        info = describe_key(key)
+    except SceneError:  # a whole table
+        return {"long_name": key, "units": "1"}
+    return {"long_name": f"{key}: {info.description}", "units": info.unit or "1"}
+
+
+def _event_variables(solutions: Sequence[Solution], fractions: NDArray[np.float64]) -> dict[Hashable, Any]:
+    """Events of all runs, one after the other."""
+    joined: dict[str, NDArray[Any]] = {
+        f"event_{name}": np.concatenate([getattr(solution.events, name) for solution in solutions])
+        for name in ("time", "kind", "pair", "flank", "gap_rate")
+    }
+    joined["event_sam_fraction"] = np.repeat(fractions, [len(solution.events) for solution in solutions])
+    return {
+        name: (("event",), values.astype(EVENTS[name].dtype, copy=False), EVENTS[name].attributes)
+        for name, values in joined.items()
+    }
+
+
+def _totals(solutions: Sequence[Solution]) -> dict[str, Any]:
+    """Solver statistics added up over the runs, as attributes."""
+    statistics = [solution.statistics for solution in solutions]
+    totals: dict[str, Any] = {name: sum(getattr(each, name) for each in statistics) for name in _COUNTERS}
+    totals["wall_time"] = math.fsum(each.wall_time for each in statistics)
+    totals["backend"] = ", ".join(sorted({each.backend for each in statistics if each.backend}))
+    skipped = statistics[0].skipped if len(statistics) == 1 else [each.skipped for each in statistics]
+    totals["skipped"] = json.dumps(skipped, default=int)
+    return totals

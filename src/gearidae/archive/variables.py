@@ -1,0 +1,150 @@
+"""Catalogue of everything an archive can hold: name, dimensions, unit, meaning.
+
+One `Variable` per row of the dataset's layout; `dataset` builds from it and nothing is named or given a unit
+elsewhere. Units are written as UDUNITS, as CF asks. ``time`` is in ``s`` and not in "seconds since", which
+xarray would turn into nanosecond dates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Flank
+
+__all__ = ["EVENTS", "RUN", "SAMPLES", "SAM_FRACTION", "TIME", "Variable", "by_name", "columns"]
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One quantity of the dataset.
+
+    Attributes
+    ----------
+    name : str
+        Name in the dataset and in the file.
+    dims : tuple of str
+        Dimensions on a single run; a sweep puts its own in front of those of samples and run variables.
+    units : str
+        UDUNITS unit.
+    long_name : str
+        What it is, in words.
+    dtype : dtype-like
+        Type in memory and on disk.
+    flags : type of IntEnum, optional
+        The values a flag variable can take.
+    comment : str
+        Sign convention and the like.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    dtype: DTypeLike = np.float64
+    flags: type[IntEnum] | None = None
+    comment: str = ""
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """CF attributes of the variable."""
+        attributes: dict[str, Any] = {"long_name": self.long_name, "units": self.units}
+        if self.flags is not None:
+            attributes["flag_values"] = np.array([flag.value for flag in self.flags], dtype=self.dtype)
+            attributes["flag_meanings"] = " ".join(flag.name.lower() for flag in self.flags)
+        if self.comment:
+            attributes["comment"] = self.comment
+        return attributes
+
+
+TIME = Variable("time", ("time",), "s", "time since the start of the run")
+SAM_FRACTION = Variable(
+    "sam_fraction", (), "1", "fraction of the contact area covered by the self-assembled monolayer"
+)
+
+_GEAR_SAMPLES = (
+    Variable("gear_speed", ("time",), "rad s-1", "angular speed of the gear"),
+    Variable("pinion_speed", ("time",), "rad s-1", "angular speed of the pinion"),
+    Variable("gear_angle", ("time",), "rad", "rotation of the gear since the start", comment="not wrapped"),
+    Variable(
+        "transmission_error",
+        ("time",),
+        "m",
+        "dynamic transmission error",
+        comment="u = R1 phi1 - R2 phi2 - e(phi1), Teodorescu et al. 2009, Eq. 4",
+    ),
+    Variable(
+        "mesh_force",
+        ("time",),
+        "N",
+        "force along the line of action",
+        comment="positive drives the gear forward",
+    ),
+    Variable(
+        "gear_contact_torque",
+        ("time",),
+        "N m",
+        "torque of the tooth contacts on the gear",
+        comment="positive drives the gear forward; negative while adhesion holds it back",
+    ),
+    Variable("drive_gap", ("time",), "m", "smallest gap of all pairs on the drive flank"),
+    Variable("coast_gap", ("time",), "m", "smallest gap of all pairs on the coast flank"),
+    Variable("pairs_in_contact", ("time",), "1", "number of tooth pairs that transmit force"),
+)
+_ROLLER_SAMPLES = (
+    Variable("height", ("time",), "m", "height of the roller above the mean plane of the asperities"),
+    Variable(
+        "speed", ("time",), "m s-1", "velocity of the roller", comment="positive upwards, away from the plane"
+    ),
+    Variable(
+        "force", ("time",), "N", "contact force on the roller", comment="positive pushes the bodies apart"
+    ),
+)
+SAMPLES: Mapping[str, Variable] = {variable.name: variable for variable in (*_GEAR_SAMPLES, *_ROLLER_SAMPLES)}
+
+_EVENTS = (
+    Variable("event_time", ("event",), "s", "time of the event"),
+    Variable("event_kind", ("event",), "1", "what happened", np.int8, EventKind),
+    Variable(
+        "event_pair", ("event",), "1", "tooth pair, counted from the one in mesh at the start as 0", np.int64
+    ),
+    Variable("event_flank", ("event",), "1", "flank the event belongs to", np.int8, Flank),
+    Variable(
+        "event_gap_rate",
+        ("event",),
+        "m s-1",
+        "rate of change of the pair's gap",
+        comment="negative while it closes",
+    ),
+    Variable("event_sam_fraction", ("event",), "1", "SAM fraction of the run the event belongs to"),
+)
+EVENTS: Mapping[str, Variable] = {variable.name: variable for variable in _EVENTS}
+
+_RUN = (
+    Variable("status", (), "1", "how the run ended", np.str_),
+    Variable("message", (), "1", "how the run ended, in a sentence", np.str_),
+    Variable("steps", (), "1", "solver steps", np.int64),
+    Variable("residual_evaluations", (), "1", "evaluations of the residual", np.int64),
+    Variable("jacobian_evaluations", (), "1", "evaluations of the Jacobian", np.int64),
+    Variable("error_test_failures", (), "1", "steps repeated because the error test failed", np.int64),
+    Variable("convergence_failures", (), "1", "steps repeated because Newton's method failed", np.int64),
+    Variable("restarts", (), "1", "restarts of the solver at order one", np.int64),
+    Variable("guard_evaluations", (), "1", "evaluations of the event functions", np.int64),
+    Variable("wall_time", (), "s", "wall time in the solver"),
+)
+RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
+
+
+def columns(is_roller: bool) -> tuple[str, ...]:
+    """Names of the sampled columns of a gear or a roller scene."""
+    return ROLLER_COLUMNS if is_roller else GEAR_COLUMNS
+
+
+def by_name() -> dict[str, Variable]:
+    """Every variable of the catalogue by its name."""
+    return {"time": TIME, "sam_fraction": SAM_FRACTION, **SAMPLES, **EVENTS, **RUN}

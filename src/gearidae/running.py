@@ -1,0 +1,146 @@
+"""What a single run and a sweep have in common: checking the request, solving it, naming an early end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearidae import engine
+from gearidae.errors import SceneError, SolverError
+from gearidae.records import EventKind, Events, Flank, Solution, Statistics
+from gearidae.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "unsolved"]
+
+_ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
+_STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
+
+
+def prepare(
+    scene: Scene, *, rtol: float | None, t_end: float | None, samples: int | None, backend: str = "auto"
+) -> Scene:
+    """Put the settings of one call into the scene, so that the scene says exactly what was run.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene to run.
+    rtol : float, optional
+        Relative tolerance in place of ``run.rtol``.
+    t_end : float, optional
+        Simulated time [s] in place of ``run.duration``.
+    samples : int, optional
+        Number of samples in place of ``run.samples``.
+    backend : str, optional
+        As for `simulate`.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If one of the settings is not allowed.
+    """
+    if not isinstance(scene, Scene):
+        raise SceneError(
+            "scene", type(scene).__name__, "must be a Scene (from load_case, preset or Scene.from_dict)"
+        )
+    engine.choose_backend(backend)  # refuses what is unknown or cannot work here
+    settings = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
+    given = {key: value for key, value in settings.items() if value is not None}
+    return scene.replace(given) if given else scene
+
+
+def solve(scene: Scene, backend: str, on_progress: Callable[[float, int], None] | None = None) -> Solution:
+    """Run a scene; a solver that cannot even start leaves an empty solution that says why.
+
+    Parameters
+    ----------
+    scene : Scene
+    backend : str
+        As for `simulate`.
+    on_progress : callable, optional
+        Called now and then with the simulated time reached [s] and the number of events so far.
+
+    Returns
+    -------
+    Solution
+    """
+    try:
+        return engine.solve(scene, backend=backend, on_progress=on_progress)
+    except SolverError as error:
+        return unsolved("failed", str(error))
+
+
+def runs_in_threads(backend: str) -> bool:
+    """Whether a backend solves outside Python's lock, so that threads of one process work side by side."""
+    return engine.choose_backend(backend) == "native"
+
+
+def unsolved(status: str, message: str) -> Solution:
+    """Solution of a run that produced nothing.
+
+    Parameters
+    ----------
+    status : str
+        Named reason.
+    message : str
+        The reason in a sentence.
+
+    Returns
+    -------
+    Solution
+        Without samples or events.
+    """
+    events = Events(
+        time=np.empty(0),
+        kind=np.empty(0, np.int8),
+        pair=np.empty(0, np.int64),
+        flank=np.empty(0, np.int8),
+        gap_rate=np.empty(0),
+    )
+    return Solution(np.empty(0), {}, events, Statistics(0, 0, 0, 0, 0, 0, 0, 0.0, ""), status, message)
+
+
+def early_end(solution: Solution, ds: xr.Dataset) -> SolverError:
+    """Say where and how a run ended before its time.
+
+    Parameters
+    ----------
+    solution : Solution
+        What the engine handed up, with a status other than ``finished``.
+    ds : xarray.Dataset
+        The same as a dataset.
+
+    Returns
+    -------
+    SolverError
+        To be raised; carries `ds`.
+    """
+    state: dict[str, float] = {}
+    if len(solution.time):
+        state = {name: float(solution.samples[name][-1]) for name in _STATE if name in solution.samples}
+    return SolverError(
+        solution.message or solution.status,
+        time=float(solution.time[-1]) if len(solution.time) else 0.0,
+        state=state,
+        last_event=_last_event(solution.events),
+        advice=_ADVICE,
+        dataset=ds,
+    )
+
+
+def _last_event(events: Events) -> str:
+    if not len(events):
+        return "none"
+    kind = EventKind(int(events.kind[-1])).name.lower().replace("_", " ")
+    flank: Any = Flank(int(events.flank[-1]))
+    where = "" if flank is Flank.NONE else f" of pair {events.pair[-1]} ({flank.name.lower()} flank)"
+    return f"{kind}{where} at {events.time[-1]:.9g} s"
