@@ -1,0 +1,171 @@
+"""The commands and their options; what they do is in the modules beside."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+import gearidae
+
+__all__ = ["app"]
+
+app = App(
+    name="gearidae",
+    help="Dynamics of rough, adhesive, monolayer-protected MEMS gears: start, run, brake or stick.",
+    version=f"gearidae {gearidae.__version__}",
+    default_parameter=Parameter(negative=()),
+    suppress_keyboard_interrupt=False,  # `main` says what is kept
+)
+
+Case = Annotated[str, Parameter(help="Case file (TOML), or the name of a preset.")]
+Output = Annotated[
+    Path | None, Parameter(name=["--output", "-o"], help="File to write; by default named after the input.")
+]
+Overwrite = Annotated[bool, Parameter(help="Replace the output if it exists.")]
+Settings = Annotated[
+    list[str] | None,
+    Parameter(
+        name="--set",
+        help="Change keys of the scene: key=value, repeatable or several.",
+        consume_multiple=False,
+    ),
+]
+Rtol = Annotated[float | None, Parameter(help="Relative tolerance of the solver.")]
+
+
+@app.command
+def run(
+    case: Case,
+    *,
+    output: Output = None,
+    settings: Settings = None,
+    rtol: Rtol = None,
+    overwrite: Overwrite = False,
+) -> int:
+    """Run one scene and keep it as a netCDF archive."""
+    from gearidae.cli.simulation import run_case
+
+    return run_case(case, output, settings or [], rtol, overwrite=overwrite)
+
+
+@app.command
+def sweep(
+    case: Case,
+    *,
+    over: Annotated[
+        list[str],
+        Parameter(
+            help="Key and its values: key=start:stop:step (both ends included) or key=a,b,c; repeatable.",
+            consume_multiple=False,
+        ),
+    ],
+    output: Output = None,
+    settings: Settings = None,
+    rtol: Rtol = None,
+    jobs: Annotated[int | None, Parameter(help="Runs at a time; by default one per core.")] = None,
+    overwrite: Overwrite = False,
+) -> int:
+    """Run a scene for several values of one or more keys, into one archive."""
+    from gearidae.cli.simulation import sweep_case
+
+    return sweep_case(case, over, output, settings or [], rtol, jobs, overwrite=overwrite)
+
+
+@app.command
+def plot(
+    archive: Annotated[Path, Parameter(help="Archive to draw.")],
+    *,
+    output: Output = None,
+    overwrite: Overwrite = False,
+) -> int:
+    """Draw an archive: speed and contact torque of gears, force and gap of a roller."""
+    from gearidae.cli.files import draw
+
+    return draw(archive, output, overwrite=overwrite)
+
+
+@app.command(name="coating-map")
+def coating_map(
+    case: Case,
+    *,
+    over: Annotated[
+        list[str] | None,
+        Parameter(
+            help="Fractions, coating.sam_fraction=1:0.5:-0.01, and further keys for several lines; repeatable.",
+            consume_multiple=False,
+        ),
+    ] = None,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Runs at a time; by default one per core.")] = None,
+    overwrite: Overwrite = False,
+) -> int:
+    """Map the frequency of the impact response against the SAM fraction."""
+    from gearidae.cli.coating import map_case
+
+    return map_case(case, over or [], output, settings or [], jobs, overwrite=overwrite)
+
+
+@app.command
+def assess(
+    signal: Annotated[
+        Path, Parameter(help="Gear speed over time: CSV (time [s], gear_speed [rad/s]) or netCDF.")
+    ],
+    *,
+    map: Annotated[Path, Parameter(help="Coating map of the same gears at the same torque.")],  # noqa: A002
+    history: Annotated[
+        str, Parameter(help="Whether the record begins with the map's start: auto, start or unknown.")
+    ] = "auto",
+) -> int:
+    """Tell from a speed signal how much of the coating is left."""
+    from gearidae.cli.coating import assess_signal
+
+    return assess_signal(signal, map, history)
+
+
+@app.command
+def check(case: Case, *, settings: Settings = None) -> int:
+    """Check a case file and print what follows from it, without running it."""
+    from gearidae.cli.checking import check_case
+
+    return check_case(case, settings or [])
+
+
+@app.command
+def init(
+    name: Annotated[str, Parameter(help="Name of the case; NAME.toml is written to the current folder.")],
+    *,
+    preset: Annotated[str, Parameter(help="Preset to start from.")] = "teodorescu2009_low_speed",
+) -> int:
+    """Write a commented case file to start from."""
+    from gearidae.cli.files import write_case
+
+    return write_case(name, preset)
+
+
+@app.command
+def info(archive: Annotated[Path, Parameter(help="Archive to describe.")]) -> int:
+    """Print what is in an archive, where it comes from and how its runs ended."""
+    from gearidae.cli.files import describe
+
+    return describe(archive)
+
+
+@app.command
+def bench(
+    *,
+    scenes: Annotated[
+        list[str] | None,
+        Parameter(help="Benchmark scenes to measure; by default all.", consume_multiple=True),
+    ] = None,
+    output: Annotated[
+        Path | None, Parameter(name=["--output", "-o"], help="Folder for tables, all points and pictures.")
+    ] = None,
+    quick: Annotated[bool, Parameter(help="Fewer scenes, tolerances and rounds.")] = False,
+) -> int:
+    """Measure run time against error on this machine, and hold it against other integrators."""
+    from gearidae.cli.bench import bench_scenes
+
+    return bench_scenes(scenes or [], output, quick=quick)

@@ -1,0 +1,132 @@
+"""``gearidae check``: what follows from a scene before anything is run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from gearidae.cli.case import read_scene
+from gearidae.cli.codes import DONE
+from gearidae.cli.tables import show_rows
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["check_case"]
+
+Rows = Iterator[tuple[str, str, str]]
+
+
+def check_case(case: str, settings: Sequence[str]) -> int:
+    """Check a case and print geometry, contact and estimates.
+
+    Parameters
+    ----------
+    case : str
+        Case file or preset.
+    settings : sequence of str
+        ``key=value`` pairs.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the case is wrong.
+    """
+    scene = read_scene(case, settings)
+    show_rows(_rows(scene))
+    return DONE
+
+
+def _rows(scene: Scene) -> Rows:
+    yield f"{scene.name}: this scene is sound", "", ""
+    if scene.roller is None:
+        yield from _geometry(scene)
+        yield from _estimates(scene)
+    else:
+        yield from _roller(scene)
+    yield from _contact(scene)
+    yield from _run(scene)
+
+
+def _geometry(scene: Scene) -> Rows:
+    geometry = scene.geometry
+    pinion, gear = geometry.base_radius_pinion, geometry.base_radius_gear
+    yield "Gears", "", ""
+    yield "contact ratio", f"{geometry.contact_ratio:.4g}", "pairs in mesh on average"
+    yield "base pitch", f"{geometry.base_pitch * 1e6:.5g} um", "between neighbouring flanks"
+    yield "base radii", f"{pinion * 1e6:.6g} um, {gear * 1e6:.6g} um", "pinion, gear"
+    yield "module", f"{geometry.module * 1e6:.4g} um", "also the addendum"
+    yield "path of contact", f"{geometry.path_length * 1e6:.4g} um", "from mesh entry to exit"
+
+
+def _estimates(scene: Scene) -> Rows:
+    from gearidae.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+
+    assert scene.gears is not None
+    yield "Estimates", "", "from the constant torques, if nothing sticks"
+    speed = steady_speed(scene)
+    if speed == 0.0:
+        yield "gear speed", "0 rad/s", "the drive torque does not overcome the dry resistance"
+    elif math.isinf(speed):
+        yield "gear speed", "unbounded", "nothing limits it: load.drag is 0"
+    else:
+        yield "gear speed", f"{speed:.5g} rad/s", f"{speed * 30 / math.pi:.4g} rpm"
+        yield "mesh frequency", f"{speed * scene.gears.gear_teeth / (2 * math.pi):.5g} Hz", "teeth per second"
+        yield "turns in the run", f"{speed * scene.run.duration / (2 * math.pi):.4g}", "of the gear"
+    yield "effective mass", f"{effective_mass(scene):.4g} kg", "of the transmission error"
+    gap = resting_gap(scene)
+    if not math.isnan(gap):
+        relative = gap / scene.surface.roughness
+        yield "resting gap", f"{gap * 1e9:.4g} nm", f"{relative:.3g} roughnesses, one pair at the pitch point"
+        yield "natural frequency", f"{natural_frequency(scene):.4g} Hz", "of small oscillations about it"
+
+
+def _roller(scene: Scene) -> Rows:
+    roller = scene.roller
+    assert roller is not None
+    yield "Roller", "", ""
+    yield "radius, width", f"{roller.radius * 1e6:.4g} um, {roller.width * 1e6:.4g} um", ""
+    yield "energy of the approach", f"{0.5 * roller.mass * roller.speed**2:.4g} J", ""
+    if roller.speed > 0.0:
+        yield "flight to the mean plane", f"{roller.height / roller.speed * 1e6:.4g} us", "without contact"
+
+
+def _contact(scene: Scene) -> Rows:
+    from gearidae.contact.jkr import asperity_of, tabor_parameter, tabor_regime
+
+    yield "Contact", "", f"{scene.contact.model} model, {scene.contact.asperity} asperities"
+    yield "contact modulus E*", f"{asperity_of(scene.surface).modulus * 1e-9:.5g} GPa", ""
+    yield "SAM fraction", f"{scene.coating.sam_fraction:g}", ""
+    for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
+        tip = asperity_of(surface)
+        parameter = tabor_parameter(surface)
+        yield f"{name}: pull-off load Pc", f"{tip.pull_off * 1e6:.4g} uN", "of one asperity"
+        relative = tip.stretch_limit / scene.surface.roughness
+        yield (
+            f"{name}: stretch limit dc",
+            f"{tip.stretch_limit * 1e9:.4g} nm",
+            f"{relative:.3g} of the roughness",
+        )
+        yield (
+            f"{name}: Tabor parameter",
+            f"{parameter:.4g}",
+            f"{tabor_regime(parameter)} (JKR from about 5 up)",
+        )
+
+
+def _run(scene: Scene) -> Rows:
+    run = scene.run
+    columns = 3 if scene.roller is not None else 9
+    yield "Run", "", ""
+    yield (
+        "duration",
+        f"{run.duration * 1e3:g} ms",
+        f"{run.samples} samples, {columns * run.samples * 8e-6:.3g} MB",
+    )
+    yield "relative tolerance", f"{run.rtol:g}", ""

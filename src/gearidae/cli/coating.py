@@ -1,0 +1,111 @@
+"""``gearidae coating-map`` and ``gearidae assess``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import gearidae as gd
+from gearidae.archive import check_target, save
+from gearidae.cli.case import read_scene
+from gearidae.cli.codes import DONE
+from gearidae.cli.output import say
+from gearidae.cli.tables import show_rows
+from gearidae.cli.values import default_output, sweep_values
+from gearidae.executors import check_jobs
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["assess_signal", "map_case"]
+
+_FRACTION = "coating.sam_fraction"
+_MOST_ROWS = 13
+
+
+def map_case(
+    case: str,
+    over: Sequence[str],
+    output: Path | None,
+    settings: Sequence[str],
+    jobs: int | None,
+    *,
+    overwrite: bool,
+) -> int:
+    """Make a coating map of a case, keep it, show some of it.
+
+    Parameters
+    ----------
+    case : str
+        Case file or preset.
+    over : sequence of str
+        ``key=values`` pairs: the fractions, and further keys for several lines.
+    output : Path or None
+        File to write; None for the case's name with ``_map.nc``.
+    settings : sequence of str
+        ``key=value`` pairs.
+    jobs : int or None
+        Runs at a time; None for one per core.
+    overwrite : bool
+        Whether the map may replace a file.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    target = output or default_output(case, "_map.nc")
+    values = sweep_values(over)
+    fractions = values.pop(_FRACTION, None)
+    workers = check_jobs(jobs)
+    scene = read_scene(case, settings)
+    check_target(target, overwrite=overwrite)
+    chart = gd.analysis.coating_map(scene, fractions, over=values, jobs=workers, progress=True)
+    save(chart, target, overwrite=overwrite)
+    show_rows(_rows(chart))
+    say(f"Map: {target}")
+    return DONE
+
+
+def assess_signal(signal: Path, chart: Path, history: str) -> int:
+    """Print what a signal says about the coating.
+
+    Parameters
+    ----------
+    signal : Path
+        CSV or netCDF file.
+    chart : Path
+        Coating map.
+    history : str
+        ``auto``, ``start`` or ``unknown``.
+
+    Returns
+    -------
+    int
+        Exit code: `DONE`, also where the signal cannot tell; that is an answer.
+    """
+    found = gd.analysis.assess(signal, gd.analysis.open_map(chart), history=history)
+    say(f"{found.verdict}: {found.explanation}")
+    return DONE
+
+
+def _rows(chart: xr.Dataset) -> Iterator[tuple[str, str, str]]:
+    """Frequencies at some of the fractions, line by line."""
+    frequency = chart["characteristic_frequency"]
+    further = [dim for dim in frequency.dims if dim != "sam_fraction"]
+    lines = chart.stack(line=further) if further else chart.expand_dims("line")
+    count = chart.sizes["sam_fraction"]
+    picked = np.unique(np.linspace(0, count - 1, min(count, _MOST_ROWS)).round().astype(int))
+    for number in range(lines.sizes["line"]):
+        line = lines.isel(line=number)
+        held = ", ".join(f"{dim} = {line[dim].item():g}" for dim in further)
+        yield held or "Frequency of the first impact response", "", ""
+        for place in picked:
+            one = line.isel(sam_fraction=int(place))
+            value, spread = float(one["characteristic_frequency"]), float(one["uncertainty"])
+            text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
+            stops = "" if float(one["min_gear_speed"]) > 0.0 else "the gear stops within the run"
+            yield f"SAM {100 * float(one['sam_fraction']):g} %", text, stops

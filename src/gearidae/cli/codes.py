@@ -1,0 +1,13 @@
+"""Exit codes of the program."""
+
+from __future__ import annotations
+
+__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "UNFINISHED"]
+
+DONE = 0
+BAD_INPUT = 2
+"""The command line, a case file or an archive is wrong; nothing was written."""
+UNFINISHED = 3
+"""The solver could not go on; what it reached is kept."""
+INTERRUPTED = 130
+"""Ctrl-C; what was reached is kept."""

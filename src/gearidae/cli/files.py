@@ -1,0 +1,161 @@
+"""``gearidae init``, ``gearidae info`` and ``gearidae plot``: one file in, or out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import xarray as xr
+
+import gearidae as gd
+from gearidae.archive.select import scene_of, swept_dims
+from gearidae.cli.codes import DONE
+from gearidae.cli.output import say
+from gearidae.cli.tables import show_outcomes, show_rows
+from gearidae.cli.values import default_output
+from gearidae.errors import SceneError
+
+__all__ = ["describe", "draw", "write_case"]
+
+
+def write_case(name: str, preset: str) -> int:
+    """Write a preset as a commented case file.
+
+    Parameters
+    ----------
+    name : str
+        Name of the case, with or without ``.toml``.
+    preset : str
+        Preset to start from.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If there is no such preset, or the file exists or cannot be written.
+    """
+    from gearidae.scene import dump_case
+
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if path.stem.startswith("."):
+        raise SceneError("init", name, "must be a name")
+    text = dump_case(gd.preset(preset).replace({"name": path.stem}))
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(f"# {path.name}: run it with: gearidae run {path.name}\n")
+            file.write(
+                "# Quantities are SI numbers or texts with a unit; keys that are left out take a default.\n\n"
+            )
+            file.write(text)
+    except FileExistsError:
+        raise SceneError("init", path, "exists already: choose another name") from None
+    except OSError as error:
+        raise SceneError("init", path, f"cannot be written ({error.strerror})") from error
+    say(f"Wrote {path}")
+    return DONE
+
+
+def draw(archive: Path, output: Path | None, *, overwrite: bool) -> int:
+    """Draw an archive into an image file.
+
+    Parameters
+    ----------
+    archive : Path
+        What to draw.
+    output : Path or None
+        Image to write, its kind told by its ending (PNG, PDF, SVG); None for the archive's name with
+        ``.png``.
+    overwrite : bool
+        Whether the image may replace a file.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be read or the image cannot be written.
+    """
+    ds = gd.open_archive(archive)
+    target = output or default_output(str(archive), ".png")
+    gd.plot.write(gd.plot.overview(ds), target, overwrite=overwrite)
+    say(f"Picture: {target}")
+    return DONE
+
+
+def describe(archive: Path) -> int:
+    """Print what an archive holds.
+
+    Parameters
+    ----------
+    archive : Path
+        What to describe.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be read.
+    """
+    ds = gd.open_archive(archive)
+    show_rows(_description(archive, ds))
+    show_outcomes(ds)
+    return DONE
+
+
+def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
+    attributes = ds.attrs
+    yield str(archive), f"{archive.stat().st_size / 1e6:.1f} MB", ""
+    for name in ("title", "history", "source"):
+        yield name, str(attributes[name]), ""
+    ended = (
+        f"{attributes['status']}: {attributes['message']}" if attributes["message"] else attributes["status"]
+    )
+    yield "status", str(ended), ""
+    for dim in swept_dims(ds):
+        yield f"swept: {dim}", _values(ds[dim]), str(ds[dim].attrs["units"])
+    time = ds["time"].values
+    span = f"{len(time)} samples, 0 to {time[-1]:g} s" if len(time) else "no samples"
+    yield "time", span, f"asked for {attributes['t_end']:g} s at rtol {attributes['rtol']:g}"
+    yield "events", str(ds.sizes["event"]), ""
+    for name in ("steps", "residual_evaluations", "jacobian_evaluations", "restarts"):
+        yield name.replace("_", " "), str(attributes[name]), ""
+    yield "wall time", f"{attributes['wall_time']:.3g} s", f"backend {attributes['backend']}"
+    for surface in ("bare", "coated"):
+        regime = attributes[f"tabor_regime_{surface}"]
+        yield f"Tabor parameter, {surface}", f"{attributes[f'tabor_parameter_{surface}']:.4g}", str(regime)
+    yield "variables", "", ""
+    for quantity, variable in ds.data_vars.items():
+        if "time" not in variable.dims and "event" not in variable.dims:
+            continue  # the runs' statistics: their totals stand above
+        yield str(quantity), f"({', '.join(map(str, variable.dims))})", str(variable.attrs.get("units", ""))
+    yield "scene", "", ""
+    for table, content in scene_of(ds).items():
+        if isinstance(content, dict):
+            yield from (
+                (f"{table}.{key}", json.dumps(value), _unit(f"{table}.{key}"))
+                for key, value in content.items()
+            )
+
+
+def _values(coordinate: xr.DataArray) -> str:
+    shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in coordinate.values.tolist()]
+    return ", ".join(shown if len(shown) <= 12 else [*shown[:6], "...", *shown[-3:]])
+
+
+def _unit(key: str) -> str:
+    from gearidae.scene import describe_key
+
+    unit = describe_key(key).unit
+    return "" if unit == "1" else unit

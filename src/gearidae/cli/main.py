@@ -1,0 +1,53 @@
+"""Entry point: runs a command and turns what can go wrong into one line and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from cyclopts import CycloptsError
+
+from gearidae.cli.app import app
+from gearidae.cli.codes import BAD_INPUT, DONE, INTERRUPTED, UNFINISHED
+from gearidae.cli.values import spread
+from gearidae.errors import GearidaeError, SceneError
+
+__all__ = ["main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows the program's name; by default the process's own.
+
+    Returns
+    -------
+    int
+        0 done, 2 bad input, 3 the solver could not go on, 130 interrupted.
+    """
+    tokens = spread(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        return _complain(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
+    except SceneError as error:
+        return _complain(str(error), BAD_INPUT)
+    except GearidaeError as error:
+        return _complain(str(error), UNFINISHED)
+    except KeyboardInterrupt as interrupt:
+        return _complain(f"interrupted{''.join(f'; {note}' for note in interrupt.args)}", INTERRUPTED)
+    except BrokenPipeError:
+        # Whoever read the output has gone (a pager, head); without this, Python complains once more on
+        # leaving.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    return code if isinstance(code, int) else DONE
+
+
+def _complain(message: str, code: int) -> int:
+    sys.stderr.write(f"gearidae: {' '.join(message.split())}\n")
+    return code

@@ -1,0 +1,93 @@
+"""Tables that the commands print."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import xarray as xr
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+from gearidae.archive.select import swept_dims
+from gearidae.cli.output import show
+from gearidae.outcome import GearOutcome, RollerOutcome, outcomes
+
+__all__ = ["label_text", "show_outcomes", "show_rows"]
+
+_GEAR_HEADINGS = ("what it did", "min rad/s", "max rad/s", "impacts", "wall s")
+_ROLLER_HEADINGS = ("what it did", "peak uN", "pull-off uN", "restitution", "impacts", "wall s")
+
+
+def show_outcomes(ds: xr.Dataset) -> None:
+    """Print what each run of a dataset did.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep.
+    """
+    judged = outcomes(ds)
+    dims = swept_dims(ds)
+    headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
+    table = Table(box=box.SIMPLE, pad_edge=False)
+    for heading in (*dims, *headings):
+        table.add_column(heading, justify="left" if heading == "what it did" else "right", no_wrap=True)
+    for outcome in judged:
+        cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome)
+        table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
+    show(table)
+
+
+def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:
+    """Print names, values and remarks in three columns.
+
+    Parameters
+    ----------
+    rows : iterable of (str, str, str)
+        A row without a value is a heading.
+    """
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    for name, value, remark in rows:
+        table.add_row(Text(f"  {name}") if value else Text(name, style="bold"), Text(value), Text(remark))
+    show(table)
+
+
+def label_text(label: Mapping[str, Any]) -> str:
+    """Write a run's label as text, ``sam_fraction = 0.5``."""
+    return ", ".join(f"{dim} = {_plain(value)}" for dim, value in label.items())
+
+
+def _gear_cells(outcome: GearOutcome) -> Sequence[str]:
+    return (
+        _verdict(outcome),
+        _number(outcome.min_speed),
+        _number(outcome.max_speed),
+        str(outcome.impacts),
+        f"{outcome.wall_time:.2f}",
+    )
+
+
+def _roller_cells(outcome: RollerOutcome) -> Sequence[str]:
+    return (
+        _verdict(outcome),
+        _number(outcome.peak_force * 1e6),
+        _number(outcome.pull_off_force * 1e6),
+        _number(outcome.restitution),
+        str(outcome.impacts),
+        f"{outcome.wall_time:.2f}",
+    )
+
+
+def _verdict(outcome: GearOutcome | RollerOutcome) -> str:
+    return outcome.verdict if outcome.status == "finished" else f"{outcome.verdict} ({outcome.status})"
+
+
+def _number(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.4g}"
+
+
+def _plain(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,140 @@
+"""Read ``key=value`` and ``key=values`` as they stand on the command line."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from decimal import Decimal, DecimalException
+from pathlib import Path
+from typing import Any
+
+from gearidae.errors import SceneError
+
+__all__ = ["assignments", "default_output", "spread", "sweep_values"]
+
+_LONGEST_RANGE = 100_000
+_TAKES_PAIRS = ("--set", "--over")
+
+
+def spread(arguments: Sequence[str]) -> list[str]:
+    """Let several pairs follow one ``--set`` or ``--over``: ``--set a=1 b=2`` is ``--set a=1 --set b=2``.
+
+    A pair contains ``=`` and does not begin with a dash, so that a case file may stand after the pairs.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        The command line.
+
+    Returns
+    -------
+    list of str
+    """
+    spread_out: list[str] = []
+    option = ""
+    for argument in arguments:
+        if argument in _TAKES_PAIRS:
+            option = argument
+        elif argument.startswith("-") or "=" not in argument:
+            option = ""
+        elif option and spread_out[-1] != option:
+            spread_out.append(option)
+        spread_out.append(argument)
+    return spread_out
+
+
+def assignments(pairs: Sequence[str]) -> dict[str, Any]:
+    """Read the pairs of ``--set``.
+
+    Parameters
+    ----------
+    pairs : sequence of str
+        ``key=value``, the value written as in a case file; texts need no quotes (``mesh.backlash=0.2 um``).
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    SceneError
+        If a pair has no ``=`` or a key stands twice.
+    """
+    values: dict[str, Any] = {}
+    for pair in pairs:
+        key, text = _split(pair, "--set", "coating.sam_fraction=0.5")
+        if key in values:
+            raise SceneError("--set", key, "stands twice")
+        values[key] = _literal(text)
+    return values
+
+
+def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
+    """Read the pairs of ``--over``.
+
+    Parameters
+    ----------
+    pairs : sequence of str
+        ``key=start:stop:step`` (both ends included if the steps meet them), ``key=a,b,c``, or ``key=[a, b]``
+        for values that contain commas themselves.
+
+    Returns
+    -------
+    dict
+        Key to list of values.
+
+    Raises
+    ------
+    SceneError
+        If a pair cannot be read or a key stands twice.
+    """
+    values: dict[str, list[Any]] = {}
+    for pair in pairs:
+        key, text = _split(pair, "--over", "coating.sam_fraction=1:0.4:-0.05")
+        if key in values:
+            raise SceneError("--over", key, "stands twice")
+        if ":" in text:
+            values[key] = _range(key, text)
+        elif text.startswith("["):
+            listed = _literal(text)
+            values[key] = listed if isinstance(listed, list) else [listed]
+        else:
+            values[key] = [_literal(part.strip()) for part in text.split(",")]
+    return values
+
+
+def default_output(case: str, suffix: str) -> Path:
+    """Name a result after its case, in the current folder."""
+    return Path(f"{Path(case).stem}{suffix}")
+
+
+def _split(pair: str, option: str, example: str) -> tuple[str, str]:
+    key, equals, text = pair.partition("=")
+    key, text = key.strip(), text.strip()
+    if not equals or not key or not text:
+        raise SceneError(option, pair, f"must read key=value, such as {example}")
+    return key, text
+
+
+def _literal(text: str) -> Any:
+    """Read a value as TOML would; what TOML does not know is a text, such as a number with a unit."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _range(key: str, text: str) -> list[float]:
+    """Evenly spaced numbers, both ends included; in decimals, so that 1:0.4:-0.05 ends at exactly 0.4."""
+    try:
+        start, stop, step = (Decimal(part.strip()) for part in text.split(":"))
+        count = int((stop - start) / step) + 1
+    except (ValueError, OverflowError, DecimalException):
+        raise SceneError(
+            key, text, "must be start:stop:step, three numbers and a step other than 0"
+        ) from None
+    if (stop - start) * step < 0:
+        raise SceneError(key, text, "the step must lead from start to stop")
+    if count > _LONGEST_RANGE:
+        raise SceneError(key, text, f"has {count} values, more than {_LONGEST_RANGE}")
+    return [float(start + number * step) for number in range(count)]

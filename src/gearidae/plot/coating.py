@@ -1,0 +1,140 @@
+"""Pictures of what depends on the coating: the coating map and the starting torque."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.ticker import EngFormatter, StrMethodFormatter
+
+from gearidae.analysis.assess import Assessment
+from gearidae.analysis.maps import require_map
+from gearidae.errors import SceneError
+from gearidae.plot.style import new_axes, scale_for, tidy
+
+__all__ = ["coating_map", "starting_torque"]
+
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+_LATER = "0.6"
+
+
+def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assessment | None = None) -> Axes:
+    """Draw the characteristic frequency against the SAM fraction (Teodorescu et al. 2009, Fig. 10).
+
+    Parameters
+    ----------
+    chart : xarray.Dataset
+        From `gearidae.analysis.coating_map`; of one line, the responses to later impacts are drawn too, in grey.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+    assessment : Assessment, optional
+        From `gearidae.analysis.assess`: its interval is shaded.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no coating map.
+    """
+    chart = require_map(chart)
+    ax = new_axes(ax, height=3.8)
+    percent = 100.0 * chart["sam_fraction"].values
+    further = [str(dim) for dim in chart["characteristic_frequency"].dims if dim != "sam_fraction"]
+    lines = chart.stack(line=further) if further else chart.expand_dims("line")
+    for number in range(lines.sizes["line"]):
+        line = lines.isel(line=number)
+        frequency, spread = line["characteristic_frequency"].values, line["uncertainty"].values
+        colour = _COLOURS[number % len(_COLOURS)]
+        if not further:
+            for later in line["impact_frequency"].transpose("impact", ...).values[1:]:
+                ax.plot(percent, later, color=_LATER, linewidth=0.8, zorder=1)
+        ax.fill_between(
+            percent, frequency - spread, frequency + spread, color=colour, alpha=0.25, linewidth=0
+        )
+        label = ", ".join(_named(lines[dim], line[dim].item()) for dim in further)
+        ax.plot(
+            percent,
+            frequency,
+            color=colour,
+            linewidth=1.4,
+            marker=".",
+            markersize=4,
+            label=label or "first impact",
+        )
+    if not further and chart.sizes["impact"] > 1:
+        ax.plot([], [], color=_LATER, linewidth=0.8, label="later impacts")
+    if assessment is not None and np.isfinite(assessment.low):
+        ax.axvspan(
+            100.0 * assessment.low, 100.0 * assessment.high, color="#E69F00", alpha=0.3, label="assessed"
+        )
+    ax.set_yscale("log")
+    ax.yaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.yaxis.set_minor_formatter(EngFormatter(sep=" "))
+    ax.tick_params(axis="y", which="minor", labelsize="x-small")
+    ax.set_xlabel("SAM (%)")
+    ax.set_ylabel("frequency of the impact response (Hz)")
+    tidy(ax)
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+def starting_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the starting torque against the SAM fraction.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.analysis.starting_torque`.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        On a logarithmic scale; fractions at which adhesion does not hold the gear have no point.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is none of starting torques, or adhesion holds the gear nowhere.
+    """
+    missing = [name for name in ("static_torque", "simulated_torque", "simulated_stuck") if name not in ds]
+    if missing:
+        raise SceneError(
+            "plot", ", ".join(missing), "is missing: make the dataset with analysis.starting_torque"
+        )
+    ax = new_axes(ax, height=3.8)
+    percent = 100.0 * ds["sam_fraction"].values
+    drawn = False
+    for number, (name, label) in enumerate(
+        (("static_torque", "static: without inertia"), ("simulated_torque", "simulated: from rest"))
+    ):
+        torque = ds[name].values
+        held = np.isfinite(torque) & (torque > 0.0)
+        if held.any():
+            drawn = True
+            ax.plot(
+                percent[held], torque[held], color=_COLOURS[number], marker=".", linewidth=1.2, label=label
+            )
+    if not drawn:
+        raise SceneError(
+            "plot", "starting_torque", "adhesion does not hold the gear at any of these fractions"
+        )
+    ax.set_yscale("log")
+    ax.set_xlabel("SAM (%)")
+    ax.set_ylabel("starting torque on the pinion (N m)")
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    tidy(ax)
+    ax.set_xlim(percent.min(), percent.max())
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+def _named(coordinate: xr.DataArray, value: float) -> str:
+    """Swept value with its name and unit."""
+    scale = scale_for(abs(value), str(coordinate.attrs.get("units", "1")))
+    unit = "" if scale.unit == "1" else f" {scale.unit}"
+    return f"{coordinate.name} {value * scale.factor:.4g}{unit}"

@@ -1,0 +1,54 @@
+"""The picture that says most about a dataset, for those who ask for one without saying which."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from gearidae.archive.select import is_roller, scene_of
+from gearidae.plot.gears import gear_speed
+from gearidae.plot.roller import roller_force, roller_gap
+from gearidae.plot.style import runs_of
+from gearidae.plot.torque import contact_torque
+
+__all__ = ["overview"]
+
+
+def overview(ds: xr.Dataset) -> Figure:
+    """Draw a dataset: gear speed and contact torque of a gear pair, force and gap of a roller.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep; of more than seven runs, seven are shown.
+
+    Returns
+    -------
+    matplotlib Figure
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples.
+    """
+    above, below = (roller_force, roller_gap) if is_roller(ds) else (gear_speed, contact_torque)
+    strips = 1 if is_roller(ds) else len(runs_of(ds, "gear_contact_torque"))
+    lower = 2.8 if strips == 1 else 0.8 + 0.62 * strips
+    figure = Figure(figsize=(7.6, 3.2 + lower), dpi=150, layout="constrained")
+    grid = figure.add_gridspec(2, 1, height_ratios=(3.2, lower))
+    top, bottom = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
+    above(ds, top)
+    below(ds, bottom)
+    top.set_xlabel("")
+    top.tick_params(labelbottom=False)
+    if is_roller(ds) and (repeated := bottom.get_legend()) is not None:
+        repeated.remove()
+    figure.suptitle(_title(ds), x=0.01, ha="left", fontsize="large")
+    return figure
+
+
+def _title(ds: xr.Dataset) -> str:
+    name = str(scene_of(ds).get("name", "")).replace("_", " ")
+    if "sam_fraction" in ds.coords and not ds["sam_fraction"].dims:
+        return f"{name}, SAM {100 * ds['sam_fraction'].item():.4g} %"
+    return name

@@ -1,0 +1,77 @@
+"""Pictures of a roller that falls onto a plane."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from gearidae.plot.style import label_time, legend, new_axes, runs_of, scale_for, tidy
+
+__all__ = ["roller_force", "roller_gap"]
+
+
+def roller_force(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the contact force over time (Teodorescu et al. 2009, Fig. 2).
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep of a roller.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples of it.
+    """
+    return _draw(ds, ax, "force", "N", "contact force")
+
+
+def roller_gap(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the height of the roller above the plane over time (Teodorescu et al. 2009, Fig. 3).
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep of a roller.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples of it.
+    """
+    return _draw(ds, ax, "height", "m", "gap")
+
+
+def _draw(ds: xr.Dataset, ax: Axes | None, name: str, unit: str, words: str) -> Axes:
+    ax = new_axes(ax)
+    runs = runs_of(ds, name)
+    time = label_time(ax, runs)
+    scale = scale_for(float(max(np.nanmax(np.abs(run.data[name].values)) for run in runs)), unit)
+    for run in runs:
+        at, values = run.trace(name)
+        ax.plot(
+            at * time.factor,
+            values * scale.factor,
+            color=run.colour,
+            linestyle=run.line,
+            linewidth=1.4,
+            label=run.label,
+        )
+    tidy(ax)
+    legend(ax, runs)
+    ax.axhline(0.0, color="0.3", linewidth=0.8, zorder=1)
+    ax.set_ylabel(f"{words} ({scale.unit})")
+    return ax

@@ -1,0 +1,258 @@
+"""Pictures of what a speed signal is made of: one cycle, its spectrum, the ringing after mesh impacts."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.ticker import EngFormatter
+
+from gearidae import analysis
+from gearidae.archive.select import runs, scene_of
+from gearidae.errors import SceneError
+from gearidae.plot.style import Run, legend, new_axes, runs_of, scale_for, thin, tidy
+
+__all__ = ["cycle", "impact_spectrum", "power_spectrum", "spectrogram"]
+
+_DECADES = 6
+"""Spectra are shown down to this many decades below their largest value."""
+_SETTLED = 0.2
+"""Part of a run left out of its spectrum, because it has not settled."""
+
+
+def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the gear's speed over the last cycle of the drive (Teodorescu et al. 2009, Fig. 5).
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep of a gear pair.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        One period of the drive torque's first harmonic, or one pitch of the gear where there is none.
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples of the gear's speed.
+    """
+    shown = runs_of(ds, "gear_speed")
+    ax = new_axes(ax)
+    period, name = _period(ds, shown)
+    scale = scale_for(period, "s")
+    for run in shown:
+        speed = run.data["gear_speed"].dropna("time")
+        last = speed.sel(time=slice(float(speed["time"][-1]) - period, None))
+        at, values = thin(last["time"].values - last["time"].values[0], last.values)
+        ax.plot(at * scale.factor, values, color=run.colour, linewidth=1.0, label=run.label)
+    ax.set_xlabel(f"time within the last {name} ({scale.unit})")
+    ax.set_ylabel("gear speed (rad/s)")
+    tidy(ax)
+    legend(ax, shown)
+    return ax
+
+
+def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the power spectral density of the gear's speed (Teodorescu et al. 2009, Fig. 6).
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep of a gear pair. The first fifth of it is left out.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        With the frequencies of the drive and of the mesh and its multiples marked, from the last run's mean speed.
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples of the gear's speed.
+    """
+    shown = runs_of(ds, "gear_speed")
+    ax = new_axes(ax)
+    settled = {run.label: _settled(run) for run in shown}
+    # one segment: the lines stand still, and resolution tells them apart
+    spectra = {label: analysis.power_spectrum(part, segment=_length(part)) for label, part in settled.items()}
+    top = max(float(each.max()) for each in spectra.values())
+    mesh = _mesh_frequency(ds, settled[shown[-1].label])
+    drive = [float(one["frequency"]) for one in scene_of(ds).get("drive", {}).get("harmonic", [])]
+    lines = [line for line in (mesh, *drive) if line > 0.0]
+    for run in shown:
+        density = spectra[run.label]
+        ax.semilogy(density["frequency"], density, color=run.colour, linewidth=0.9, label=run.label)
+    nyquist = float(next(iter(spectra.values()))["frequency"][-1])
+    ax.set_xlim(0.0, min(nyquist, 6.0 * max(lines)) if lines else nyquist)
+    ax.set_ylim(top * 10.0**-_DECADES, 3.0 * top)
+    for line in drive:
+        _mark(ax, line, "drive")
+    for multiple in range(1, 1 + int(ax.get_xlim()[1] / mesh) if mesh > 0.0 else 1):
+        _mark(ax, multiple * mesh, "mesh" if multiple == 1 else f"{multiple} mesh")
+    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.set_xlabel("frequency (Hz)")
+    ax.set_ylabel("power spectral density\n((rad/s)²/Hz)")
+    tidy(ax)
+    legend(ax, shown)
+    return ax
+
+
+def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = None) -> Axes:
+    """Draw the power spectral density of the gear's speed over time.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run of a gear pair.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+    highest : float, optional
+        Highest frequency to be shown [Hz]; by default four times that of the impact response, or all.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    SceneError
+        If the dataset is a sweep or has no samples of the gear's speed.
+    """
+    run = _single(ds)
+    density = analysis.spectrogram(run)
+    if highest is None:
+        rings = analysis.impact_frequencies(run)["frequency"].values
+        ringing = rings[np.isfinite(rings)]
+        highest = 4.0 * float(ringing.max()) if ringing.size else math.inf
+    density = density.sel(frequency=slice(0.0, highest))
+    ax = new_axes(ax, height=3.6)
+    scale = scale_for(float(run["time"][-1]), "s")
+    level = 10.0 * np.log10(np.maximum(density.values, np.nanmax(density.values) * 10.0**-_DECADES))
+    mesh = ax.pcolormesh(
+        density["time"] * scale.factor,
+        density["frequency"],
+        level,
+        shading="nearest",
+        cmap="viridis",
+        rasterized=True,
+    )
+    bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02)
+    bar.set_label("dB re 1 (rad/s)²/Hz")
+    ax.yaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.set_xlabel(f"time ({scale.unit})")
+    ax.set_ylabel("frequency (Hz)")
+    return ax
+
+
+def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the spectrum of the first impact response (Teodorescu et al. 2009, Fig. 9).
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep of a gear pair.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        Density over its largest value, each peak marked with its frequency.
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples of the gear's speed, or no impact rings.
+    """
+    shown = runs_of(ds, "gear_speed")
+    ax = new_axes(ax)
+    highest = 0.0
+    for run in shown:
+        rings = analysis.impact_frequencies(run.data)["frequency"]
+        ringing = np.flatnonzero(np.isfinite(rings.values))
+        if not ringing.size:
+            continue
+        density = analysis.impact_spectrum(run.data).isel(impact=int(ringing[0]))
+        ring = float(rings[ringing[0]])
+        highest = max(highest, ring)
+        at_ring = float(density.sel(frequency=ring, method="nearest"))
+        ax.plot(density["frequency"], density / at_ring, color=run.colour, linewidth=1.0, label=run.label)
+        ax.annotate(
+            f"{ring:.0f} Hz",
+            (ring, 1.0),
+            xytext=(3, 2),
+            textcoords="offset points",
+            fontsize="small",
+            color=run.colour,
+        )
+    if not highest:
+        raise SceneError("plot", "impact_spectrum", "no impact rings in the dataset")
+    ax.set_xlim(0.0, 2.0 * highest)
+    ax.set_ylim(0.0, 1.25)
+    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.set_xlabel("frequency (Hz)")
+    ax.set_ylabel("power spectral density\nover that of the ring")
+    tidy(ax)
+    if len(ax.get_legend_handles_labels()[0]) == len(shown):
+        legend(ax, shown)
+    return ax
+
+
+def _single(ds: xr.Dataset) -> xr.Dataset:
+    found = list(runs(ds)) if "gear_speed" in ds else []
+    if len(found) != 1:
+        raise SceneError(
+            "plot", f"({len(found)} runs)", "a spectrogram shows one run with a gear speed: pick it with .sel"
+        )
+    return found[0][1]
+
+
+def _settled(run: Run) -> xr.Dataset:
+    """Leave the start of a run out."""
+    time = run.data["time"].values[np.isfinite(run.data["gear_speed"].values)]
+    return run.data.sel(time=slice(time[0] + _SETTLED * (time[-1] - time[0]), time[-1]))
+
+
+def _length(run: xr.Dataset) -> float:
+    """Length of a record, one interval for each sample [s]."""
+    time = run["time"].values
+    return float(time[-1] - time[0]) * len(time) / (len(time) - 1)
+
+
+def _mesh_frequency(ds: xr.Dataset, run: xr.Dataset) -> float:
+    teeth = int(scene_of(ds)["gears"]["gear_teeth"])
+    return abs(float(run["gear_speed"].mean())) * teeth / (2.0 * math.pi)
+
+
+def _period(ds: xr.Dataset, shown: list[Run]) -> tuple[float, str]:
+    """Length of a cycle [s] and what it is a cycle of."""
+    harmonics: list[dict[str, Any]] = scene_of(ds).get("drive", {}).get("harmonic", [])
+    duration = float(ds["time"][-1] - ds["time"][0])
+    if harmonics and float(harmonics[0]["frequency"]) * duration > 1.0:
+        return 1.0 / float(harmonics[0]["frequency"]), "cycle of the drive"
+    frequency = _mesh_frequency(ds, _settled(shown[0]))
+    return (min(1.0 / frequency, duration) if frequency > 0.0 else duration), "pitch of the gear"
+
+
+def _mark(ax: Axes, frequency: float, text: str) -> None:
+    """Name a line of a spectrum at its top."""
+    ax.axvline(frequency, color="0.75", linewidth=0.7, zorder=0)
+    ax.annotate(
+        text,
+        (frequency, 0.985),
+        xycoords=ax.get_xaxis_transform(),
+        xytext=(2, 0),
+        textcoords="offset points",
+        va="top",
+        fontsize="x-small",
+        color="0.35",
+    )

@@ -1,0 +1,266 @@
+"""What all pictures share: colours, units, axes, one way to draw a trace.
+
+Figures are made directly and never through pyplot, so that drawing changes no global state and needs no
+display.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from gearidae.archive.select import runs
+from gearidae.errors import SceneError
+from gearidae.outcome import START_UP
+
+__all__ = [
+    "NEGATIVE",
+    "POSITIVE",
+    "Run",
+    "Scale",
+    "label_time",
+    "legend",
+    "new_axes",
+    "runs_of",
+    "scale_for",
+    "thin",
+    "tidy",
+]
+
+Floats = NDArray[np.float64]
+
+# Okabe and Ito's palette, dark colours first: told apart by colour-blind readers and, with the line styles,
+# in grey.
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+_LINE_STYLES = (
+    "-",
+    (0, (6, 1.5)),
+    (0, (1.5, 1)),
+    (0, (6, 1.5, 1.5, 1.5)),
+    (0, (3, 1)),
+    (0, (8, 2, 1, 1, 1, 2)),
+    "-",
+)
+POSITIVE, NEGATIVE = _COLOURS[:2]
+"""Colours of what pushes and of what pulls."""
+
+_PREFIXES = {
+    -24: "y",
+    -21: "z",
+    -18: "a",
+    -15: "f",
+    -12: "p",
+    -9: "n",
+    -6: "µ",
+    -3: "m",
+    0: "",
+    3: "k",
+    6: "M",
+    9: "G",
+}
+_MOST_POINTS = 6000
+_MOST_RUNS = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One run on its way into a picture.
+
+    Attributes
+    ----------
+    label : str
+        Name in legends; empty for a single run.
+    data : xarray.Dataset
+        The run.
+    colour, line : str or tuple
+        How matplotlib shall draw it.
+    """
+
+    label: str
+    data: xr.Dataset
+    colour: str
+    line: Any
+
+    def trace(self, name: str) -> tuple[Floats, Floats]:
+        """Time [s] and samples [SI] up to where the run ended, thinned for drawing."""
+        values = self.data[name].values
+        reached = np.isfinite(values)
+        return thin(self.data["time"].values[reached], values[reached])
+
+    def settled(self, name: str) -> Floats:
+        """Return the samples [SI] without those of the start-up."""
+        values: Floats = self.data[name].values
+        values = values[np.isfinite(values)]
+        return values[int(START_UP * len(values)) :]
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """Unit of an axis: SI values times `factor` are in `unit`."""
+
+    factor: float
+    unit: str
+
+
+def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
+    """Return the runs of a dataset with their labels, colours and line styles.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep.
+    name : str
+        Variable that is to be drawn.
+
+    Returns
+    -------
+    list of Run
+        At most seven, evenly picked, the first and the last among them: more cannot be told apart in one
+        picture.
+
+    Raises
+    ------
+    SceneError
+        If the dataset lacks the variable or has no samples.
+    """
+    everything = list(runs(ds)) if name in ds else []
+    found = [(label, run) for label, run in everything if np.isfinite(run[name].values).any()]
+    if not found:
+        raise SceneError("plot", name, "the dataset has no samples of it")
+    if len(found) > _MOST_RUNS:
+        picked = np.unique(np.linspace(0, len(found) - 1, _MOST_RUNS).round().astype(int))
+        found = [found[index] for index in picked]
+    return [
+        Run(
+            _label(label, run),
+            run,
+            _COLOURS[number % len(_COLOURS)],
+            _LINE_STYLES[number % len(_LINE_STYLES)],
+        )
+        for number, (label, run) in enumerate(found)
+    ]
+
+
+def scale_for(largest: float, unit: str) -> Scale:
+    """Choose the prefix that brings a value between 1 and 1000.
+
+    Parameters
+    ----------
+    largest : float
+        Largest magnitude to be shown [SI].
+    unit : str
+        Unit without prefix.
+
+    Returns
+    -------
+    Scale
+    """
+    if not (math.isfinite(largest) and largest > 0.0):
+        return Scale(1.0, unit)
+    power = min(max(3 * math.floor(math.log10(largest * (1 + 1e-9)) / 3), min(_PREFIXES)), max(_PREFIXES))
+    return Scale(10.0**-power, f"{_PREFIXES[power]}{unit}")
+
+
+def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Keep the smallest and the largest sample of some thousand intervals: the same picture, fewer points.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (n,)
+
+    Returns
+    -------
+    time, values : ndarray
+    """
+    size = len(values) * 2 // _MOST_POINTS
+    if size < 2:
+        return time, values
+    whole = len(values) // size * size
+    blocks = values[:whole].reshape(-1, size)
+    first = np.arange(0, whole, size)
+    extremes = np.sort([first + blocks.argmin(axis=1), first + blocks.argmax(axis=1)], axis=0)
+    kept = np.unique(np.concatenate([[0], extremes.T.ravel(), np.arange(whole, len(values))]))
+    return time[kept], values[kept]
+
+
+def new_axes(ax: Axes | None, *, height: float = 3.2) -> Axes:
+    """Return the axes to draw into: the given ones, or those of a new figure of its own."""
+    if ax is not None:
+        return ax
+    return Figure(figsize=(7.2, height), dpi=150, layout="constrained").add_subplot()
+
+
+def tidy(ax: Axes) -> None:
+    """Take away what carries no information, add a faint grid."""
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.grid(visible=True, color="0.9", linewidth=0.6)
+    ax.set_axisbelow(True)
+    ax.margins(x=0)
+
+
+def label_time(ax: Axes, runs: Sequence[Run]) -> Scale:
+    """Label the time axis for runs to be drawn.
+
+    Parameters
+    ----------
+    ax : Axes
+    runs : sequence of Run
+
+    Returns
+    -------
+    Scale
+        Of the axis.
+    """
+    longest = float(max(run.data["time"].values[-1] for run in runs))
+    scale = scale_for(longest, "s")
+    ax.set_xlabel(f"time ({scale.unit})")
+    ax.set_xlim(0.0, (longest or 1.0) * scale.factor)
+    return scale
+
+
+def legend(ax: Axes, runs: Sequence[Run]) -> None:
+    """Put the names of the runs above the axes, in the order of the dataset; a single run needs none."""
+    if len(runs) < 2:
+        return
+    handles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
+    shown = ax.legend(
+        [handles[run.label] for run in runs],
+        [run.label for run in runs],
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=len(runs) if max(len(run.label) for run in runs) < 12 else 3,
+        frameon=False,
+        borderaxespad=0.2,
+        handlelength=2.4,
+        columnspacing=1.2,
+        fontsize="small",
+    )
+    for handle in shown.get_lines():
+        handle.set_linewidth(2.0)
+
+
+def _label(label: Mapping[str, Any], run: xr.Dataset) -> str:
+    """Name a run by its swept values."""
+    words = []
+    for dim, value in label.items():
+        unit = run[dim].attrs.get("units", "1")
+        if dim == "sam_fraction":
+            words.append(f"SAM {100 * value:.4g} %")
+        elif isinstance(value, float) and unit != "1":
+            scale = (
+                scale_for(abs(value), unit)
+                if unit in ("m", "s", "Pa", "Hz", "N", "N m")
+                else Scale(1.0, unit)
+            )
+            words.append(f"{dim} {value * scale.factor:.4g} {scale.unit}")
+        else:
+            words.append(f"{dim} {value:g}" if isinstance(value, float) else f"{dim} {value}")
+    return ", ".join(words)
