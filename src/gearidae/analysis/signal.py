@@ -1,0 +1,275 @@
+"""Take signals out of datasets: uniform samples of one run each, in SI units, with what is known beside them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae.archive.variables import SAMPLES
+from gearidae.errors import SceneError
+from gearidae.records import EventKind, Flank
+from gearidae.scene.units import from_text
+
+__all__ = ["FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
+
+Floats = NDArray[np.float64]
+
+FEWEST_SAMPLES = 16
+"""A record shorter than this holds nothing to analyse."""
+_UNEVEN = 0.1
+"""Largest departure of a sample's time from the uniform grid, in sampling intervals."""
+_EXPONENT = re.compile(r"(?<=[A-Za-z])(-?\d)")
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """Uniform samples of one run.
+
+    Attributes
+    ----------
+    start : float
+        Time of the first sample [s].
+    interval : float
+        Time between samples [s].
+    values : ndarray, shape (n,)
+        Samples, finite; a run that ended early is cut where it ended.
+    exits : ndarray, shape (m,), or None
+        Times at which tooth pairs left the mesh on the drive flank [s]; None if no events are known.
+    gear_teeth : int or None
+        Teeth of the gear, if the scene is known.
+    """
+
+    start: float
+    interval: float
+    values: Floats
+    exits: Floats | None = None
+    gear_teeth: int | None = None
+
+    @property
+    def time(self) -> Floats:
+        """Sample times [s]."""
+        return np.asarray(self.start + self.interval * np.arange(len(self.values)), dtype=np.float64)
+
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]."""
+        return 1.0 / self.interval
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """All signals of a dataset, one for each point of its swept dimensions.
+
+    Attributes
+    ----------
+    name, units : str
+        Of the analysed variable.
+    dims : tuple of str
+        Swept dimensions; empty for a single run.
+    shape : tuple of int
+    coords : mapping
+        Coordinates of the swept dimensions, and scalar ones.
+    signals : tuple of Signal
+        In C order of `shape`.
+    """
+
+    name: str
+    units: str
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    coords: Mapping[str, xr.DataArray]
+    signals: tuple[Signal, ...]
+
+
+def signals(
+    data: xr.Dataset | xr.DataArray, variable: str = "gear_speed", gear_teeth: int | None = None
+) -> Batch:
+    """Take every run of a variable out of a dataset.
+
+    Parameters
+    ----------
+    data : Dataset or DataArray
+        From `simulate`, `sweep` or `open_archive`, a part of one, or measured samples along ``time`` [s]. Other
+        dimensions are runs. Units are read from the attribute ``units`` and are SI where there is none.
+    variable : str, optional
+        Which variable of a Dataset.
+    gear_teeth : int, optional
+        Teeth of the gear, in place of what the scene says.
+
+    Returns
+    -------
+    Batch
+
+    Raises
+    ------
+    SceneError
+        If the variable or its time is missing, or the time is not uniform.
+    """
+    if not isinstance(data, xr.Dataset | xr.DataArray):
+        raise SceneError("signal", type(data).__name__, "must be an xarray Dataset or DataArray")
+    array = data if isinstance(data, xr.DataArray) else data.get(variable)
+    if array is None:
+        known = ", ".join(str(name) for name in data if "time" in data[name].dims)
+        raise SceneError(
+            "variable", variable, f"there is none of that name along time; there is {known or 'none'}"
+        )
+    if "time" not in array.dims or "time" not in array.coords:
+        raise SceneError(
+            "signal", variable, "lacks the dimension time with the sample times as its coordinate"
+        )
+    name = variable if array.name is None else str(array.name)
+    units = SAMPLES[name].units if name in SAMPLES else str(array.attrs.get("units", "1"))
+    array = array.transpose(..., "time")
+    start, interval = _uniform(to_si(array["time"], "s", "time"))
+    samples = to_si(array, units, name)
+    dims = tuple(str(dim) for dim in array.dims[:-1])
+    teeth = gear_teeth if gear_teeth is not None else _gear_teeth(data.attrs)
+    exits = _exits_of(data, array, dims)
+    return Batch(
+        name=name,
+        units=units,
+        dims=dims,
+        shape=samples.shape[:-1],
+        coords={str(key): value for key, value in array.coords.items() if "time" not in value.dims},
+        signals=tuple(
+            Signal(start, interval, _finite(samples[place]), exits(place), teeth)
+            for place in np.ndindex(samples.shape[:-1])
+        ),
+    )
+
+
+def stack(
+    batch: Batch, dim: str, rows: Sequence[Floats], name: str, attrs: Mapping[str, Any]
+) -> xr.DataArray:
+    """Put one row of numbers per run together again; shorter rows are filled up with NaN.
+
+    Parameters
+    ----------
+    batch : Batch
+        Whose runs the rows belong to.
+    dim : str
+        Name of the new last dimension.
+    rows : sequence of ndarray
+        In the order of the runs.
+    name : str
+        Of the new variable.
+    attrs : mapping
+        Of the new variable.
+
+    Returns
+    -------
+    DataArray
+    """
+    longest = max((len(row) for row in rows), default=0)
+    filled = np.full((len(rows), longest), np.nan)
+    for target, row in zip(filled, rows, strict=True):
+        target[: len(row)] = row
+    return xr.DataArray(
+        filled.reshape(*batch.shape, longest),
+        dims=(*batch.dims, dim),
+        coords={key: value.variable for key, value in batch.coords.items()},
+        name=name,
+        attrs=dict(attrs),
+    )
+
+
+def to_si(array: xr.DataArray, units: str, key: str) -> Floats:
+    """Return the values of an array in SI units.
+
+    Parameters
+    ----------
+    array : DataArray
+        Its attribute ``units`` says what it is in; without one it is taken to be SI.
+    units : str
+        The SI unit wanted, as CF writes it (``rad s-1``).
+    key : str
+        How to call it in an error message.
+
+    Returns
+    -------
+    ndarray of float64
+
+    Raises
+    ------
+    SceneError
+        If the values are no numbers or the unit does not fit.
+    """
+    given = str(array.attrs.get("units", units))
+    if array.dtype.kind not in "fiu":
+        raise SceneError(key, array.dtype, "must be numbers")
+    values = array.values.astype(np.float64, copy=False)
+    if given == units:
+        return values
+    try:
+        return values * from_text(f"1 {_powers(given)}", "rad/s" if units == "rad s-1" else _powers(units))
+    except ValueError as error:
+        raise SceneError(key, f"in {given}", str(error)) from None
+
+
+def _powers(units: str) -> str:
+    """Write the exponents of a CF unit (``s-1``) as scenes do (``s^-1``)."""
+    return _EXPONENT.sub(r"^\1", units)
+
+
+def _uniform(time: Floats) -> tuple[float, float]:
+    """First time and interval of uniform sample times, which may be rounded."""
+    if len(time) < FEWEST_SAMPLES:
+        raise SceneError("time", f"({len(time)} samples)", f"a record needs {FEWEST_SAMPLES} samples or more")
+    if not np.isfinite(time).all():
+        raise SceneError("time", "(nan)", "must be finite numbers")
+    interval = (time[-1] - time[0]) / (len(time) - 1)
+    if not interval > 0.0:
+        raise SceneError("time", f"{time[0]:g}..{time[-1]:g} s", "must increase")
+    late = np.abs(time - (time[0] + interval * np.arange(len(time))))
+    if late.max() > _UNEVEN * interval:
+        worst = int(late.argmax())
+        raise SceneError(
+            "time", f"{time[worst]:.9g} s", f"sample {worst} is off the uniform grid of {interval:.6g} s"
+        )
+    return float(time[0]), float(interval)
+
+
+def _finite(values: Floats) -> Floats:
+    """Cut a record at its first missing sample."""
+    missing = ~np.isfinite(values)
+    return values[: int(missing.argmax())] if missing.any() else values
+
+
+def _gear_teeth(attrs: Mapping[Any, Any]) -> int | None:
+    """Teeth of the gear from the scene among the attributes."""
+    try:
+        return int(json.loads(attrs["scene"])["gears"]["gear_teeth"])
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def _exits_of(
+    data: xr.Dataset | xr.DataArray, array: xr.DataArray, dims: tuple[str, ...]
+) -> Callable[[tuple[int, ...]], Floats | None]:
+    """Return what tells the mesh exits of the run at a place among the swept dimensions."""
+    names = ("event_time", "event_kind", "event_flank")
+    if not isinstance(data, xr.Dataset) or not all(name in data for name in names):
+        return lambda _: None
+    time, kind, flank = (data[name].values for name in names)
+    leaving = (kind == EventKind.MESH_EXIT) & (flank == Flank.DRIVE)
+    labels = {
+        str(key): data[f"event_{key}"].values
+        for key in array.coords
+        if f"event_{key}" in data and key != "time"
+    }
+
+    def exits(place: tuple[int, ...]) -> Floats | None:
+        run = array.isel(dict(zip(dims, place, strict=True)))
+        own = leaving.copy()
+        for key, label in labels.items():
+            own &= label == run[key].item()
+        return np.asarray(time[own], dtype=np.float64)
+
+    return exits

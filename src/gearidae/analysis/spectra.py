@@ -1,0 +1,176 @@
+r"""Spectra of whole records: power spectral density and spectrogram, by `scipy.signal`.
+
+Both are one-sided densities: integrated over frequency they give the variance of the signal,
+
+.. math::
+
+    \int_0^{f_s/2} S(f)\, \mathrm{d}f = \overline{(x - \bar x)^2},
+
+whatever the window. Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Figs. 6 and 9.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy import signal as dsp
+
+from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, Floats, signals, stack
+from gearidae.errors import SceneError
+
+__all__ = ["power_spectrum", "spectrogram"]
+
+_PIECES = 64
+"""A spectrogram's segment is this part of the record unless asked for otherwise."""
+
+
+def power_spectrum(
+    data: xr.Dataset | xr.DataArray,
+    variable: str = "gear_speed",
+    *,
+    segment: float | None = None,
+    window: str = "hann",
+) -> xr.DataArray:
+    """Power spectral density by Welch's method (Teodorescu et al. 2009, Fig. 6).
+
+    Parameters
+    ----------
+    data : Dataset or DataArray
+        Samples along ``time``; other dimensions are runs. ``data.sel(time=slice(...))`` picks a part.
+    variable : str, optional
+        Which variable of a Dataset.
+    segment : float, optional
+        Length of the segments that are averaged, overlapping by half [s]; by default half the record. Lines closer
+        than about two over this length are not told apart.
+    window : str, optional
+        Taper, by its scipy name.
+
+    Returns
+    -------
+    DataArray, dims (..., frequency)
+        One-sided density [unit of the signal squared per Hz] over ``frequency`` [Hz]. Attributes say how it was
+        made: ``sampling_rate`` [Hz], ``window``, ``segment_length`` [s], ``overlap`` [1]. NaN for runs shorter than
+        a segment.
+
+    Raises
+    ------
+    SceneError
+        If the variable is missing, the time is not uniform, or the segment or the window is not allowed.
+    """
+    batch = signals(data, variable)
+    size, rate = _segment(batch, segment, 0.5), batch.signals[0].rate
+    taper = _taper(window, size)
+    rows = [
+        dsp.welch(each.values, rate, window=taper, noverlap=size // 2, detrend="constant")[1]
+        if len(each.values) >= size
+        else np.full(size // 2 + 1, np.nan)
+        for each in batch.signals
+    ]
+    spectrum = stack(
+        batch, "frequency", rows, f"{batch.name}_power_spectrum", _attributes(batch, window, size, 0.5)
+    )
+    return spectrum.assign_coords(frequency=_frequency(size, 1.0 / rate))
+
+
+def spectrogram(
+    data: xr.Dataset | xr.DataArray,
+    variable: str = "gear_speed",
+    *,
+    segment: float | None = None,
+    overlap: float = 0.75,
+    window: str = "hann",
+) -> xr.DataArray:
+    """Power spectral density over time.
+
+    Parameters
+    ----------
+    data : Dataset or DataArray
+        Samples along ``time``; other dimensions are runs.
+    variable : str, optional
+        Which variable of a Dataset.
+    segment : float, optional
+        Length of the segments [s]; by default 1/64 of the record.
+    overlap : float, optional
+        Part of a segment shared with the next, 0 <= overlap < 1.
+    window : str, optional
+        Taper, by its scipy name.
+
+    Returns
+    -------
+    DataArray, dims (..., frequency, time)
+        One-sided density [unit of the signal squared per Hz]; ``time`` [s] is the middle of each segment, the mean
+        of which is taken out. Attributes as for `power_spectrum`.
+
+    Raises
+    ------
+    SceneError
+        If the variable is missing, the time is not uniform, or a setting is not allowed.
+    """
+    if not 0.0 <= overlap < 1.0:
+        raise SceneError("overlap", overlap, "must lie in 0..1, below 1")
+    batch = signals(data, variable)
+    first = batch.signals[0]
+    size = _segment(batch, segment, 1.0 / _PIECES)
+    shared = min(size - 1, round(overlap * size))
+    taper = _taper(window, size)
+    longest = max(len(each.values) for each in batch.signals)
+    columns = 1 + (longest - size) // (size - shared)
+    made = np.full((len(batch.signals), size // 2 + 1, columns), np.nan)
+    for target, each in zip(made, batch.signals, strict=True):
+        if len(each.values) >= size:
+            density = dsp.spectrogram(
+                each.values, first.rate, window=taper, noverlap=shared, detrend="constant", mode="psd"
+            )[2]
+            target[:, : density.shape[1]] = density
+    middle = first.start + first.interval * (0.5 * size + (size - shared) * np.arange(columns))
+    return xr.DataArray(
+        made.reshape(*batch.shape, *made.shape[1:]),
+        dims=(*batch.dims, "frequency", "time"),
+        coords={
+            **{key: value.variable for key, value in batch.coords.items()},
+            "frequency": _frequency(size, first.interval),
+            "time": xr.Variable("time", middle, {"units": "s", "long_name": "middle of the segment"}),
+        },
+        name=f"{batch.name}_spectrogram",
+        attrs=_attributes(batch, window, size, shared / size),
+    )
+
+
+def _segment(batch: Batch, length: float | None, part: float) -> int:
+    """Samples per segment."""
+    interval = batch.signals[0].interval
+    longest = max(len(each.values) for each in batch.signals)
+    size = max(FEWEST_SAMPLES, int(part * longest)) if length is None else round(length / interval)
+    if not FEWEST_SAMPLES <= size <= longest:
+        given = f"({longest} samples)" if length is None else f"{length:g} s"
+        shortest, whole = FEWEST_SAMPLES * interval, longest * interval
+        raise SceneError("segment", given, f"must lie in {shortest:.4g}..{whole:.4g} s, the record's length")
+    return size
+
+
+def _taper(window: str, size: int) -> Floats:
+    try:
+        return np.asarray(dsp.get_window(window, size), dtype=np.float64)
+    except (ValueError, TypeError):
+        raise SceneError("window", window, "is no window that scipy.signal knows by name") from None
+
+
+def _frequency(size: int, interval: float) -> xr.Variable:
+    frequency = np.fft.rfftfreq(size, interval)
+    return xr.Variable("frequency", frequency, {"units": "Hz", "long_name": "frequency"})
+
+
+def _attributes(batch: Batch, window: str, size: int, overlap: float) -> dict[str, Any]:
+    interval = batch.signals[0].interval
+    return {
+        "long_name": f"power spectral density of {batch.name}",
+        "units": f"({batch.units})2 Hz-1",
+        "sampling_rate": 1.0 / interval,
+        "window": window,
+        "segment_length": size * interval,
+        "overlap": overlap,
+        "resolution": 1.0 / (size * interval),
+        "scaling": "density, one-sided; the mean of each segment is taken out",
+    }
