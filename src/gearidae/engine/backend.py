@@ -5,19 +5,22 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator
+from functools import cache
+from importlib import import_module
 from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.compiled import cache_folder
 from gearidae.engine.problem import Problem, make_problem
 from gearidae.engine.run import Block, Tally
 from gearidae.engine.sundials import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import Events, Solution, Statistics
-from gearidae.scene import Scene
+from gearidae.scene import Scene, preset
 
-__all__ = ["choose_backend", "run_blocks", "solve"]
+__all__ = ["choose_backend", "ready_driver", "run_blocks", "solve"]
 
 log = logging.getLogger(__name__)
 
@@ -48,15 +51,20 @@ def choose_backend(backend: str = "auto") -> str:
     return "sksundae"
 
 
-def _driver(backend: str) -> ModuleType:
-    # imported late: the native driver compiles its callbacks, or reads them from disk, when it is imported
-    if backend == "native":
-        from gearidae.engine import native
+@cache
+def ready_driver(backend: str) -> ModuleType:
+    """Import a driver and have all of it compiled, or read from disk, by a run of one step.
 
-        return native
-    from gearidae.engine import portable
-
-    return portable
+    The first time on a machine this takes some 20 seconds, which is said.
+    """
+    if not any(cache_folder().rglob("*.nbi")):
+        log.warning("compiling the solver for this machine: once, some 20 seconds")
+    # imported late: the native driver compiles its callbacks when it is imported
+    driver = import_module(f"gearidae.engine.{'native' if backend == 'native' else 'portable'}")
+    tiny = make_problem(preset("roller_slow").replace({"run.duration": 1e-9}))
+    for _ in driver.run(tiny, 1e-3, 2, Tally()):
+        pass
+    return driver
 
 
 def run_blocks(
@@ -83,7 +91,7 @@ def run_blocks(
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to go on from.
     """
-    blocks: Iterator[Block] = _driver(backend).run(problem, rtol, samples, tally, resume)
+    blocks: Iterator[Block] = ready_driver(backend).run(problem, rtol, samples, tally, resume)
     return blocks
 
 
@@ -121,6 +129,7 @@ def solve(
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
     name = choose_backend(backend)
+    ready_driver(name)
     problem = make_problem(scene)
     tally, rows, events, seen = Tally(), [], [], 0
     started = time.perf_counter()

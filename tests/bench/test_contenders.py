@@ -1,0 +1,78 @@
+"""Every contender solves the same problem: on a roller's impact with history all agree with the reference."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearidae.bench import SCENES
+from gearidae.bench.benchmark import all_contenders
+from gearidae.bench.c_loop import c_contenders
+from gearidae.bench.contender import engine_contenders
+from gearidae.bench.error import run_error
+from gearidae.bench.loop import FAILED, run_dop853, run_gauss, run_rk4
+from gearidae.bench.reference import find_reference
+from gearidae.engine.problem import make_problem
+
+BENCH = SCENES["roller_slow_bare"]
+PROBLEM = make_problem(BENCH.scene)
+TIMES = np.linspace(0.0, PROBLEM.end, BENCH.scene.run.samples)
+
+
+def fresh(problem=PROBLEM):
+    return replace(problem, data=problem.data.copy(), start=problem.start.copy())
+
+
+@pytest.mark.parametrize("contender", all_contenders(), ids=lambda c: c.key)
+def test_contender_agrees_with_the_reference(contender):
+    if reason := contender.unavailable():
+        pytest.skip(reason)
+    tolerance = contender.ladder[5]
+    outcome = contender.run(fresh(), tolerance, TIMES)
+    reference = find_reference(BENCH)
+    error = run_error(reference.speed, reference.position, outcome.speed, outcome.position, reference.length)
+    # tolerances are local, per step: some hundred steps and the impact's amplification come on top. What this would
+    # show is another problem solved (wrong history, samples or units), with errors of 1e-2 and more
+    assert error < 1e-3
+    assert outcome.steps > 0
+
+
+def test_the_c_loop_takes_the_native_steps():
+    native, c_loop = engine_contenders()[0], c_contenders()[0]
+    if reason := native.unavailable() or c_loop.unavailable():
+        pytest.skip(reason)
+    ours, theirs = native.run(fresh(), 1e-6, TIMES), c_loop.run(fresh(), 1e-6, TIMES)
+    assert (ours.steps, ours.evaluations) == (theirs.steps, theirs.evaluations)
+    np.testing.assert_allclose(ours.speed, theirs.speed, rtol=1e-12)
+
+
+def smooth_problem():
+    """A roller whose asperities do not adhere: no stretch, hence no kinks."""
+    scene = BENCH.scene.replace({"contact.asperity": "hertz", "run.samples": 11, "run.duration": 6e-6})
+    return make_problem(scene)
+
+
+def end_state(run, *arguments):
+    problem = smooth_problem()
+    counts, y = np.zeros(4, np.int64), problem.start
+    times = np.array([0.0, problem.end])
+    run(problem.data, y, problem.end, times, np.zeros((2, y.size)), *arguments, counts)
+    assert counts[FAILED] == 0
+    return y
+
+
+def test_rk4_is_of_order_four():
+    exact = end_state(run_gauss, smooth_problem().tolerance_scale, 1e-13)
+    errors = [np.abs(end_state(run_rk4, step) - exact).max() for step in (0.04, 0.02, 0.01)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders == pytest.approx(
+        4.0, abs=0.35
+    )  # the steps are not yet so small that only the leading term counts
+
+
+def test_dop853_and_gauss_agree_on_a_smooth_problem():
+    scale = smooth_problem().tolerance_scale
+    exact = end_state(run_gauss, scale, 1e-13)
+    for land in (False, True):
+        other = end_state(run_dop853, 1e-12 * scale, land)
+        assert np.abs(other - exact).max() < 1e-9  # a thousand times the local tolerance
