@@ -1,0 +1,84 @@
+"""The scenes of the benchmark, and what counts as an error of 1 on each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from gearidae.errors import SceneError
+from gearidae.scene import Scene, preset
+
+__all__ = ["SCENES", "BenchScene", "find_scenes"]
+
+SAMPLES: Final = 201
+
+
+@dataclass(frozen=True, slots=True)
+class BenchScene:
+    """A scene that run time against error is measured on.
+
+    Attributes
+    ----------
+    name : str
+        Short name: what ``--scenes`` takes, and part of file names.
+    title : str
+        For tables and pictures.
+    scene : Scene
+        With `SAMPLES` samples.
+    """
+
+    name: str
+    title: str
+    scene: Scene
+
+
+def _scene(name: str, title: str, start: str, changes: Mapping[str, float]) -> BenchScene:
+    scene = preset(start).replace({**changes, "run.samples": SAMPLES})
+    return BenchScene(name, title, scene)
+
+
+_LOW, _HIGH = "teodorescu2009_low_speed", "teodorescu2009"
+
+SCENES: Final[Mapping[str, BenchScene]] = {
+    s.name: s
+    for s in (
+        _scene("low_sam", "low speed, whole SAM, 50 ms", _LOW, {"run.duration": 0.05}),
+        _scene(
+            "low_worn",
+            "low speed, 60 % SAM, 50 ms",
+            _LOW,
+            {"run.duration": 0.05, "coating.sam_fraction": 0.6},
+        ),
+        _scene("high_sam", "high speed, whole SAM, 0.5 ms", _HIGH, {"run.duration": 0.5e-3}),
+        _scene(
+            "high_bare",
+            "high speed, bare silicon, 0.5 ms",
+            _HIGH,
+            {"run.duration": 0.5e-3, "coating.sam_fraction": 0.0},
+        ),
+        _scene(
+            "roller_slow_sam", "roller at 0.01 m/s, whole SAM", "roller_slow", {"coating.sam_fraction": 1.0}
+        ),
+        _scene("roller_slow_bare", "roller at 0.01 m/s, bare silicon", "roller_slow", {}),
+        _scene(
+            "roller_fast_sam", "roller at 0.1 m/s, whole SAM", "roller_fast", {"coating.sam_fraction": 1.0}
+        ),
+        _scene("roller_fast_bare", "roller at 0.1 m/s, bare silicon", "roller_fast", {}),
+    )
+}
+"""All scenes by name, in the order of the tables."""
+
+
+def find_scenes(names: tuple[str, ...]) -> tuple[BenchScene, ...]:
+    """Look scenes up; no names mean all.
+
+    Raises
+    ------
+    SceneError
+        If there is no scene of that name.
+    """
+    for name in names:
+        if name not in SCENES:
+            raise SceneError("scenes", name, f"no such benchmark scene; known are {', '.join(SCENES)}")
+    return tuple(SCENES[name] for name in names or SCENES)
