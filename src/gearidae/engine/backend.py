@@ -156,7 +156,7 @@ def solve(
             guard_evaluations=tally.guard_evaluations,
             wall_time=wall_time,
             backend=name,
-            skipped=problem.skipped,
+            skipped=problem.skipped | {"flight_steps": tally.flight_steps},
         ),
         status=tally.ending.status,
         message=tally.ending.message,

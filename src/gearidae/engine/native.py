@@ -65,8 +65,9 @@ CONTEXT, SOLVER, Y, YP, DKY, TOLERANCES, MATRIX, LINEAR, HANDLES = range(9)
     RESTARTS,
     GUARD_CALLS,
     SINCE,
+    FLIGHT,
     PROGRESS,
-) = range(15)
+) = range(16)
 CHATTER = 1  # progress[ERROR] when events crowd; negative numbers are IDA's own
 
 
@@ -293,6 +294,8 @@ def advance(
             break
         progress[PENDING] = 0
         accept(d, t, y)
+        if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:
+            progress[FLIGHT] += 1
         restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
         if flag == sun.IDA_ROOT_RETURN:
             progress[EVENTS], action = handle(d, t, y, events, progress[EVENTS])
@@ -399,4 +402,5 @@ def _fill_tally(tally: Tally, progress: Ints) -> None:
     tally.convergence_failures = int(progress[CONVERGENCE_FAILURES])
     tally.restarts = int(progress[RESTARTS])
     tally.guard_evaluations = int(progress[GUARD_CALLS])
+    tally.flight_steps = int(progress[FLIGHT])
     tally.ending = ending_of_flag(int(progress[ERROR]))

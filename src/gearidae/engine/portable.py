@@ -43,7 +43,7 @@ _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third
 
 
 # The run's counters, kept in checkpoints.
-_NEXT_SAMPLE, _STEPS, _RESIDUALS, _JACOBIANS, _GUARD_CALLS, _RESTARTS, _COUNTERS = range(7)
+_NEXT_SAMPLE, _STEPS, _RESIDUALS, _JACOBIANS, _GUARD_CALLS, _RESTARTS, _FLIGHT, _COUNTERS = range(8)
 
 
 def run(
@@ -57,7 +57,7 @@ def run(
         t = problem.restore(resume, y, counters)
         output.next_sample = int(counters[_NEXT_SAMPLE])
         tally.steps, tally.residual_evaluations, tally.jacobian_evaluations = map(int, counters[1:4])
-        tally.guard_evaluations, tally.restarts = map(int, counters[4:])
+        tally.guard_evaluations, tally.restarts, tally.flight_steps = map(int, counters[4:])
     else:
         output.sample(t, y, _Trail(t, y, y))
     knots = [*problem.knots[int(d[at.NEXT_KNOT]) :], problem.end]
@@ -75,6 +75,7 @@ def run(
         tally.steps += flag != _ROOT
         yield from output.sample(t, y, trail)
         accept(d, t, y)
+        tally.flight_steps += d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
         restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
         if flag == _ROOT:
             solver.forget_events()
@@ -111,6 +112,7 @@ def _checkpoint(problem: Problem, t: float, y: Floats, output: _Output, tally: T
         tally.jacobian_evaluations,
         tally.guard_evaluations,
         tally.restarts,
+        tally.flight_steps,
     ]
     return problem.checkpoint(t, y, np.array(counters, np.int64))
 

@@ -97,6 +97,7 @@ class Tally:
     convergence_failures: int = 0
     restarts: int = 0
     guard_evaluations: int = 0
+    flight_steps: int = 0
     ending: Ending = field(default=Ending.FINISHED)
 
 
