@@ -1,13 +1,22 @@
-"""Reading signals: spectra, mesh impacts, and the state of the coating from them."""
+"""Reading signals: spectra, mesh impacts, and the state of the coating from them.
 
-from gearidae.analysis.assess import Assessment, assess
-from gearidae.analysis.impacts import impact_windows
-from gearidae.analysis.maps import coating_map, open_map
-from gearidae.analysis.measured import read_signal
-from gearidae.analysis.resting import contact_resonance
-from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies, impact_spectrum
-from gearidae.analysis.spectra import power_spectrum, spectrogram
-from gearidae.analysis.starting import starting_torque, static_starting_torque
+Names are loaded on first use, so that drawing and reading do not wait for the solver.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gearidae.analysis.assessment import Assessment, assess
+    from gearidae.analysis.impacts import impact_windows
+    from gearidae.analysis.maps import coating_map, open_map
+    from gearidae.analysis.measured import read_signal
+    from gearidae.analysis.resting import contact_resonance
+    from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies, impact_spectrum
+    from gearidae.analysis.spectra import power_spectrum, spectrogram
+    from gearidae.analysis.starting import starting_torque, static_starting_torque
 
 __all__ = [
     "Assessment",
@@ -25,3 +34,34 @@ __all__ = [
     "starting_torque",
     "static_starting_torque",
 ]
+
+_HOME = {
+    "Assessment": "assessment",
+    "assess": "assessment",
+    "characteristic_frequency": "ringing",
+    "coating_map": "maps",
+    "contact_resonance": "resting",
+    "impact_frequencies": "ringing",
+    "impact_spectrum": "ringing",
+    "impact_windows": "impacts",
+    "open_map": "maps",
+    "power_spectrum": "spectra",
+    "read_signal": "measured",
+    "spectrogram": "spectra",
+    "starting_torque": "starting",
+    "static_starting_torque": "starting",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name on first use (PEP 562)."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'gearidae.analysis' has no attribute {name!r}")
+    value = getattr(import_module(f"gearidae.analysis.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """List the public names, loaded or not."""
+    return sorted({*globals(), *_HOME})

@@ -22,7 +22,6 @@ from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.scene import describe_key
-from gearidae.sweeping import sweep
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -36,7 +35,7 @@ _VARIABLES = (
     "uncertainty",
     "impact_frequency",
     "impact_uncertainty",
-    "gear_speed",
+    "median_gear_speed",
 )
 _SPEED = {
     "units": "rad s-1",
@@ -80,7 +79,7 @@ def coating_map(
     -------
     Dataset, dims (..., sam_fraction, impact)
         ``characteristic_frequency`` and its standard ``uncertainty`` [Hz], of the first impact; ``impact_frequency``
-        and ``impact_uncertainty`` [Hz] of each; ``gear_speed`` (median) and ``min_gear_speed`` [rad/s]. NaN where
+        and ``impact_uncertainty`` [Hz] of each; ``median_gear_speed`` and ``min_gear_speed`` [rad/s]. NaN where
         nothing rings or a run could not go on. The scene and how it was made are attributes.
 
     Raises
@@ -94,6 +93,8 @@ def coating_map(
     >>> scene = gd.preset("teodorescu2009_low_speed")
     >>> chart = gd.analysis.coating_map(scene, [1.0, 0.8, 0.6, 0.5])  # doctest: +SKIP
     """
+    from gearidae.sweeping import sweep  # reading and drawing maps must not wait for the solver
+
     if getattr(scene, "gears", None) is None:
         raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
     fractions = _fractions(sam_fraction)
@@ -200,7 +201,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
             "uncertainty": first["uncertainty"].drop_vars(["uncertainty", "impacts"]),
             "impact_frequency": impacts["frequency"],
             "impact_uncertainty": impacts["uncertainty"],
-            "gear_speed": runs["gear_speed"].median("time").assign_attrs(_SPEED),
+            "median_gear_speed": runs["gear_speed"].median("time").assign_attrs(_SPEED),
             "min_gear_speed": runs["gear_speed"].min("time").assign_attrs(_SLOWEST),
         },
         attrs=impacts.attrs,

@@ -143,6 +143,8 @@ def _segment(batch: Batch, length: float | None, part: float) -> int:
     interval = batch.signals[0].interval
     longest = max(len(each.values) for each in batch.signals)
     size = max(FEWEST_SAMPLES, int(part * longest)) if length is None else round(length / interval)
+    if size == longest + 1:  # n samples span n - 1 intervals: "the whole record" may mean either
+        size = longest
     if not FEWEST_SAMPLES <= size <= longest:
         given = f"({longest} samples)" if length is None else f"{length:g} s"
         shortest, whole = FEWEST_SAMPLES * interval, longest * interval

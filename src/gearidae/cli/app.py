@@ -75,15 +75,19 @@ def sweep(
 
 @app.command
 def plot(
-    archive: Annotated[Path, Parameter(help="Archive to draw.")],
+    archive: Annotated[Path, Parameter(help="Archive or coating map to draw.")],
     *,
+    picture: Annotated[
+        str | None,
+        Parameter(help="One picture, such as power_spectrum or impact_spectrum; by default an overview."),
+    ] = None,
     output: Output = None,
     overwrite: Overwrite = False,
 ) -> int:
-    """Draw an archive: speed and contact torque of gears, force and gap of a roller."""
+    """Draw an archive: speed and contact torque of gears, force and gap of a roller, or any other picture."""
     from gearidae.cli.files import draw
 
-    return draw(archive, output, overwrite=overwrite)
+    return draw(archive, picture, output, overwrite=overwrite)
 
 
 @app.command(name="coating-map")

@@ -60,13 +60,15 @@ def write_case(name: str, preset: str) -> int:
     return DONE
 
 
-def draw(archive: Path, output: Path | None, *, overwrite: bool) -> int:
-    """Draw an archive into an image file.
+def draw(archive: Path, picture: str | None, output: Path | None, *, overwrite: bool) -> int:
+    """Draw an archive or a coating map into an image file.
 
     Parameters
     ----------
     archive : Path
         What to draw.
+    picture : str or None
+        Name of a function of `gearidae.plot`; None for the overview, or the map.
     output : Path or None
         Image to write, its kind told by its ending (PNG, PDF, SVG); None for the archive's name with
         ``.png``.
@@ -81,13 +83,33 @@ def draw(archive: Path, output: Path | None, *, overwrite: bool) -> int:
     Raises
     ------
     SceneError
-        If the archive cannot be read or the image cannot be written.
+        If the archive cannot be read, there is no such picture of it, or the image cannot be written.
     """
-    ds = gd.open_archive(archive)
+    from matplotlib.figure import Figure
+
+    pictures = [name for name in gd.plot.__all__ if name != "write"]
+    if picture is not None and picture not in pictures:
+        raise SceneError("--picture", picture, f"must be one of {', '.join(pictures)}")
+    ds, usual = _open(archive)
     target = output or default_output(str(archive), ".png")
-    gd.plot.write(gd.plot.overview(ds), target, overwrite=overwrite)
+    drawn = getattr(gd.plot, picture or usual)(ds)
+    figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
+    assert figure is not None
+    gd.plot.write(figure, target, overwrite=overwrite)
     say(f"Picture: {target}")
     return DONE
+
+
+def _open(archive: Path) -> tuple[xr.Dataset, str]:
+    """Dataset of a file, and the picture that says most about it."""
+    try:
+        return gd.open_archive(archive), "overview"
+    except SceneError:
+        try:
+            return gd.analysis.open_map(archive), "coating_map"
+        except SceneError:
+            pass
+        raise
 
 
 def describe(archive: Path) -> int:

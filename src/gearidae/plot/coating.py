@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
-from gearidae.analysis.assess import Assessment
+from gearidae.analysis.assessment import Assessment
 from gearidae.analysis.maps import require_map
 from gearidae.errors import SceneError
 from gearidae.plot.style import new_axes, scale_for, tidy

@@ -43,7 +43,9 @@ _WITHIN = 3.84
 """Rise of chi-square within the 95 % interval (one parameter)."""
 _FITS = 9.0
 """Largest chi-square for each impact of a signal that the map explains: three standard uncertainties."""
-_PLAIN = 0.2
+_FEWEST_LEFT = 3
+"""Impacts needed beside one that is left out."""
+_PLAIN = 0.1
 """Intervals wider than this say nothing about the coating."""
 _GAP = 0.02
 """Fractions further apart than this, with none in between that explains the signal, are different answers."""
@@ -179,7 +181,7 @@ def assess(
     fits = [
         _fit(fractions, sequences, numbers[skip:], np.log(measured[skip:]), spread[skip:], free=free)
         for skip, free in suppositions
-        if len(numbers) > 2 * skip or not skip
+        if not skip or len(numbers) >= _FEWEST_LEFT + skip
     ]
     fit = next((each for each in fits if each.explains), fits[0])
     return _judge(fit, chart, frequencies, measured, float(np.median(one.values)), one.rate, sequences)
@@ -306,7 +308,7 @@ def _judge(
     spacing = float(fractions[1] - fractions[0])
     low, high = max(float(fractions[0]), low - spacing), min(float(fractions[-1]), high + spacing)
     fraction = float(fractions[best])
-    known = chart["gear_speed"].dropna("sam_fraction")
+    known = chart["median_gear_speed"].dropna("sam_fraction")
     expected = float(np.interp(fraction, known["sam_fraction"].values, known.values))
     if abs(speed - expected) > _SPEEDS * expected:
         why = (
@@ -324,6 +326,8 @@ def _judge(
         return Assessment(math.nan, low, high, "ambiguous", why, frequencies, fit.history)
     since = "counted from the start" if fit.history == "start" else "the start not being in the record"
     why = f"SAM fraction {fraction:.3f} (95 %: {low:.3f} to {high:.3f}); impacts ring at {heard} Hz, {since}{too_slow}"
+    if low == fractions[0] > 0.0:
+        why += "; the map ends there, and less could be left"
     return Assessment(fraction, low, high, "clear", why, frequencies, fit.history)
 
 

@@ -1,0 +1,185 @@
+"""Maps and what is asked of them: plain answers where a signal cannot tell, named errors where input is wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearidae as gd
+from gearidae.analysis import assess, coating_map, open_map
+from gearidae.archive import save
+
+SCENE = gd.preset("teodorescu2009_low_speed")
+
+
+@pytest.fixture(scope="module")
+def chart():
+    return coating_map(SCENE, [1.0, 0.9, 0.8, 0.7, 0.6])
+
+
+@pytest.fixture(scope="module")
+def worn():
+    return gd.simulate(SCENE.replace({"coating.sam_fraction": 0.65}))
+
+
+def test_map_rises_as_the_coating_wears(chart):
+    frequency = chart.characteristic_frequency
+    assert frequency.dims == ("sam_fraction",)
+    assert (np.diff(frequency.values) > 0.0).all()
+    first = chart.impact_frequency.isel(impact=0)
+    assert np.array_equal(first, frequency)
+    assert chart.attrs["title"].endswith("coating map")
+    assert (chart.min_gear_speed > 0.0).all()
+
+
+def test_map_over_torque_has_a_line_for_each():
+    both = coating_map(SCENE, [1.0, 0.8], over={"drive.torque": ["4.5e-18 N m", 9e-18]})
+    assert both.impact_frequency.dims == ("torque", "sam_fraction", "impact")
+    assert list(both.torque.values) == [4.5e-18, 9e-18]
+    assert both.torque.attrs["units"] == "N m"
+    # Stiffness goes with load, see test_ringing; a worn contact remembers the first touch, which is much the same.
+    ratio = both.characteristic_frequency.isel(torque=1) / both.characteristic_frequency.isel(torque=0)
+    assert float(ratio.sel(sam_fraction=1.0)) == pytest.approx(np.sqrt(2.0), rel=0.05)
+    assert 1.1 < float(ratio.sel(sam_fraction=0.8)) < np.sqrt(2.0)
+    with pytest.raises(gd.SceneError, match=r"pick the signal's with .sel\(torque=...\)"):
+        assess(gd.simulate(SCENE), both)
+    assert assess(gd.simulate(SCENE), both.sel(torque=4.5e-18)).sam_fraction == pytest.approx(1.0, abs=0.01)
+
+
+def test_map_survives_the_disk(chart, tmp_path):
+    save(chart, tmp_path / "map.nc")
+    assert open_map(tmp_path / "map.nc").identical(chart)
+
+
+def test_assessment_reads_as_a_sentence(chart, worn):
+    found = assess(worn, chart)
+    assert found.conclusive
+    assert found.sam_fraction == pytest.approx(0.65, abs=0.005)  # between the map's points 0.1 apart
+    assert found.low < found.sam_fraction < found.high
+    assert found.uncertainty == 0.25 * (found.high - found.low)
+    assert str(found).startswith("SAM fraction 0.6")
+
+
+def test_signal_files(chart, worn, tmp_path):
+    reference = assess(worn.gear_speed, chart)
+    save(worn, tmp_path / "run.nc")
+    assert assess(tmp_path / "run.nc", chart) == assess(worn, chart)
+    columns = np.column_stack([worn.time * 1e3, np.zeros(worn.sizes["time"]), worn.gear_speed * 30.0 / np.pi])
+    for name, separator in (("comma.csv", ","), ("semicolon.csv", ";"), ("tab.txt", "\t")):
+        heading = separator.join(["# from the rig\ntime [ms]", "other", "gear_speed (rpm)"])
+        np.savetxt(tmp_path / name, columns, fmt="%.10g", delimiter=separator, header=heading, comments="")
+        found = assess(str(tmp_path / name), chart)
+        assert found.frequencies[:5] == pytest.approx(reference.frequencies[:5], rel=1e-4)
+
+
+def test_one_impact_of_a_worn_contact_is_ambiguous_without_its_history(worn):
+    one = worn.gear_speed.sel(time=slice(0.18, 0.22))
+    found = assess(one, coating_map(SCENE, [0.8, 0.7, 0.6, 0.5]), history="unknown")
+    assert found.verdict == "ambiguous"
+    assert np.isnan(found.sam_fraction)
+    assert found.low < 0.65 < found.high
+
+
+@pytest.mark.parametrize(
+    ("change", "verdict", "words"),
+    [
+        ({"coating.sam_fraction": 0.5}, "outside the map", "higher than the map's most worn coating"),
+        ({"drive.torque": 2e-18}, "outside the map", "lower than anything in the map"),
+        ({"load.drag": 4e-18, "initial.gear_speed": 2.12}, "does not fit", "rad/s where the map has 1.5"),
+        ({"run.duration": 0.02}, "no impacts", "does not turn through a mesh impact"),
+    ],
+)
+def test_what_a_signal_cannot_tell_is_said(change, verdict, words, chart):
+    found = assess(gd.simulate(SCENE.replace(change)), chart)
+    assert found.verdict == verdict, found
+    assert not found.conclusive
+    assert np.isnan(found.sam_fraction)
+    assert words in found.explanation
+
+
+def test_noise_alone_has_no_impacts(chart, worn):
+    noise = xr.full_like(worn.gear_speed, 1.5) + 1e-2 * np.random.default_rng(0).standard_normal(
+        worn.sizes["time"]
+    )
+    found = assess(noise, chart)
+    assert found.verdict == "no impacts"
+    assert "above the noise" in found.explanation
+
+
+def test_slow_sampling_is_pointed_out(chart, worn):
+    found = assess(worn.gear_speed.isel(time=slice(None, None, 13)), chart)  # 7.7 kHz
+    assert "sampled at 7.69e+03 Hz" in found.explanation
+
+
+HEADING = "time [s], gear_speed [rad/s]"
+ROWS = "\n".join(f"{n * 1e-4:.4f}, 1.5" for n in range(20))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "is empty"),
+        (f"time, gear_speed\n{ROWS}", "'time' states no unit"),
+        (f"time [s], gear_speed []\n{ROWS}", "'gear_speed' states no unit"),
+        (f"time [s], other [m]\n{ROWS}", "has no column gear_speed"),
+        (f"time [s], gear_speed [flurb]\n{ROWS}", "is not a known unit"),
+        (f"time [s], gear_speed [m/s]\n{ROWS}", "does not fit"),
+        (f"time [s], gear_speed [rad/s], speed [rad/s]\n{ROWS}", "two columns for gear_speed"),
+        (f"{HEADING}\n{ROWS}\n0.002, fast", "line 22: gear_speed is 'fast', not a number"),
+        (f"{HEADING}\n{ROWS}\n0.002", "line 22: gear_speed is 'nothing', not a number"),
+        (f"{HEADING}\n{ROWS}\n0.002, nan", "line 22: every number must be finite"),
+        (f"{HEADING}\n{ROWS}\n0.1, 1.5", "off the uniform grid"),
+        (f"{HEADING}\n0, 1.5", "16 samples or more"),
+    ],
+)
+def test_bad_files_are_refused_with_a_reason(text, message, chart, tmp_path):
+    path = tmp_path / "signal.csv"
+    path.write_text(text)
+    with pytest.raises(gd.SceneError, match=message):
+        assess(path, chart)
+
+
+def test_bad_binary_files_are_refused(chart, worn, tmp_path):
+    with pytest.raises(gd.SceneError, match="cannot be read"):
+        assess(tmp_path / "none.csv", chart)
+    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00\x81")
+    with pytest.raises(gd.SceneError, match="neither text nor netCDF"):
+        assess(tmp_path / "bytes.csv", chart)
+    save(worn, tmp_path / "run.nc")
+    whole = (tmp_path / "run.nc").read_bytes()
+    (tmp_path / "cut.nc").write_bytes(whole[: len(whole) // 3])
+    with pytest.raises(gd.SceneError, match="is damaged"):
+        assess(tmp_path / "cut.nc", chart)
+    worn[["gear_speed"]].drop_attrs().to_netcdf(tmp_path / "bare.nc")
+    with pytest.raises(gd.SceneError, match="does not state the units of time"):
+        assess(tmp_path / "bare.nc", chart)
+    worn[["pinion_speed"]].to_netcdf(tmp_path / "pinion.nc")
+    with pytest.raises(gd.SceneError, match="lacks the variable gear_speed"):
+        assess(tmp_path / "pinion.nc", chart)
+    with pytest.raises(gd.SceneError, match="is no coating map: it lacks characteristic_frequency"):
+        open_map(tmp_path / "run.nc")
+    with pytest.raises(gd.SceneError, match="no such file"):
+        open_map(tmp_path / "none.nc")
+
+
+def test_wrong_arguments_are_named(chart, worn):
+    with pytest.raises(gd.SceneError, match="lacks characteristic_frequency"):
+        assess(worn, worn)
+    with pytest.raises(gd.SceneError, match="must be a Dataset from coating_map"):
+        assess(worn, "map.nc")
+    with pytest.raises(gd.SceneError, match="history = perhaps"):
+        assess(worn, chart, history="perhaps")
+    two = xr.concat([worn.gear_speed, worn.gear_speed], dim="torque")
+    with pytest.raises(gd.SceneError, match="must be one run"):
+        assess(two, chart)
+    with pytest.raises(gd.SceneError, match="at least two fractions"):
+        assess(worn, chart.isel(sam_fraction=[0]))
+    with pytest.raises(gd.SceneError, match="must be a scene with gears"):
+        coating_map(gd.preset("roller_slow"))
+    with pytest.raises(gd.SceneError, match="is the map's own axis"):
+        coating_map(SCENE, over={"coating.sam_fraction": [1.0]})
+    with pytest.raises(gd.SceneError, match="must be a list of numbers"):
+        coating_map(SCENE, "all")
+    with pytest.raises(gd.SceneError, match=r"coating\.sam_fraction"):
+        coating_map(SCENE, [1.5])

@@ -1,0 +1,84 @@
+"""``coating-map``, ``assess`` and the pictures of ``plot``: what they print and write, and their exit codes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.cli import main
+
+CASE = "teodorescu2009_low_speed"
+OVER = ["--over", "coating.sam_fraction=1:0.6:-0.1"]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def chart(folder, capfd):
+    assert main(["coating-map", CASE, *OVER, "-o", "map.nc"]) == 0
+    capfd.readouterr()
+    return "map.nc"
+
+
+def test_map_prints_frequencies_and_keeps_them(folder, capfd):
+    assert main(["coating-map", CASE, *OVER]) == 0
+    printed = capfd.readouterr().out
+    kept = gd.analysis.open_map(f"{CASE}_map.nc")
+    assert f"{float(kept.characteristic_frequency[0]):.0f} +-" in printed
+    assert "SAM 60 %" in printed
+    assert main(["coating-map", CASE, *OVER]) == 2  # it is there
+    assert "exists already" in capfd.readouterr().err
+
+
+def test_map_over_torque(folder, capfd):
+    over = ["coating.sam_fraction=1,0.8", "drive.torque=4e-18,5e-18 N m"]
+    assert main(["coating-map", CASE, "--over", *over, "-o", "map.nc"]) == 0
+    assert "torque = 5e-18" in capfd.readouterr().out
+    assert gd.analysis.open_map("map.nc").characteristic_frequency.dims == ("torque", "sam_fraction")
+
+
+def test_assess_a_record_from_a_file(chart, folder, capfd):
+    ds = gd.simulate(gd.preset(CASE).replace({"coating.sam_fraction": 0.72}))
+    rows = np.column_stack([ds.time, ds.gear_speed])
+    np.savetxt("rig.csv", rows, delimiter=",", header="time [s], gear_speed [rad/s]", comments="")
+    assert main(["assess", "rig.csv", "--map", chart]) == 0
+    printed = capfd.readouterr().out
+    assert printed.startswith("clear: SAM fraction 0.72")
+    np.savetxt("rig.csv", rows[:500], delimiter=",", header="time [s], gear_speed [rad/s]", comments="")
+    assert main(["assess", "rig.csv", "--map", chart]) == 0  # that the signal cannot tell is an answer
+    assert capfd.readouterr().out.startswith("no impacts: ")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["assess", "none.csv", "--map", "map.nc"],
+        ["assess", "map.nc", "--map", "none.nc"],
+        ["assess", "map.nc", "--map", "map.nc"],
+        ["assess", "map.nc"],
+        ["coating-map", "roller_slow", "-o", "other.nc"],
+        ["coating-map", CASE, "--over", "coating.sam_fraction=2", "-o", "other.nc"],
+        ["plot", "map.nc", "--picture", "portrait"],
+        ["plot", "map.nc", "--picture", "gear_speed"],
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(arguments, chart, folder, capfd):
+    assert main(arguments) == 2
+    error = capfd.readouterr().err
+    assert error.startswith("gearidae: ")
+    assert error.count("\n") == 1
+    assert not (folder / "other.nc").exists()
+
+
+def test_plot_draws_maps_and_named_pictures(chart, folder, capfd):
+    assert main(["plot", chart]) == 0
+    assert (folder / "map.png").exists()
+    assert main(["run", CASE, "--set", "run.duration=0.1", "-o", "run.nc"]) == 0
+    for name in ("impact_spectrum", "power_spectrum", "spectrogram", "cycle"):
+        assert main(["plot", "run.nc", "--picture", name, "-o", f"{name}.png"]) == 0
+        assert (folder / f"{name}.png").exists()

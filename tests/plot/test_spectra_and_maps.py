@@ -1,0 +1,107 @@
+"""Pictures of spectra, impact responses and what depends on the coating."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import gearidae as gd
+
+LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.1, "run.samples": 10_001})
+HIGH = gd.preset("teodorescu2009").replace({"run.duration": 3e-4, "run.samples": 6001})
+PICTURES = ("cycle", "power_spectrum", "impact_spectrum")
+
+
+@pytest.fixture(scope="module")
+def low():
+    return gd.sweep(LOW, {"coating.sam_fraction": [1.0, 0.7]})
+
+
+@pytest.fixture(scope="module")
+def chart():
+    return gd.analysis.coating_map(LOW, [1.0, 0.8, 0.6])
+
+
+def drawn(figure):
+    """Draw it: labels and colours that do not go together show only then."""
+    figure.canvas.draw()
+    return figure
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_pictures_of_runs_draw_single_ones_and_sweeps(name, low):
+    draw = getattr(gd.plot, name)
+    given = Figure().add_subplot()
+    assert draw(low, given) is given
+    assert len(given.get_legend().get_texts()) == 2
+    drawn(draw(low.sel(sam_fraction=0.7)).figure)
+
+
+def test_one_cycle_of_the_drive_is_shown_or_one_pitch():
+    ax = gd.plot.cycle(gd.simulate(HIGH))
+    assert ax.get_xlabel() == "time within the last cycle of the drive (µs)"
+    assert ax.get_lines()[0].get_xdata()[-1] == pytest.approx(100.0, abs=0.1)  # 10 kHz
+    ax = gd.plot.cycle(gd.simulate(LOW))
+    assert ax.get_xlabel() == "time within the last pitch of the gear (ms)"
+    assert ax.get_lines()[0].get_xdata()[-1] == pytest.approx(1e3 * 2 * np.pi / 76 / 1.5, rel=0.01)
+
+
+def test_drive_and_mesh_are_marked_in_the_spectrum():
+    ax = gd.plot.power_spectrum(gd.simulate(HIGH))
+    marked = {text.get_text(): text.xy[0] for text in ax.texts}
+    assert marked["drive"] == 10e3
+    assert marked["mesh"] == pytest.approx(35.0e3, rel=0.02)  # 2893 rad/s, 76 teeth
+    assert marked["2 mesh"] == 2 * marked["mesh"]
+
+
+def test_impact_response_is_named_with_its_frequency(low):
+    labels = [text.get_text() for text in gd.plot.impact_spectrum(low).texts]
+    expected = gd.analysis.characteristic_frequency(low).values
+    assert labels == [f"{value:.0f} Hz" for value in expected]
+
+
+def test_spectrogram_shows_one_run_up_to_where_it_rings(low):
+    ax = gd.plot.spectrogram(low.sel(sam_fraction=1.0))
+    assert 4e3 < ax.get_ylim()[1] < 7e3
+    drawn(ax.figure)
+    with pytest.raises(gd.SceneError, match="one run"):
+        gd.plot.spectrogram(low)
+
+
+def test_map_shows_the_first_impacts_the_later_ones_and_an_assessment(chart, low):
+    found = gd.analysis.assess(low.sel(sam_fraction=0.7), chart)
+    ax = gd.plot.coating_map(chart, assessment=found)
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names == ["first impact", "later impacts", "assessed"]
+    first = next(line for line in ax.get_lines() if line.get_label() == "first impact")
+    assert np.array_equal(first.get_xdata(), [100.0, 80.0, 60.0])
+    assert np.array_equal(first.get_ydata(), chart.characteristic_frequency)
+    drawn(ax.figure)
+
+
+def test_map_over_torque_names_its_lines():
+    chart = gd.analysis.coating_map(LOW, [1.0, 0.8], over={"drive.torque": [4e-18, 5e-18]})
+    names = [text.get_text() for text in gd.plot.coating_map(chart).get_legend().get_texts()]
+    assert names == ["torque 4 aN m", "torque 5 aN m"]
+
+
+def test_starting_torque_leaves_out_where_nothing_holds():
+    ds = gd.analysis.starting_torque(LOW, [1.0, 0.5, 0.45], simulated=False)
+    ax = gd.plot.starting_torque(ds)
+    (line,) = ax.get_lines()
+    assert np.array_equal(line.get_xdata(), [50.0, 45.0])
+    assert np.array_equal(line.get_ydata(), ds.static_torque[1:])
+    with pytest.raises(gd.SceneError, match="does not hold"):
+        gd.plot.starting_torque(ds.isel(sam_fraction=[0]))
+
+
+def test_datasets_of_another_kind_are_refused(low, chart):
+    with pytest.raises(gd.SceneError, match="is no coating map"):
+        gd.plot.coating_map(low)
+    with pytest.raises(gd.SceneError, match="static_torque"):
+        gd.plot.starting_torque(chart)
+    with pytest.raises(gd.SceneError, match="gear_speed"):
+        gd.plot.power_spectrum(chart)
+    with pytest.raises(gd.SceneError, match="no impact rings"):
+        gd.plot.impact_spectrum(low.isel(time=slice(0, 300)))
