@@ -25,7 +25,7 @@ def main(arguments: list[str]) -> None:
         result = Result.load(RESULTS / "benchmark.json")
     else:
         quick = "--quick" in arguments
-        settings = Settings(rounds=2, longest=0.5, every=3) if quick else Settings()
+        settings = Settings(rounds=2, longest=0.5, share=0.5, every=3) if quick else Settings()
         result = run_benchmark(
             find_scenes(()), settings, beyond=not quick, report=lambda words: sys.stderr.write(f"{words}\n")
         )

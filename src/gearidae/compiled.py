@@ -24,7 +24,7 @@ __all__ = ["cache_folder", "compiled", "compiled_callback"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-COMPILED_PACKAGES = ("contact", "engine", "compiled.py", "records.py")
+COMPILED_PACKAGES = ("contact", "engine", "bench", "compiled.py", "records.py")
 
 
 @cache

@@ -24,7 +24,7 @@ def result(tmp_path_factory):
         patch.setenv("GEARIDAE_REFERENCES", str(folder))
         measured = run_benchmark(
             [scene],
-            Settings(rounds=2, longest=1.0, every=2),
+            Settings(rounds=2, longest=1.0, share=1.0, every=2),
             contenders=[*explicit_contenders(), absent],
             beyond=False,
         )

@@ -10,8 +10,9 @@ from gearidae.bench.benchmark import all_contenders
 from gearidae.bench.c_loop import c_contenders
 from gearidae.bench.contender import engine_contenders
 from gearidae.bench.error import run_error
-from gearidae.bench.loop import FAILED, run_dop853, run_gauss, run_rk4
+from gearidae.bench.loop import run_dop853, run_gauss, run_rk4
 from gearidae.bench.reference import find_reference
+from gearidae.bench.roots import FAILED
 from gearidae.engine.problem import make_problem
 
 BENCH = SCENES["roller_slow_bare"]

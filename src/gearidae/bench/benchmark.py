@@ -125,12 +125,6 @@ def run_benchmark(
         skipped={key: reason for key, reason in reasons.items() if reason},
         settings=asdict(settings),
     )
-    for bench in scenes:
-        reference, points, first_calls = measure_scene(bench, able, settings, report)
-        result.references[bench.name] = reference.provenance
-        result.points += points
-        for key, seconds in first_calls.items():
-            result.first_calls.setdefault(key, seconds)
     if beyond:
         report("growth with simulated time")
         result.growth = measure_growth()
@@ -138,6 +132,12 @@ def run_benchmark(
         result.sweep_efficiency = measure_sweep()
         report("start of a new process")
         result.start = measure_start()
+    for bench in scenes:
+        reference, points, first_calls = measure_scene(bench, able, settings, report)
+        result.references[bench.name] = reference.provenance
+        result.points += points
+        for key, seconds in first_calls.items():
+            result.first_calls.setdefault(key, seconds)
     return result
 
 

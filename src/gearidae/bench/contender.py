@@ -9,8 +9,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.bench.loop import CALLS, FAILED, STEPS, run_dop853, run_rk4
+from gearidae.bench.loop import run_dop853, run_rk4
 from gearidae.bench.reference import physical
+from gearidae.bench.roots import CALLS, FAILED, STEPS
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import Ending, Tally
@@ -19,8 +20,8 @@ __all__ = ["TOLERANCES", "Contender", "Outcome", "engine_contenders", "explicit_
 
 Floats = NDArray[np.float64]
 
-TOLERANCES: Final = tuple(10.0**-k for k in range(3, 11))
-STEP_LENGTHS: Final = tuple(0.4 * 0.5**k for k in range(8))
+TOLERANCES: Final = tuple(10.0**-k for k in range(3, 13))
+STEP_LENGTHS: Final = tuple(0.4 * 0.5**k for k in range(9))
 """Of the fixed-step method, over the scene's tau."""
 
 

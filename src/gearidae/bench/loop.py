@@ -12,6 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.bench.kinks import arm, watch
+from gearidae.bench.roots import (
+    CALLS,
+    CUBIC,
+    DOP853,
+    EVENTS,
+    FAILED,
+    GAUSS,
+    STEPS,
+    find_root,
+    pass_events,
+)
 from gearidae.bench.steps import (
     STAGES,
     dop853_prepare,
@@ -26,142 +37,10 @@ from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine.events import EVENTS_AT_ONCE, accept, guard, handle
 
-__all__ = ["CALLS", "EVENTS", "FAILED", "STEPS", "run_dop853", "run_gauss", "run_rk4"]
+__all__ = ["run_dop853", "run_gauss", "run_rk4"]
 
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
-
-STEPS, CALLS, EVENTS, FAILED = range(4)
-"""Columns of the counters; FAILED is not zero where a run had to be given up: the action that the
-engine's `handle` asks for and these loops do not know, or -1 where steps became too small."""
-
-_ROOT_TOLERANCE = 1e-15  # of the step's end time
-_MOST_TRIALS = 60
-
-
-@compiled
-def _value(
-    method: int,
-    d: Floats,
-    t: float,
-    y: Floats,
-    h: float,
-    theta: float,
-    scale: Floats,
-    k: Floats,
-    zero: Floats,
-    trial: Floats,
-    new: Floats,
-    f_new: Floats,
-    dense: Floats,
-    out: Floats,
-) -> None:
-    """State at ``t + theta`` within a step of h: from the interpolant, or for Gauss by a step that ends there."""
-    if method == 0:
-        hermite_value(y, k[0], new, f_new, h, theta / h, out)
-    elif method == 1:
-        dop853_value(y, dense, theta / h, out)
-    else:
-        gauss_step(d, t, y, theta, scale, k, zero, trial, out)
-
-
-@compiled
-def _root(
-    method: int,
-    d: Floats,
-    t: float,
-    y: Floats,
-    h: float,
-    start: float,
-    low: float,
-    high: float,
-    scale: Floats,
-    k: Floats,
-    zero: Floats,
-    trial: Floats,
-    new: Floats,
-    f_new: Floats,
-    dense: Floats,
-    out: Floats,
-    heights: Floats,
-    armed: bool,
-) -> float:
-    """Find where the guard falls between ``t + start`` and ``t + h``, given its values `low` and `high` there.
-
-    Regula falsi after Illinois. Returns the place just behind the root, with its state in `out`.
-    """
-    a, b = start, h
-    state = np.empty(y.size)
-    weight, side = 1.0, 0
-    out[:] = new
-    for _ in range(_MOST_TRIALS):
-        if b - a <= _ROOT_TOLERANCE * (t + h):
-            break
-        share = min(max(high / (high - weight * low), 1e-3), 1.0 - 1e-3)
-        place = b - (b - a) * share
-        _value(method, d, t, y, h, place, scale, k, zero, trial, new, f_new, dense, state)
-        middle = watch(d, t + place, state, heights, armed)
-        if middle < 0.0:
-            b, high = place, middle
-            out[:] = state
-            weight = 0.5 * weight if side == 1 else 1.0
-            side = 1
-        else:
-            a, low = place, middle
-            weight = 2.0 * weight if side == -1 else 1.0
-            side = -1
-    return b
-
-
-@compiled
-def _pass_events(
-    method: int,
-    d: Floats,
-    t: float,
-    y: Floats,
-    h: float,
-    before: float,
-    k: Floats,
-    zero: Floats,
-    trial: Floats,
-    new: Floats,
-    f_new: Floats,
-    dense: Floats,
-    there: Floats,
-    room: Floats,
-    counts: Counts,
-) -> None:
-    """Take the history through the events within a step, one after the other, and go on from the step's end."""
-    start = 0.0
-    after = guard(d, t + h, new)
-    while before > 0.0 > after:
-        start = _root(
-            method,
-            d,
-            t,
-            y,
-            h,
-            start,
-            before,
-            after,
-            zero,
-            k,
-            zero,
-            trial,
-            new,
-            f_new,
-            dense,
-            there,
-            zero,
-            False,
-        )
-        counts[EVENTS] += 1
-        accept(d, t + start, there)
-        _, counts[FAILED] = handle(d, t + start, there, room, 0)
-        if counts[FAILED] != 0:
-            return
-        before = guard(d, t + start, there)
-        after = guard(d, t + h, new)
 
 
 @compiled
@@ -205,7 +84,7 @@ def run_rk4(
             sample += 1
         fallen = before > 0.0 > guard(d, later, new)
         if fallen:
-            _pass_events(0, d, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
+            pass_events(CUBIC, d, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
             if counts[FAILED] != 0:
                 return
         accept(d, later, new)
@@ -263,8 +142,8 @@ def run_dop853(
             dop853_prepare(d, t, y, h, k, zero, trial, new, dense)
             counts[CALLS] += 3
         if fallen and land:
-            h_root = _root(
-                1,
+            h_root = find_root(
+                DOP853,
                 d,
                 t,
                 y,
@@ -300,7 +179,7 @@ def run_dop853(
             states[sample] = new
             sample += 1
         if fallen and not land:
-            _pass_events(1, d, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
+            pass_events(DOP853, d, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
         accept(d, later, new)
         y[:] = new
         t = later
@@ -367,8 +246,8 @@ def run_gauss(
         after = watch(d, later, new, heights, armed)
         fallen = before > 0.0 > after
         if fallen:
-            step = _root(
-                2,
+            step = find_root(
+                GAUSS,
                 d,
                 t,
                 y,

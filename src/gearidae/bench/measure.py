@@ -37,14 +37,16 @@ class Settings:
     rounds : int
         Rounds in which all runs of a scene take turns.
     longest : float
-        A contender's ladder of tolerances ends with the first run that takes longer [s], and a run is repeated until
-        that much time is spent on it.
+        A contender's ladder of tolerances ends with the first run that takes longer [s].
+    share : float
+        A run is repeated, round by round, until that much time is spent on it [s].
     every : int
         Take each so many-th tolerance of the ladders.
     """
 
     rounds: int = 5
-    longest: float = 2.5
+    longest: float = 8.0
+    share: float = 2.5
     every: int = 1
 
 
@@ -134,14 +136,14 @@ def measure_scene(
     for number in range(1, settings.rounds):
         report(f"{bench.title}: round {number + 1} of {settings.rounds}")
         with _without_garbage_collection():
-            _round(series, settings.longest, problem, times)
+            _round(series, settings.share, problem, times)
     return reference, [_point(bench, entry) for entry in series], first_calls
 
 
-def _round(series: Sequence[_Series], longest: float, problem: Problem, times: Floats) -> None:
+def _round(series: Sequence[_Series], share: float, problem: Problem, times: Floats) -> None:
     """Let every run have its turn that has not yet had its share of time."""
     for entry in series:
-        if math.fsum(entry.times) >= longest:
+        if math.fsum(entry.times) >= share:
             continue
         if entry.times[0] < SHORT:  # what ran before has filled the processor's caches with its own
             _timed(entry.contender, problem, entry.tolerance, times)

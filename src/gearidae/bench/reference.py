@@ -21,7 +21,8 @@ from platformdirs import user_cache_path
 
 import gearidae
 from gearidae.bench.error import run_error
-from gearidae.bench.loop import FAILED, run_dop853, run_gauss
+from gearidae.bench.loop import run_dop853, run_gauss
+from gearidae.bench.roots import FAILED
 from gearidae.bench.scenes import BenchScene
 from gearidae.engine import layout as at
 from gearidae.engine.problem import Problem, make_problem

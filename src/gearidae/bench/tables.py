@@ -118,10 +118,10 @@ def markdown(result: Result) -> str:
     lines = [
         f"Measured {result.date[:10]} on {result.machine};",
         ", ".join(f"{name} {number}" for name, number in result.versions.items()) + ".",
-        f"Medians of up to {result.settings['rounds']:g} interleaved rounds;",
-        f"a run that takes longer than {result.settings['longest']:g} s is timed once and ends its contender's row.",
-        "",
+        f"Medians of up to {result.settings['rounds']:g} interleaved rounds, of fewer where a run takes long;",
+        f"one that takes longer than {result.settings['longest']:g} s ends its contender's row.",
     ]
+    lines += [""] if result.skipped else []
     lines += [f"- {result.labels[key]}: not measured ({reason})" for key, reason in result.skipped.items()]
     lines += [
         "",

@@ -21,7 +21,7 @@ from gearidae.cli.tables import show_rows
 __all__ = ["bench_scenes"]
 
 _QUICK_SCENES = ("low_sam", "high_sam", "roller_slow_bare")
-_QUICK = Settings(rounds=3, longest=1.0, every=2)
+_QUICK = Settings(rounds=3, longest=1.0, share=1.0, every=2)
 
 
 def bench_scenes(scenes: Sequence[str], output: Path | None, *, quick: bool) -> int:
