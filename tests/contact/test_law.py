@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from gearidae.contact import law
 from gearidae.contact.jkr import asperity_of
 from gearidae.contact.line import line_force
+from gearidae.contact.rough import rough_pressure
 from reference.surface import PlainSurface
 
 RADIUS, WIDTH = 10e-6, 2e-6
@@ -45,6 +46,21 @@ def test_law_is_right_to_1e_9_from_deep_contact_into_the_far_tail(stretch_limit)
     gaps = rng.uniform(-8.0, 12.0, 200)
     share = np.clip(rng.uniform(-0.2, 1.2, 200), 0.0, 1.0)  # all three branches
     assert law_error(stretch_limit, gaps, share) < 1e-9  # the docstring's bound
+
+
+@pytest.mark.parametrize("stretch_limit", [1e-3, 0.0363, 0.2219, 0.9, 1.1, 5.0, 40.0])
+def test_pressure_between_planes_is_right_to_1e_9(stretch_limit):
+    surface = surface_with(stretch_limit)
+    sigma = surface.roughness
+    unit = surface.asperity_density * asperity_of(surface).hertz_factor * sigma**1.5
+    table = law.law_table(stretch_limit, kernel="plane")
+    rng = np.random.default_rng(4)
+    gaps = rng.uniform(-8.0, 12.0, 200)
+    stretch = stretch_limit * np.clip(rng.uniform(-0.2, 1.2, 200), 0.0, 1.0)
+    exact = rough_pressure(gaps * sigma, stretch * sigma, surface) / unit
+    loading = rough_pressure(gaps * sigma, 0 * gaps, surface) / unit
+    tabled = np.array([law.law_value(table, g, g - s)[0] for g, s in zip(gaps, stretch, strict=True)])
+    assert np.max(np.abs(tabled - exact) / (np.abs(loading) + np.abs(exact - loading))) < 1e-9
 
 
 def test_deep_contact_is_tabulated_too():

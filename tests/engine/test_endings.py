@@ -10,7 +10,8 @@ from gearidae.engine.run import Ending, ending_of_flag
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_chatter_ends_with_its_name_and_a_partial_result(backend, monkeypatch):
-    monkeypatch.setattr(problem, "EVENTS_PER_TAU", 12)
+    monkeypatch.setattr(problem, "ROOT_SPACING", 1e-2)
+    monkeypatch.setattr(problem, "ROOT_LIMIT", 12)
     scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.45, "run.samples": 3001})
     run = solve(scene, backend=backend)
     assert run.status == "chatter"
@@ -30,7 +31,8 @@ def test_every_flag_has_a_name():
 
 
 def test_simulate_raises_with_the_partial_dataset(monkeypatch, tmp_path):
-    monkeypatch.setattr(problem, "EVENTS_PER_TAU", 12)
+    monkeypatch.setattr(problem, "ROOT_SPACING", 1e-2)
+    monkeypatch.setattr(problem, "ROOT_LIMIT", 12)
     scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.45, "run.samples": 3001})
     target = tmp_path / "part.nc"
     with pytest.raises(gd.SolverError) as caught:
@@ -40,3 +42,30 @@ def test_simulate_raises_with_the_partial_dataset(monkeypatch, tmp_path):
     assert "gear_speed" in error.state
     assert error.dataset.sizes["time"] > 2
     assert gd.open_archive(target).attrs["status"] == "chatter"
+
+
+def test_marks_crossed_in_flight_are_no_chatter():
+    """Gears that touch nothing pass thousands of mesh marks within one step."""
+    scene = gd.preset("teodorescu2009").replace(
+        {
+            "mesh.backlash": 1e-6,
+            "initial.gap": 5e-7,
+            "drive.torque": 1e-19,
+            "drive.harmonic": [],
+            "load.torque": 0.0,
+            "load.drag": 0.0,
+            "run.duration": 0.1,
+        }
+    )
+    run = solve(scene)
+    assert run.status == "finished"
+    assert len(run.events) > 10_000
+    assert len(run.events) > 2 * run.statistics.steps
+
+
+def test_a_contact_beyond_the_force_laws_tables_says_so():
+    scene = gd.preset("roller_fast").replace({"contact.model": "asperity", "roller.speed": 60.0})
+    run = solve(scene)
+    assert run.status == "deflection"
+    assert "elastic" in run.message
+    assert run.samples["height"].min() > -45 * scene.surface.roughness

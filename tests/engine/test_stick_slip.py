@@ -67,3 +67,11 @@ def test_a_gear_at_rest_without_load_stays_at_rest():
     run = solve(scene)
     assert not run.samples["gear_speed"].any()
     assert not len(run.events)
+
+
+def test_resistance_that_comes_and_goes_holds_a_gear_that_nothing_pushes():
+    changes = {"load.torque": 0.0, "load.harmonic": {"amplitude": 1.2e-20, "frequency": 1e3, "phase": 1.57}}
+    run = solve(free_gear(**changes, **{"initial.gear_speed": 0.0, "run.duration": 0.01}))
+    assert run.status == "finished"
+    assert not run.samples["gear_speed"].any()
+    assert not len(run.events)

@@ -16,8 +16,9 @@ Stretched asperities add :math:`t(Z, S) = \int_{-S}^0 \hat p\,\psi(Z + S + \Delt
 with t(Z, D) a function of one variable again. Each is stored as
 :math:`e^{\max(x, 0)^2/2}` times itself, which is smooth into the far tail, by septic Hermite pieces (three
 continuous derivatives) in gap or joined height and by Chebyshev pieces in :math:`v = \sqrt{1 - S/D}`, in which
-the square-root end of the stretch at the fold is regular. The tests hold it to a relative error of 1e-9 for
--8 <= G <= 8; the measured one is nearer 1e-11.
+the square-root end of the stretch at the fold is regular. With the normal density in place of psi the same tables
+hold the pressure between two planes, of which the elastic contact is made. The tests hold both to a relative error of
+1e-9 for -8 <= gap <= 8; the measured one is nearer 1e-11.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 from itertools import pairwise
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,7 @@ __all__ = [
     "H_STRETCH",
     "N_LOADING",
     "STRETCH_HIGH",
+    "Kernel",
     "branch_length",
     "branch_value",
     "force_scale",
@@ -52,6 +54,7 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
+Kernel: TypeAlias = Literal["line", "plane"]
 
 GAP_LOW: Final = -40.0
 """Deepest tabulated gap, in roughnesses; the last piece is continued below it."""
@@ -112,7 +115,7 @@ def force_scale(roughness: float, hertz_factor: float, density: float, width: fl
 
 
 @lru_cache(maxsize=32)
-def law_table(stretch_limit: float, asperity: AsperityLaw = "jkr") -> Floats:
+def law_table(stretch_limit: float, asperity: AsperityLaw = "jkr", kernel: Kernel = "line") -> Floats:
     """Tabulate the force law of one surface.
 
     Parameters
@@ -121,6 +124,9 @@ def law_table(stretch_limit: float, asperity: AsperityLaw = "jkr") -> Floats:
         D = dc / sigma, the stretch limit in roughnesses [1], 0 or more.
     asperity : {"jkr", "dmt", "hertz"}, optional
         Law of one asperity. Only JKR stretches.
+    kernel : {"line", "plane"}, optional
+        Force on a parabolic gap, or pressure between planes: what the loads are integrated against, psi or the
+        normal density.
 
     Returns
     -------
@@ -131,23 +137,23 @@ def law_table(stretch_limit: float, asperity: AsperityLaw = "jkr") -> Floats:
     stretches = asperity == "jkr" and stretch_limit > NEGLIGIBLE_STRETCH
     knots = GAP_LOW + np.arange(N_LOADING + 1) / KNOTS_PER_SIGMA
     header = np.zeros(HEADER)
-    parts = [header, _pieces(knots, _loading_derivatives(knots, adhesive, asperity)).ravel()]
+    parts = [header, _pieces(knots, _loading_derivatives(knots, adhesive, asperity, kernel)).ravel()]
     if stretches:
         low = math.floor((GAP_LOW - stretch_limit) * KNOTS_PER_SIGMA) / KNOTS_PER_SIGMA
         count = round((GAP_HIGH - low) * KNOTS_PER_SIGMA)
         joined = low + np.arange(count + 1) / KNOTS_PER_SIGMA
         header[[H_STRETCH, H_LOW, H_COUNT]] = stretch_limit, low, count
         header[H_END] = sum(part.size for part in parts)
-        end = _stretched_derivatives(joined, stretch_limit, np.zeros(1))
+        end = _stretched_derivatives(joined, stretch_limit, np.zeros(1), kernel)
         parts.append(_pieces(joined, end).ravel())
         following = sum(part.size for part in parts)
         if stretch_limit <= TABULATED_STRETCH:
             pieces = max(PIECES_LOW, math.ceil(stretch_limit / PIECE_STRETCH))
             header[[H_MODE, H_PARTIAL, H_PIECES]] = MODE_TABLE, following, pieces
-            parts.append(_partial_pieces(joined, end, stretch_limit, pieces).ravel())
+            parts.append(_partial_pieces(joined, end, stretch_limit, pieces, kernel).ravel())
         else:
             header[[H_MODE, H_PSI]] = MODE_INTEGRATED, following
-            parts.append(_psi_pieces())
+            parts.append(_kernel_pieces(kernel))
     table = np.concatenate(parts)
     table.setflags(write=False)
     return table
@@ -184,19 +190,19 @@ def _pressure(delta: Floats, stretch_limit: float, asperity: AsperityLaw) -> Flo
     return math.sqrt(3.0) * stretch_limit**1.5 * jkr_load(delta / stretch_limit)
 
 
-def _loading_derivatives(gap: Floats, stretch_limit: float, asperity: AsperityLaw) -> Floats:
+def _loading_derivatives(gap: Floats, stretch_limit: float, asperity: AsperityLaw, kernel: Kernel) -> Floats:
     """q(G, 0) and three derivatives, shape (4, n), for gaps on a grid of `KNOTS_PER_SIGMA`.
 
     Beyond the first half roughness the compression is integrated by panels of half a roughness, so that all gaps
-    share the values of psi.
+    share the values of the kernel.
     """
     delta, weight = _compressed_nodes(stretch_limit, asperity)
-    result = np.einsum("i,kji->kj", weight, _psi_at(gap[:, None] + delta[None, :]))
+    result = np.einsum("i,kji->kj", weight, _kernel_at(kernel, gap[:, None] + delta[None, :]))
     x, w = np.polynomial.legendre.leggauss(12)
     within, half = 0.25 * (x + 1.0), KNOTS_PER_SIGMA // 2
     panels = math.ceil((12.0 - gap[0]) / 0.5)
     step = np.arange(len(gap) + panels * half)
-    shared = _psi_at((gap[0] + step / KNOTS_PER_SIGMA)[:, None] + within[None, :])
+    shared = _kernel_at(kernel, (gap[0] + step / KNOTS_PER_SIGMA)[:, None] + within[None, :])
     for panel in range(1, panels):
         load_weight = 0.25 * w * _pressure(0.5 * panel + within, stretch_limit, asperity)
         first = panel * half
@@ -204,7 +210,7 @@ def _loading_derivatives(gap: Floats, stretch_limit: float, asperity: AsperityLa
     return np.asarray(result)
 
 
-def _stretched_derivatives(joined: Floats, stretch_limit: float, v: Floats) -> Floats:
+def _stretched_derivatives(joined: Floats, stretch_limit: float, v: Floats, kernel: Kernel) -> Floats:
     """t(Z, S) and three derivatives in Z at fixed S = D (1 - v^2), shape (4, n, len(v))."""
     result = np.empty((4, len(joined), len(v)))
     panels = 1 + int(stretch_limit / 0.5)
@@ -214,7 +220,7 @@ def _stretched_derivatives(joined: Floats, stretch_limit: float, v: Floats) -> F
         total = np.zeros((4, len(joined)))
         for low, high in pairwise(edges):
             delta, weight = _asperity_nodes(low, high, stretch_limit, GAUSS)
-            total += _psi_at(joined[:, None] + (stretch + delta)[None, :]) @ weight
+            total += _kernel_at(kernel, joined[:, None] + (stretch + delta)[None, :]) @ weight
         result[:, :, m] = total
     return result
 
@@ -273,7 +279,7 @@ def _pieces(knots: Floats, derivatives: Floats) -> Floats:
     return np.moveaxis(np.tensordot(_hermite(), np.stack(ends), axes=1), 0, 1)
 
 
-def _partial_pieces(joined: Floats, end: Floats, stretch_limit: float, pieces: int) -> Floats:
+def _partial_pieces(joined: Floats, end: Floats, stretch_limit: float, pieces: int, kernel: Kernel) -> Floats:
     """Pieces of t(Z, S) as ``t(Z, D) + v^2 times a polynomial`` (regular slope at the fold): the polynomial.
 
     Returns
@@ -286,17 +292,29 @@ def _partial_pieces(joined: Floats, end: Floats, stretch_limit: float, pieces: i
     out = np.empty((len(joined) - 1, pieces, DEGREE + 1, 8))
     for piece in range(pieces):
         v = (piece + 0.5 * (nodes + 1.0)) / pieces
-        rest = (_stretched_derivatives(joined, stretch_limit, v) - end) / v**2
+        rest = (_stretched_derivatives(joined, stretch_limit, v, kernel) - end) / v**2
         out[:, piece] = np.moveaxis(_pieces(joined, rest) @ to_powers.T, 1, 2)
     return out
 
 
-@lru_cache(maxsize=1)
-def _psi_pieces() -> Floats:
-    """Pieces of psi itself, for the branch that is integrated when asked for."""
+@lru_cache(maxsize=2)
+def _kernel_pieces(kernel: Kernel) -> Floats:
+    """Pieces of the kernel itself, for the branch that is integrated when asked for."""
     low = GAP_LOW - STRETCH_HIGH - 1.0
     knots = low + np.arange(round((GAP_HIGH - low) * KNOTS_PER_SIGMA) + 1) / KNOTS_PER_SIGMA
-    return np.concatenate([[low], _pieces(knots, psi_derivatives(knots, 3)).ravel()])
+    derivatives = psi_derivatives(knots, 3) if kernel == "line" else _normal_derivatives(knots)
+    return np.concatenate([[low], _pieces(knots, derivatives).ravel()])
+
+
+def _kernel_at(kernel: Kernel, y: Floats) -> Floats:
+    """Psi or the normal density, with three derivatives, shape (4, *y.shape)."""
+    return _psi_at(y) if kernel == "line" else _normal_derivatives(y)
+
+
+def _normal_derivatives(y: Floats) -> Floats:
+    """Standard normal density and three derivatives, shape (4, *y.shape)."""
+    density = np.exp(-0.5 * y**2) / math.sqrt(2.0 * math.pi)
+    return np.stack([density, -y * density, (y**2 - 1.0) * density, (3.0 * y - y**3) * density])
 
 
 PSI_KNOTS: Final = 16  # per roughness, of the Taylor expansions below

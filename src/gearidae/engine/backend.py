@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import import_module
 from types import ModuleType
@@ -13,14 +14,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import cache_folder
+from gearidae.engine.changeover import change_over
 from gearidae.engine.problem import Problem, make_problem
-from gearidae.engine.run import Block, Tally
+from gearidae.engine.run import Block, Ending, Tally
 from gearidae.engine.sundials import unavailable
 from gearidae.errors import SceneError
-from gearidae.records import Events, Solution, Statistics
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Solution, Statistics
 from gearidae.scene import Scene, preset
 
-__all__ = ["choose_backend", "ready_driver", "run_blocks", "solve"]
+__all__ = [
+    "Ended",
+    "Start",
+    "choose_backend",
+    "follow",
+    "outlook",
+    "ready_driver",
+    "run_blocks",
+    "solve",
+    "statistics_of",
+]
 
 log = logging.getLogger(__name__)
 
@@ -61,7 +73,7 @@ def ready_driver(backend: str) -> ModuleType:
         log.warning("compiling the solver for this machine: once, some 20 seconds")
     # imported late: the native driver compiles its callbacks when it is imported
     driver = import_module(f"gearidae.engine.{'native' if backend == 'native' else 'portable'}")
-    tiny = make_problem(preset("roller_slow").replace({"run.duration": 1e-9}))
+    tiny = make_problem(preset("roller_slow").replace({"run.duration": 1e-9, "contact.model": "asperity"}))
     for _ in driver.run(tiny, 1e-3, 2, Tally()):
         pass
     return driver
@@ -91,8 +103,143 @@ def run_blocks(
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to go on from.
     """
-    blocks: Iterator[Block] = ready_driver(backend).run(problem, rtol, samples, tally, resume)
-    return blocks
+    driver = ready_driver(backend)
+    if problem.elastic is None:
+        yield from driver.run(problem, rtol, samples, tally, resume)
+        return
+    rigid = resume is None or problem.fits(resume, driver.COUNTERS)
+    if rigid and not (resume is not None and problem.outgrown(resume)):
+        for block in driver.run(problem, rtol, samples, tally, resume):
+            resume = block.checkpoint
+            yield block
+        if tally.ending is not Ending.DEFLECTION or resume is None:
+            return
+        tally.ending = Ending.FINISHED
+    bodies = problem.elastic()
+    problem.skipped["elastic_deflection"] = 0
+    if rigid and resume is not None:
+        log.info(
+            "the bodies give way more than the asperity model allows for: going on with the elastic model"
+        )
+        resume = change_over(problem, bodies, resume)
+    yield from driver.run(bodies, rtol, samples, tally, resume)
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where a run begins: at the beginning, or at a checkpoint of an earlier run.
+
+    Attributes
+    ----------
+    checkpoint : ndarray, optional
+        From a `Block` of a run of the same scene by the same backend.
+    tally : Tally
+        The solver's counters there.
+    time, wall_time : float
+        Simulated time and wall time until there [s].
+    events : int
+        Number of events until there.
+    """
+
+    checkpoint: NDArray[np.float64] | None = None
+    tally: Tally = field(default_factory=Tally)
+    time: float = 0.0
+    wall_time: float = 0.0
+    events: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How a run ended.
+
+    Attributes
+    ----------
+    statistics : Statistics
+    status : str
+        ``finished``, ``interrupted`` (by Ctrl-C), or the named reason why the run ended early.
+    message : str
+        The status in a sentence; empty when finished.
+    reached : float
+        Simulated time reached [s].
+    """
+
+    statistics: Statistics
+    status: str
+    message: str
+    reached: float
+
+
+def follow(
+    scene: Scene,
+    take: Callable[[Block, Tally, float], None],
+    *,
+    backend: str = "auto",
+    on_progress: Callable[[float, int], None] | None = None,
+    begin: Start | None = None,
+) -> Ended:
+    """Run a scene and hand every block of output to `take` as soon as it is there.
+
+    Parameters
+    ----------
+    scene : Scene
+    take : callable
+        Told a block, the solver's counters and the wall time in the solver [s] at its end.
+    backend : {"auto", "native", "sksundae"}, optional
+    on_progress : callable, optional
+        Called now and then with the simulated time reached [s] and the number of events so far.
+    begin : Start, optional
+        Where to go on from, in place of the beginning.
+
+    Returns
+    -------
+    Ended
+        Also after Ctrl-C: what had been taken by then is sound.
+
+    Raises
+    ------
+    SceneError
+        If the scene is beyond what the engine can do.
+    """
+    name = choose_backend(backend)
+    begin = begin or Start()
+    tally, reached, seen = replace(begin.tally), begin.time, begin.events
+    status = message = ""
+    skipped: dict[str, int] = {}
+    started = time.perf_counter()
+    try:
+        ready_driver(name)
+        problem = make_problem(scene)
+        skipped = problem.skipped  # which a change to another contact model changes
+        started = time.perf_counter()
+        for block in run_blocks(
+            problem, scene.run.rtol, scene.run.sample_count, name, tally, begin.checkpoint
+        ):
+            take(block, tally, begin.wall_time + time.perf_counter() - started)
+            reached = block.time
+            seen += len(block.events)
+            if on_progress is not None:
+                on_progress(reached, seen)
+        status, message = tally.ending.status, tally.ending.message
+    except KeyboardInterrupt:
+        status, message = "interrupted", "interrupted by the user"
+    wall_time = begin.wall_time + time.perf_counter() - started
+    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached)
+
+
+def statistics_of(tally: Tally, wall_time: float, backend: str, skipped: dict[str, int]) -> Statistics:
+    """Turn a run's counters into what is kept of them."""
+    return Statistics(
+        steps=tally.steps,
+        residual_evaluations=tally.residual_evaluations,
+        jacobian_evaluations=tally.jacobian_evaluations,
+        error_test_failures=tally.error_test_failures,
+        convergence_failures=tally.convergence_failures,
+        restarts=tally.restarts,
+        guard_evaluations=tally.guard_evaluations,
+        wall_time=wall_time,
+        backend=backend,
+        skipped=skipped | {"flight_steps": tally.flight_steps},
+    )
 
 
 def solve(
@@ -100,7 +247,7 @@ def solve(
     *,
     rtol: float | None = None,
     t_end: float | None = None,
-    samples: int | None = None,
+    samples: int | str | None = None,
     backend: str = "auto",
     on_progress: Callable[[float, int], None] | None = None,
 ) -> Solution:
@@ -118,7 +265,7 @@ def solve(
     Returns
     -------
     Solution
-        Whatever was reached, with a status that says how the run ended.
+        Whatever was reached, with a status that says how the run ended; also after Ctrl-C.
 
     Raises
     ------
@@ -128,39 +275,56 @@ def solve(
     given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
-    name = choose_backend(backend)
-    ready_driver(name)
-    problem = make_problem(scene)
-    tally, rows, events, seen = Tally(), [], [], 0
-    started = time.perf_counter()
-    for block in run_blocks(problem, scene.run.rtol, scene.run.samples, name, tally):
+    columns = GEAR_COLUMNS if scene.roller is None else ROLLER_COLUMNS
+    rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
+
+    def take(block: Block, tally: Tally, wall_time: float) -> None:
         rows.append(block.rows)
         events.append(block.events)
-        seen += len(block.events)
-        if on_progress is not None:
-            on_progress(block.time, seen)
-    wall_time = time.perf_counter() - started
-    table = np.concatenate(rows) if rows else np.empty((0, len(problem.columns)))
-    times = np.linspace(0.0, scene.run.duration, scene.run.samples)[: len(table)]
+
+    ended = follow(scene, take, backend=backend, on_progress=on_progress)
+    table = np.concatenate(rows)
     return Solution(
-        time=times,
-        samples={column: np.ascontiguousarray(table[:, i]) for i, column in enumerate(problem.columns)},
-        events=_events(np.concatenate(events) if events else np.empty((0, 5))),
-        statistics=Statistics(
-            steps=tally.steps,
-            residual_evaluations=tally.residual_evaluations,
-            jacobian_evaluations=tally.jacobian_evaluations,
-            error_test_failures=tally.error_test_failures,
-            convergence_failures=tally.convergence_failures,
-            restarts=tally.restarts,
-            guard_evaluations=tally.guard_evaluations,
-            wall_time=wall_time,
-            backend=name,
-            skipped=problem.skipped | {"flight_steps": tally.flight_steps},
-        ),
-        status=tally.ending.status,
-        message=tally.ending.message,
+        time=np.linspace(0.0, scene.run.duration, scene.run.sample_count)[: len(table)],
+        samples={column: np.ascontiguousarray(table[:, i]) for i, column in enumerate(columns)},
+        events=_events(np.concatenate(events)),
+        statistics=ended.statistics,
+        status=ended.status,
+        message=ended.message,
+        reached=ended.reached,
     )
+
+
+def outlook(
+    scene: Scene, backend: str, checkpoint: NDArray[np.float64] | None = None
+) -> tuple[int, dict[str, int]]:
+    """What can be said of a run without running it.
+
+    Parameters
+    ----------
+    scene : Scene
+    backend : {"native", "sksundae"}
+    checkpoint : ndarray, optional
+        Where the run is to go on.
+
+    Returns
+    -------
+    checkpoint_size : int
+        Numbers in a checkpoint, of the contact model that the run begins with.
+    skipped : dict
+        What the run did not need until then, by name.
+
+    Raises
+    ------
+    SceneError
+        If the scene is beyond what the engine can do.
+    """
+    problem = make_problem(scene)
+    counters = ready_driver(backend).COUNTERS
+    if checkpoint is not None and not problem.fits(checkpoint, counters):
+        problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
+    size = problem.checkpoint(0.0, problem.start, np.zeros(counters, np.int64)).size
+    return size, problem.skipped
 
 
 def _events(table: NDArray[np.float64]) -> Events:

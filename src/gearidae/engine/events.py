@@ -24,6 +24,7 @@ from gearidae.engine.mesh import (
     pair_gap,
     set_joined,
 )
+from gearidae.engine.nodes import follow_nodes, join_nodes, meet_nodes, middle_gap
 from gearidae.engine.residual import mesh_forces
 from gearidae.engine.torque import torque_force
 from gearidae.records import EventKind, Flank
@@ -47,6 +48,7 @@ EVENTS_AT_ONCE = 128
 """More than `handle` can record in one call."""
 
 _TINY = 1e-300
+_NO_FORCE = 1e-12  # of the reference load: less than this neither holds a gear nor moves it from rest
 _ONSET, _SEPARATION = float(EventKind.ONSET), float(EventKind.SEPARATION)
 _TURNING_POINT, _FULL_STRETCH = float(EventKind.TURNING_POINT), float(EventKind.FULL_STRETCH)
 _MESH_ENTRY, _MESH_EXIT = float(EventKind.MESH_ENTRY), float(EventKind.MESH_EXIT)
@@ -108,15 +110,15 @@ def guard(d: Floats, t: float, y: Floats) -> float:
             slot = history_slot(d, coast, pair)
             if d[slot + at.PAIR] == pair:
                 gap, rate = _kinematics(d, coast, pair, y)
-                least = min(least, _pair_guard(d, slot, gap, rate))
+                least = min(least, _pair_guard(d, slot, gap, rate, middle_gap(d, slot, y, gap)))
     # a guard that stays at exactly zero just after its root would be an error to the root finder; zero counts as
     # not yet fallen
     return least if least != 0.0 else _TINY
 
 
 @compiled
-def _pair_guard(d: Floats, slot: int, gap: float, rate: float) -> float:
-    """Least of one pair's guards."""
+def _pair_guard(d: Floats, slot: int, gap: float, rate: float, middle: float) -> float:
+    """Least of one pair's guards; asperities stretch with the gap in the middle, which deflection has its part in."""
     touch = gap - d[at.ENGAGE]
     least = -touch if d[slot + at.TOUCHING] != 0.0 else touch
     if gap >= d[at.CUTOFF]:
@@ -128,7 +130,7 @@ def _pair_guard(d: Floats, slot: int, gap: float, rate: float) -> float:
         for material in range(2):
             limit = material_stretch(d, material)
             if limit > 0.0 and d[slot + at.TORN + material] == 0.0:
-                least = min(least, d[slot + at.JOINED + material] + limit - gap)
+                least = min(least, d[slot + at.JOINED + material] + limit - middle)
     return least
 
 
@@ -136,9 +138,11 @@ def _pair_guard(d: Floats, slot: int, gap: float, rate: float) -> float:
 def _dry_guard(d: Floats, t: float, y: Floats) -> float:
     """Slip speed, or what is left of the dry resistance of a gear held at rest."""
     if d[at.SLIP] != 0.0:
-        return y[at.W] * d[at.SLIP]
-    force, relief, _, _, _, _ = mesh_forces(d, t, y[at.U], y[at.V], y[at.PHASE], y[at.W])
-    return torque_force(d, int(d[at.LOAD_AT]), t) - abs(force + d[at.DAMPING] * y[at.V] + relief)
+        # a slip too slow to be told from rest may turn back a little before it is called one
+        return y[at.W] * d[at.SLIP] + (0.0 if d[at.MOVING] != 0.0 else 2.0 * d[at.REST_SPEED])
+    force, relief, _, _, _, _ = mesh_forces(d, t, y)
+    push = force + d[at.DAMPING] * y[at.V] + relief
+    return max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + 2.0 * _NO_FORCE - abs(push)
 
 
 # -- histories between events ----------------------------------------------------------------------------------
@@ -148,6 +152,8 @@ def _dry_guard(d: Floats, t: float, y: Floats) -> float:
 def accept(d: Floats, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     d[at.LAST_TIME] = t
+    if d[at.DRY] != 0.0 and y[at.W] * d[at.SLIP] > d[at.REST_SPEED]:
+        d[at.MOVING] = 1.0
     for coast in range(1 if d[at.KIND] == at.ROLLER else 2):
         if _nearest(d, coast, y) >= d[at.CUTOFF]:
             if d[at.NEAR + coast] != 0.0:
@@ -159,8 +165,14 @@ def accept(d: Floats, t: float, y: Floats) -> None:
             slot = history_slot(d, coast, pair)
             gap, rate = _kinematics(d, coast, pair, y)
             if d[slot + at.PAIR] != pair or gap >= d[at.CUTOFF]:
-                _meet(d, slot, pair, gap)
+                _meet(d, slot, pair, gap, middle_gap(d, slot, y, gap))
+                if d[at.NODES] > 0.0:
+                    meet_nodes(d, slot, y, gap)
+            elif d[at.NODES] > 0.0:
+                follow_nodes(d, slot, y, gap)
             d[slot + at.LAST_GAP], d[slot + at.LAST_RATE] = gap, rate
+            if gap < d[at.LOWEST_GAP]:
+                d[at.PASSED] = 1.0
             if d[slot + at.WAY] == 0.0:
                 d[slot + at.WAY] = float(np.sign(rate))
 
@@ -175,16 +187,16 @@ def _forget(d: Floats, coast: int) -> None:
 
 
 @compiled
-def _meet(d: Floats, slot: int, pair: int, gap: float) -> None:
+def _meet(d: Floats, slot: int, pair: int, gap: float, middle: float) -> None:
     """Start the history of a pair on which nothing is joined yet."""
     if d[slot + at.PAIR] != pair:
         d[slot + at.PAIR] = pair
         d[slot + at.TOUCHING] = 1.0 if gap < d[at.ENGAGE] else 0.0
         for material in range(2):
             if material_stretch(d, material) > 0.0:
-                set_joined(d, slot, material, gap)
+                set_joined(d, slot, material, middle)
     for material in range(2):
-        d[slot + at.JOINED + material] = gap  # beyond the cut-off its branch does not matter
+        d[slot + at.JOINED + material] = middle  # beyond the cut-off its branch does not matter
         d[slot + at.TORN + material] = 0.0
     d[slot + at.WAY] = 0.0
 
@@ -226,7 +238,6 @@ def handle(d: Floats, t: float, y: Floats, events: Floats, count: int) -> tuple[
     count, action : int
         New number of events, and `CONTINUE`, `RESTART` (the equations have jumped) or `CROWDED`.
     """
-    before = count
     action = CONTINUE
     if d[at.KIND] == at.GEARS:
         forward = y[at.PHASE] >= d[at.MARK_HIGH]
@@ -243,10 +254,11 @@ def handle(d: Floats, t: float, y: Floats, events: Floats, count: int) -> tuple[
             slot = history_slot(d, coast, pair)
             if d[slot + at.PAIR] == pair:
                 count = _handle_pair(d, t, y, coast, pair, slot, events, count)
-    if t - d[at.WINDOW_START] > d[at.EVENT_WINDOW]:
-        d[at.WINDOW_START], d[at.WINDOW_COUNT] = t, 0.0
-    d[at.WINDOW_COUNT] += max(count - before, 1)
-    if d[at.WINDOW_COUNT] > d[at.EVENT_LIMIT]:
+    if t - d[at.LAST_ROOT] > d[at.ROOT_SPACING] * (1.0 + t):
+        d[at.ROOTS] = 0.0
+    d[at.LAST_ROOT] = t
+    d[at.ROOTS] += 1.0
+    if d[at.ROOTS] > d[at.ROOT_LIMIT]:
         action = CROWDED
     return count, action
 
@@ -281,18 +293,21 @@ def _handle_pair(
     if gap >= d[at.CUTOFF]:
         return count
     way = d[slot + at.WAY]
+    middle = middle_gap(d, slot, y, gap)
     for material in range(2):
         limit = material_stretch(d, material)
         waiting = limit > 0.0 and way > 0.0 and d[slot + at.TORN + material] == 0.0
-        if waiting and d[slot + at.JOINED + material] + limit <= gap:
+        if waiting and d[slot + at.JOINED + material] + limit <= middle:
             d[slot + at.TORN + material] = 1.0
             count = _record(events, count, d, t, _FULL_STRETCH, pair, coast, rate)
     if way != 0.0 and way * rate <= 0.0:
         for material in range(2):
             limit = material_stretch(d, material)
             if limit > 0.0:
-                set_joined(d, slot, material, joined_height(d[slot + at.JOINED + material], gap, limit))
+                set_joined(d, slot, material, joined_height(d[slot + at.JOINED + material], middle, limit))
                 d[slot + at.TORN + material] = 0.0
+        if d[at.NODES] > 0.0:
+            join_nodes(d, slot, y, gap)
         d[slot + at.WAY] = -way
         d[slot + at.LAST_GAP], d[slot + at.LAST_RATE] = gap, 0.0
         count = _record(events, count, d, t, _TURNING_POINT, pair, coast, rate)
@@ -302,11 +317,11 @@ def _handle_pair(
 @compiled
 def _stick_or_slip(d: Floats, t: float, y: Floats, events: Floats, count: int) -> int:
     """Set-valued dry resistance: it holds the gear as long as it can, and gives way as the load pushes."""
-    y[at.W] = 0.0
-    force, relief, _, _, _, _ = mesh_forces(d, t, y[at.U], y[at.V], y[at.PHASE], 0.0)
+    y[at.W] = d[at.MOVING] = 0.0
+    force, relief, _, _, _, _ = mesh_forces(d, t, y)
     push = force + d[at.DAMPING] * y[at.V] + relief
     slipping = d[at.SLIP] != 0.0
-    if slipping and abs(push) < torque_force(d, int(d[at.LOAD_AT]), t):
+    if slipping and abs(push) <= max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + _NO_FORCE:
         d[at.SLIP] = 0.0
         return _record(events, count, d, t, _STICK, 0, _NO_FLANK, 0.0)
     d[at.SLIP] = 1.0 if push > 0.0 else -1.0

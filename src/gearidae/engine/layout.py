@@ -46,13 +46,19 @@ ERROR_ORDERS: Final = 32  # number of harmonics of the static transmission error
 ERROR_AT: Final = 33  # where they begin: order, amplitude / sigma, phase
 DRIVE_AT: Final = 34  # where the torque laws begin
 LOAD_AT: Final = 35
-END: Final = 36  # end of the run, scaled
+REST_SPEED: Final = 36  # slip speed that is told from rest, some tolerances
 TOTAL_SLOTS: Final = 37  # both flanks
-EVENT_LIMIT: Final = 38  # events allowed within one EVENT_WINDOW of simulated time
-EVENT_WINDOW: Final = 39  # [tau]
+ROOT_LIMIT: Final = 38  # roots in succession allowed to be closer than ROOT_SPACING, times 1 + t
+ROOT_SPACING: Final = 39
 HISTORIES: Final = 40  # where the pairs' histories begin, and the size of one
 HISTORY: Final = 41
 BRANCH: Final = 42  # size of a material's branch at the end of a history; 0 if none is kept
+NODES: Final = 43  # nodes per pair of the elastic contact; 0 for the asperity model
+GRID_AT: Final = 44  # where their profile, weights and influence coefficients lie
+ORDERS: Final = 45  # powers of the footprint's length in the influence coefficients
+LENGTH_MIDDLE: Final = 46  # that length, counted from the middle of its range and over half of it
+LENGTH_HALF: Final = 47
+LOWEST_GAP: Final = 62  # the model holds above this gap of a pair
 
 # -- what changes during a run ---------------------------------------------------------------------------------------
 TURNS: Final = 48  # whole pitches taken out of the phase
@@ -61,10 +67,12 @@ LAST_TIME: Final = 50  # last accepted time
 MARK_LOW: Final = 51  # phases of the nearest mesh entries and exits
 MARK_HIGH: Final = 52
 LAST_FLANK: Final = 53  # flank of the last onset, -1 before the first
-WINDOW_START: Final = 54  # of the bound on the event rate
-WINDOW_COUNT: Final = 55
+LAST_ROOT: Final = 54  # time of the last root, and how many have come in close succession
+ROOTS: Final = 55
 NEXT_KNOT: Final = 56  # index of the coming schedule knot among all knots
 NEAR: Final = 57  # two flags: drive and coast flank close enough for any pair to touch
+MOVING: Final = 60  # 1 once a slip has become faster than REST_SPEED
+PASSED: Final = 59  # 1 once a pair has been below LOWEST_GAP
 CONSTANTS: Final = 64
 
 # -- the history of a tooth pair, in the slot `pair mod SLOTS` of its flank ------------------------------------------
@@ -75,7 +83,17 @@ LAST_RATE: Final = 3
 TOUCHING: Final = 4  # 1 between onset and separation
 JOINED: Final = 5  # per material, height above which asperities are joined at the last turning point
 TORN: Final = 7  # per material, 1 once full stretch has been reached on the way apart
-BRANCHES: Final = 9  # per material, the force law's branch at JOINED
+BRANCHES: Final = 9  # per material, the force law's branch at JOINED (asperity model)
+# An elastic contact has these in place of the branches, then rows of one number per node:
+LOADED: Final = 9  # 1 if the last evaluation found the pair within reach
+LENGTH: Final = 10  # length of its footprint, sqrt(radius / pitch)
+NODE_ROWS: Final = 11
+ROW_JOINED: Final = 0  # two rows, one per material: joined height
+ROW_GAP: Final = 2  # gap at the last accepted time
+ROW_SHARE: Final = 3  # how far the node's gap moves with the pair's
+ROW_PRESSURE: Final = 4  # of the last evaluation, and its slope in the node's gap
+ROW_SLOPE: Final = 5
+ROWS: Final = 6
 
 GEARS: Final = 0.0
 ROLLER: Final = 1.0
@@ -94,3 +112,4 @@ U: Final = 0  # dynamic transmission error (a roller's height) / sigma
 V: Final = 1  # its rate
 PHASE: Final = 2  # gear's turn in base pitches, less TURNS
 W: Final = 3  # gear's surface velocity at the base circle
+# then, for an elastic contact, the deflection of both bodies / sigma at every node of every history's pair

@@ -14,11 +14,19 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.law import branch_value, loading_value, set_branch, stretched_value
+from gearidae.contact.law import (
+    B_PIECES,
+    branch_length,
+    branch_value,
+    loading_value,
+    set_branch,
+    stretched_value,
+)
 from gearidae.engine import layout as at
 
 __all__ = [
     "first_pair",
+    "footprint",
     "history_slot",
     "last_pair",
     "material_stretch",
@@ -100,8 +108,9 @@ def pair_force(
             stretch = gap - joined
             if stretch <= 0.0:
                 continue
-            if stretch < limit and not turned and d[at.BRANCH] > 0.0:
-                first = slot + at.BRANCHES + material * int(d[at.BRANCH])
+            first = slot + at.BRANCHES + material * int(d[at.BRANCH])
+            kept = d[at.BRANCH] > 0.0 and d[first + B_PIECES] > 0.0
+            if stretch < limit and not turned and kept:
                 q, dq = branch_value(d[first:], stretch)
             else:
                 q, dq = stretched_value(d[int(d[record + at.M_TABLE]) :], gap, joined)
@@ -109,9 +118,15 @@ def pair_force(
             slope += d[record + at.M_FORCE] * dq
     if d[at.KIND] == at.ROLLER:
         return force, slope
+    length = footprint(d, inside)
+    return force * length, slope * length
+
+
+@compiled
+def footprint(d: Floats, inside: float) -> float:
+    """Length of a contact of given gap, ``sqrt(R / pb)``: R is the reduced radius of the two involutes."""
     pinion = d[at.START_RADIUS] + inside
-    radius = math.sqrt(pinion - pinion * pinion * d[at.SUM_CURVATURE])
-    return force * radius, slope * radius
+    return math.sqrt(pinion - pinion * pinion * d[at.SUM_CURVATURE])
 
 
 @compiled
@@ -124,12 +139,10 @@ def material_stretch(d: Floats, material: int) -> float:
 def set_joined(d: Floats, slot: int, material: int, joined: float) -> None:
     """Store the joined height of a turning point, and work out the branch that starts from it."""
     d[slot + at.JOINED + material] = joined
-    size = int(d[at.BRANCH])
-    if size > 0:
-        first = slot + at.BRANCHES + material * size
-        set_branch(
-            d[int(d[at.MATERIALS + at.MATERIAL * material + at.M_TABLE]) :], joined, d[first : first + size]
-        )
+    table = d[int(d[at.MATERIALS + at.MATERIAL * material + at.M_TABLE]) :]
+    # a law that is integrated when asked for keeps no branches, nor does an elastic contact
+    if d[at.BRANCH] > 0.0 and branch_length(table) > 0:
+        set_branch(table, joined, d[slot + at.BRANCHES + material * int(d[at.BRANCH]) :])
 
 
 @compiled

@@ -7,44 +7,38 @@ output is full, a budget of steps is used up, or the run is over, and can be cal
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
-from numba import carray, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled, compiled_callback
+from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine import sundials as sun
-from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, guard, handle, pass_knot
+from gearidae.engine.blocks import store_size
+from gearidae.engine.callbacks import callbacks, linear_steps
+from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, handle, pass_knot
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
-from gearidae.engine.residual import jacobian, residual
 from gearidae.engine.run import (
     BLOCK_EVENTS,
     BLOCK_ROWS,
     BLOCK_STEPS,
     CHECKPOINT_STEPS,
+    CODES,
+    FOLD_SHARE,
     Block,
     Ending,
     Tally,
     ending_of_flag,
     sample_time,
 )
+from gearidae.engine.settle import fastest_node
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
-__all__ = ["run"]
-
-if (
-    _reason := sun.unavailable()
-):  # loads the library as well, without which the callbacks below would abort the process
-    raise ImportError(_reason)
+__all__ = ["callbacks", "run"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-_REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
-_HUGE = 1 << 40  # carray wants a length; the callbacks never look at it
 
 # Handles: addresses of what SUNDIALS has made.
 CONTEXT, SOLVER, Y, YP, DKY, TOLERANCES, MATRIX, LINEAR, HANDLES = range(9)
@@ -68,54 +62,9 @@ CONTEXT, SOLVER, Y, YP, DKY, TOLERANCES, MATRIX, LINEAR, HANDLES = range(9)
     FLIGHT,
     PROGRESS,
 ) = range(16)
-CHATTER = 1  # progress[ERROR] when events crowd; negative numbers are IDA's own
-
-
-@compiled_callback(types.int32(types.float64, types.intp, types.intp, types.intp, _REALS))
-def _residual(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
-    d = carray(data, (_HUGE,))
-    residual(
-        d,
-        t,
-        carray(sun.N_VGetArrayPointer(yy), (4,)),
-        carray(sun.N_VGetArrayPointer(yp), (4,)),
-        carray(sun.N_VGetArrayPointer(rr), (4,)),
-    )
-    return 0
-
-
-@compiled_callback(
-    types.int32(
-        types.float64,
-        types.float64,
-        types.intp,
-        types.intp,
-        types.intp,
-        types.intp,
-        _REALS,
-        types.intp,
-        types.intp,
-        types.intp,
-    )
-)
-def _jacobian(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-    d = carray(data, (_HUGE,))
-    jacobian(
-        d, t, cj, carray(sun.N_VGetArrayPointer(yy), (4,)), carray(sun.SUNDenseMatrix_Data(matrix), (16,))
-    )
-    return 0
-
-
-@compiled_callback(types.int32(types.float64, types.intp, types.intp, _REALS, _REALS))
-def _guard(t, yy, yp, out, data):  # type: ignore[no-untyped-def]
-    d = carray(data, (_HUGE,))
-    carray(out, (1,))[0] = guard(d, t, carray(sun.N_VGetArrayPointer(yy), (4,)))
-    return 0
-
-
-def callbacks() -> Ints:
-    """Addresses of residual, Jacobian and guard."""
-    return np.array([_residual.address, _jacobian.address, _guard.address], dtype=np.int64)
+COUNTERS = PROGRESS
+# progress[ERROR]: what events, histories and folds may end a run with; negative numbers are IDA's own
+CHATTER, BEYOND = CODES
 
 
 @compiled
@@ -144,8 +93,16 @@ def open_solver(
     handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
     handles[TOLERANCES] = sun.N_VMake_Serial(n, atol.ctypes.data, context)
     sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
-    handles[MATRIX] = sun.SUNDenseMatrix(n, n, context)
-    handles[LINEAR] = sun.SUNLinSol_Dense(handles[Y], handles[MATRIX], context)
+    if d[at.NODES] == 0.0:
+        handles[MATRIX] = sun.SUNDenseMatrix(n, n, context)
+        handles[LINEAR] = sun.SUNLinSol_Dense(handles[Y], handles[MATRIX], context)
+    else:  # a column to keep the blocks in, and a solver whose steps are replaced before use
+        handles[MATRIX] = sun.SUNDenseMatrix(1, 1, context)
+        single = sun.N_VMake_Serial(1, y.ctypes.data, context)
+        handles[LINEAR] = sun.SUNLinSol_Dense(single, handles[MATRIX], context)
+        sun.N_VDestroy(single)
+        sun.SUNMatDestroy(handles[MATRIX])
+        handles[MATRIX] = sun.SUNDenseMatrix(store_size(d), 1, context)
     solver = sun.IDACreate(context)
     handles[SOLVER] = solver
     flag |= sun.IDAInit(solver, calls[0], d[at.LAST_TIME], handles[Y], handles[YP])
@@ -294,6 +251,8 @@ def advance(
             break
         progress[PENDING] = 0
         accept(d, t, y)
+        if d[at.PASSED] != 0.0:
+            progress[ERROR] = BEYOND
         if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:
             progress[FLIGHT] += 1
         restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
@@ -360,10 +319,15 @@ def run(
         progress[[ROWS, NEXT_SAMPLE]] = 1
     try:
         atol = rtol * problem.tolerance_scale
-        if open_solver(handles, callbacks(), d, y, yp, dky, atol) != 0:
+        elastic = d[at.NODES] > 0.0
+        flag = open_solver(handles, callbacks(elastic), d, y, yp, dky, atol)
+        if flag == 0 and elastic:
+            sun.replace_steps(int(handles[LINEAR]), int(handles[CONTEXT]), *linear_steps())
+        if flag != 0:
             tally.ending = Ending.SOLVER_FAILURE
             return
-        while progress[DONE] == 0 and progress[ERROR] == 0:
+        beyond = False
+        while progress[DONE] == 0 and progress[ERROR] == 0 and not beyond:
             time = advance(
                 handles,
                 d,
@@ -381,7 +345,13 @@ def run(
                 progress,
                 BLOCK_STEPS,
             )
-            _fill_tally(tally, progress)
+            _fill_tally(tally, progress, elastic)
+            if progress[ERROR] < 0 and elastic and fastest_node(d, time, y) > FOLD_SHARE:
+                tally.ending = Ending.FOLD
+            if progress[ERROR] == BEYOND:  # whoever goes on from here starts afresh
+                progress[[ERROR, PENDING]] = 0, -1
+                progress[RESTARTS] += 1
+                beyond = True
             ready = progress[PENDING] < 0 or progress[DONE] != 0
             yield Block(
                 rows[: progress[ROWS]].copy(),
@@ -394,7 +364,7 @@ def run(
         close(handles)
 
 
-def _fill_tally(tally: Tally, progress: Ints) -> None:
+def _fill_tally(tally: Tally, progress: Ints, elastic: bool) -> None:
     tally.steps = int(progress[STEPS])
     tally.residual_evaluations = int(progress[RESIDUALS])
     tally.jacobian_evaluations = int(progress[JACOBIANS])
@@ -403,4 +373,4 @@ def _fill_tally(tally: Tally, progress: Ints) -> None:
     tally.restarts = int(progress[RESTARTS])
     tally.guard_evaluations = int(progress[GUARD_CALLS])
     tally.flight_steps = int(progress[FLIGHT])
-    tally.ending = ending_of_flag(int(progress[ERROR]))
+    tally.ending = ending_of_flag(int(progress[ERROR]), elastic)

@@ -33,11 +33,11 @@ def observe(d: Floats, t: float, y: Floats, row: Floats) -> None:
     length, speed = d[at.SIGMA], d[at.SIGMA] / d[at.TAU]
     u, v = y[at.U], y[at.V]
     if d[at.KIND] == at.ROLLER:
-        force, _ = roller_force(d, t, u, v)
+        force, _ = roller_force(d, t, y)
         row[0], row[1], row[2] = u * length, v * speed, force * d[at.FORCE]
         return
     phase, w = y[at.PHASE], y[at.W]
-    force, relief, _, _, _, _ = mesh_forces(d, t, u, v, phase, w)
+    force, relief, _, _, _, _ = mesh_forces(d, t, y)
     e1 = 0.0
     if d[at.ERROR_ORDERS] != 0.0:
         _, _, e1, _ = static_error(d, u, phase)

@@ -16,6 +16,7 @@ from sksundae.ida import IDA
 
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
+from gearidae.engine.blocks import dense_jacobian, store_size
 from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, guard, handle, pass_knot
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
@@ -24,12 +25,15 @@ from gearidae.engine.run import (
     BLOCK_EVENTS,
     BLOCK_ROWS,
     CHECKPOINT_STEPS,
+    CODES,
+    FOLD_SHARE,
     Block,
     Ending,
     Tally,
     ending_of_flag,
     sample_time,
 )
+from gearidae.engine.settle import fastest_node
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
 __all__ = ["run"]
@@ -43,7 +47,7 @@ _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third
 
 
 # The run's counters, kept in checkpoints.
-_NEXT_SAMPLE, _STEPS, _RESIDUALS, _JACOBIANS, _GUARD_CALLS, _RESTARTS, _FLIGHT, _COUNTERS = range(8)
+_NEXT_SAMPLE, _STEPS, _RESIDUALS, _JACOBIANS, _GUARD_CALLS, _RESTARTS, _FLIGHT, COUNTERS = range(8)
 
 
 def run(
@@ -51,7 +55,7 @@ def run(
 ) -> Iterator[Block]:
     """Run a problem, block by block; see `gearidae.engine.native.run`."""
     d, y, t = problem.data, problem.start.copy(), 0.0
-    counters = np.zeros(_COUNTERS, np.int64)
+    counters = np.zeros(COUNTERS, np.int64)
     output = _Output(problem, total)
     if resume is not None:
         t = problem.restore(resume, y, counters)
@@ -63,12 +67,15 @@ def run(
     knots = [*problem.knots[int(d[at.NEXT_KNOT]) :], problem.end]
     solver, trail = _start(problem, rtol, t, y, knots[0])
     since = 0
+    elastic = d[at.NODES] > 0.0
     while knots:
         result = solver.step(knots[-1], method="onestep", tstop=knots[0])
         since += 1
         flag = result.status
         if flag < 0 or not np.isfinite(result.y).all():
             tally.ending = ending_of_flag(flag) if flag < 0 else Ending.NOT_FINITE
+            if elastic and fastest_node(d, t, y) > FOLD_SHARE:
+                tally.ending = Ending.FOLD
             break
         t, y = result.t, result.y
         trail.add(t, y, result.yp)
@@ -89,6 +96,12 @@ def run(
             if knots:
                 output.event_count = pass_knot(d, t, output.events, output.event_count)
                 restart = True
+        if d[at.PASSED] != 0.0:
+            tally.ending = ending_of_flag(CODES[1], elastic)
+            tally.restarts += 1
+            solver.count(tally)
+            yield output.flush(t, _checkpoint(problem, t, y, output, tally))
+            return
         checkpoint = since >= CHECKPOINT_STEPS
         if (restart or checkpoint) and knots:
             rebase(d, y)
@@ -124,11 +137,15 @@ class _Solver:
         d, n = problem.data, problem.start.size
         self._guard_calls = 0
         column_major = np.empty(n * n)
+        blocks = np.empty(store_size(d) if d[at.NODES] > 0.0 else 0)
 
         def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
             residual(d, t, y, yp, out)
 
         def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
+            if blocks.size > 0:
+                dense_jacobian(d, t, cj, y, blocks, out)
+                return
             jacobian(d, t, cj, y, column_major)
             out[:] = column_major.reshape(n, n).T
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,14 +17,17 @@ from gearidae.contact.law import (
     HEADER,
     N_LOADING,
     STRETCH_HIGH,
+    Kernel,
     branch_length,
     force_scale,
     law_table,
     law_value,
 )
 from gearidae.engine import layout as at
+from gearidae.engine.elastic import Footing, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.events import begin
-from gearidae.engine.mesh import material_stretch
+from gearidae.engine.mesh import footprint, material_stretch
+from gearidae.engine.settle import settle_nodes
 from gearidae.engine.torque import pack_torque
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
@@ -36,7 +40,8 @@ Floats = NDArray[np.float64]
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
-EVENTS_PER_TAU = 20_000  # more than this is chatter
+ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
+ROOT_SPACING = 1e-12  # what is close, over the time itself
 
 
 @dataclass(slots=True)
@@ -59,6 +64,8 @@ class Problem:
         What `observe` writes.
     skipped : dict
         What this scene does not need.
+    elastic : callable, optional
+        Makes the elastic problem that takes over when the asperity model, chosen automatically, no longer will do.
     """
 
     data: Floats
@@ -68,6 +75,7 @@ class Problem:
     knots: Floats
     columns: tuple[str, ...]
     skipped: dict[str, int]
+    elastic: Callable[[], Problem] | None = None
 
     @property
     def time_unit(self) -> float:
@@ -89,6 +97,14 @@ class Problem:
         changing = self.data[: int(self.data[at.LOADING_AT])]
         return np.concatenate([[time], state, counters, changing])
 
+    def fits(self, checkpoint: Floats, counters: int) -> bool:
+        """Whether a checkpoint with so many counters has this problem's size."""
+        return checkpoint.size == 1 + self.start.size + counters + int(self.data[at.LOADING_AT])
+
+    def outgrown(self, checkpoint: Floats) -> bool:
+        """Whether a checkpoint of this problem stands where the model's bound has been passed."""
+        return bool(checkpoint[checkpoint.size - int(self.data[at.LOADING_AT]) + at.PASSED] != 0.0)
+
     def restore(self, checkpoint: Floats, state: Floats, counters: NDArray[np.int64]) -> float:
         """Take a checkpoint back, in place, and return its time over tau.
 
@@ -98,7 +114,7 @@ class Problem:
             If the checkpoint is not of this problem.
         """
         changing = int(self.data[at.LOADING_AT])
-        if checkpoint.size != 1 + state.size + counters.size + changing:
+        if not self.fits(checkpoint, counters.size):
             raise SceneError("checkpoint", f"{checkpoint.size} numbers", "is not of this scene")
         ends = np.cumsum([1, state.size, counters.size])
         state[:] = checkpoint[ends[0] : ends[1]]
@@ -115,9 +131,10 @@ def make_problem(scene: Scene) -> Problem:
     SceneError
         If the scene is beyond what the engine can do.
     """
-    if scene.contact.model == "elastic":
-        raise SceneError("contact.model", "elastic", "is not available in a run yet; use asperity or auto")
-    return _gear_problem(scene) if scene.roller is None else _roller_problem(scene)
+    problem = _gear_problem(scene) if scene.roller is None else _roller_problem(scene)
+    if scene.contact.model == "auto" and problem.data[at.NODES] == 0.0:
+        problem.elastic = lambda: make_problem(scene.replace({"contact.model": "elastic"}))
+    return problem
 
 
 def _gear_problem(scene: Scene) -> Problem:
@@ -141,8 +158,17 @@ def _gear_problem(scene: Scene) -> Problem:
     head[at.HALF_BACKLASH] = 0.5 * mesh.backlash / sigma
     head[at.DAMPING] = mesh.damping * speed / force
     head[at.DRAG] = load.drag / r2**3 * speed**2 / force
+    # the radius is largest where both radii of curvature are the same, if that is on the path
+    equal = 0.5 / head[at.SUM_CURVATURE] - head[at.START_RADIUS]
+    places = (0.0, head[at.PATH], min(max(equal, 0.0), head[at.PATH]))
+    lengths = [footprint(head, inside) for inside in places]
+    # the load pushing through the whole backlash, twice for good measure
+    energy = 2.0 * force * mesh.backlash
+    footing = Footing(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force)
+    grid = _bodies(head, scene, footing)
     head[at.DRY] = float(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
     head[at.SLIP] = np.sign(start.gear_speed) if head[at.DRY] else 1.0
+    head[at.REST_SPEED] = 10.0 * scene.run.rtol
     contact = _contact(
         head,
         scene,
@@ -156,15 +182,15 @@ def _gear_problem(scene: Scene) -> Problem:
     errors = [x for h in mesh.static_error for x in (h.order, h.amplitude / sigma, h.phase)]
     head[at.ERROR_ORDERS] = len(mesh.static_error)
     laws = (_torque(drive, tau, force * r1), _torque(load, tau, force * r2))
-    data = _assemble(head, 2, slots, contact, np.array(errors), *laws)
+    data = _assemble(head, 2, slots, contact, np.array(errors), *laws, grid)
     knots = {t / tau for shaft in (drive, load) for t, _ in shaft.schedule if 0.0 < t < scene.run.duration}
 
     relief = _relief(head, start.mesh_phase)
     u = head[at.HALF_BACKLASH] + relief - start.gap / sigma
-    y0 = np.array([u, 0.0, start.mesh_phase, start.gear_speed * r2 / speed])
+    y0 = _with_nodes(data, [u, 0.0, start.mesh_phase, start.gear_speed * r2 / speed])
     begin(data, 0.0, y0)
     # an error in the phase matters by the gap it opens where tip relief is steepest
-    scale = np.array([1.0, 1.0, 1.0 / (head[at.RELIEF] * head[at.REACH]), 1.0])
+    scale = _scale(data, [1.0, 1.0, 1.0 / (head[at.RELIEF] * head[at.REACH]), 1.0])
     skipped = _skipped(data, scene) | {
         "static_error": int(not errors),
         "harmonics": int(not drive.harmonic and not load.harmonic),
@@ -205,13 +231,18 @@ def _roller_problem(scene: Scene) -> Problem:
     head[at.SIGMA], head[at.TAU], head[at.FORCE] = sigma, tau, force
     head[at.GEAR_SHARE] = 1.0
     head[at.LAST_FLANK] = -1.0
+    energy = 0.5 * roller.mass * roller.speed**2
+    footing = Footing(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0)
+    grid = _bodies(head, scene, footing)
     contact = _contact(head, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
     none = np.zeros(at.LAW_BODY)
-    data = _assemble(head, 1, 1, contact, np.zeros(0), none, none)
-    y0 = np.array([roller.height / sigma, -roller.speed * tau / sigma])
+    data = _assemble(head, 1, 1, contact, np.zeros(0), none, none, grid)
+    y0 = _with_nodes(data, [roller.height / sigma, -roller.speed * tau / sigma])
     begin(data, 0.0, y0)
     end = scene.run.duration / tau
-    return Problem(data, y0, np.ones(2), end, np.zeros(0), ROLLER_COLUMNS, _skipped(data, scene))
+    return Problem(
+        data, y0, _scale(data, [1.0, 1.0]), end, np.zeros(0), ROLLER_COLUMNS, _skipped(data, scene)
+    )
 
 
 def _skipped(data: Floats, scene: Scene) -> dict[str, int]:
@@ -222,6 +253,7 @@ def _skipped(data: Floats, scene: Scene) -> dict[str, int]:
         "coated_surface": int(fraction == 0.0),
         "bare_hysteresis": int(material_stretch(data, 0) == 0.0),
         "coated_hysteresis": int(material_stretch(data, 1) == 0.0),
+        "elastic_deflection": int(data[at.NODES] == 0.0),
     }
 
 
@@ -252,6 +284,47 @@ def _reference_force(scene: Scene, mass: float) -> float:
     return force if force > 0.0 else mass * scene.surface.roughness * (1e3 / scene.run.duration) ** 2
 
 
+def _bodies(head: Floats, scene: Scene, footing: Footing) -> Floats:
+    """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
+    model = scene.contact.model
+    head[at.LOWEST_GAP] = GAP_LOW  # where the tables of the force law end
+    if model == "auto":
+        lowest, enough = rigid_limit(scene, footing)
+        model = "asperity" if enough else "elastic"
+        head[at.LOWEST_GAP] = lowest
+    if model == "asperity":
+        return np.zeros(0)
+    deepest = deepest_gap(scene, footing)
+    grid = node_grid(scene, footing, head[at.FORCE], deepest)
+    head[[at.NODES, at.ORDERS]] = grid.nodes, grid.orders
+    head[[at.LENGTH_MIDDLE, at.LENGTH_HALF]] = grid.middle, grid.half
+    head[at.LOWEST_GAP] = min(deepest, 0.0)
+    return grid.body
+
+
+def _with_nodes(data: Floats, motion: list[float]) -> Floats:
+    """State of the motion, and the deflections of all pairs, none of which has a history yet."""
+    nodes = int(data[at.NODES])
+    state = np.concatenate([motion, np.zeros(nodes * int(data[at.TOTAL_SLOTS]))])
+    if nodes > 0:
+        for k in range(int(data[at.TOTAL_SLOTS])):
+            data[int(data[at.HISTORIES] + data[at.HISTORY] * k) + at.PAIR] = math.nan
+        settle_nodes(data, 0.0, state)
+    return state
+
+
+def _scale(data: Floats, motion: list[float]) -> Floats:
+    """What an error of 1 means for each state.
+
+    The solver's norm is a mean over all states. Factors make it that of the motion alone, however many
+    nodes there are, with the nodes of one pair counting as one more state.
+    """
+    n, blocks = int(data[at.NODES]), int(data[at.TOTAL_SLOTS])
+    share = math.sqrt(len(motion) / (len(motion) + n * blocks))
+    nodes = np.full(n * blocks, share * math.sqrt(max(n, 1)))
+    return np.concatenate([share * np.array(motion), nodes])
+
+
 def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest: float) -> list[Floats]:
     """Force scales, stretch limits, and the gaps where contact begins to count and to exist at all.
 
@@ -275,7 +348,8 @@ def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest:
                 surface.roughness,
                 f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
             )
-        table = law_table(limit, scene.contact.asperity) if share > 0.0 else np.zeros(HEADER)
+        kernel: Kernel = "plane" if head[at.NODES] > 0.0 else "line"
+        table = law_table(limit, scene.contact.asperity, kernel) if share > 0.0 else np.zeros(HEADER)
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * footprint / head[at.FORCE]
         record = at.MATERIALS + at.MATERIAL * material
@@ -300,19 +374,30 @@ def _outermost(table: Floats, scale: float, floor: float) -> float:
 
 
 def _assemble(
-    head: Floats, flanks: int, slots: int, contact: list[Floats], errors: Floats, drive: Floats, load: Floats
+    head: Floats,
+    flanks: int,
+    slots: int,
+    contact: list[Floats],
+    errors: Floats,
+    drive: Floats,
+    load: Floats,
+    grid: Floats,
 ) -> Floats:
     """Put the flat array together and note where its parts are."""
     head[at.SLOTS], head[at.TOTAL_SLOTS] = slots, flanks * slots
-    head[at.EVENT_LIMIT], head[at.EVENT_WINDOW] = EVENTS_PER_TAU, 1.0
-    head[at.BRANCH] = max(branch_length(table) for table in contact[1:])
-    head[at.HISTORY] = at.BRANCHES + 2 * head[at.BRANCH]
+    head[at.ROOT_LIMIT], head[at.ROOT_SPACING] = ROOT_LIMIT, ROOT_SPACING
+    if head[at.NODES] > 0.0:
+        head[at.HISTORY] = at.NODE_ROWS + at.ROWS * head[at.NODES]
+    else:
+        head[at.BRANCH] = max(branch_length(table) for table in contact[1:])
+        head[at.HISTORY] = at.BRANCHES + 2 * head[at.BRANCH]
     histories = np.zeros(int(head[at.HISTORY]) * flanks * slots)
-    parts = [head, histories, errors, drive, load, *contact]
+    parts = [head, histories, errors, drive, load, *contact, grid]
     starts = np.cumsum([0] + [part.size for part in parts])
     head[[at.HISTORIES, at.ERROR_AT, at.DRIVE_AT, at.LOAD_AT, at.LOADING_AT]] = starts[1:6]
     for material in range(2):
         head[at.MATERIALS + at.MATERIAL * material + at.M_TABLE] = starts[6 + material]
+    head[at.GRID_AT] = starts[8]
     return np.concatenate(parts)
 
 

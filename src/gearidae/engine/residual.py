@@ -7,7 +7,8 @@ States of a gear pair, scaled (see `layout`): u, its rate v, the gear's phase in
 
 with F the sum of the pairs' forces along the line of action and Fs the part that tip relief adds (Teodorescu et al.
 2009, Eqs. 1-6, with the tip relief doing work consistently). A gear held by dry resistance has w' = 0. A roller has
-the states z and its rate, z' - v = 0, v' - a2 F = 0.
+the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic contact adds the deflections at its nodes, which
+have no rates: the system is then a DAE of index 1.
 """
 
 from __future__ import annotations
@@ -17,7 +18,16 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
-from gearidae.engine.mesh import first_pair, history_slot, last_pair, pair_force, pair_gap, static_error
+from gearidae.engine.mesh import (
+    first_pair,
+    footprint,
+    history_slot,
+    last_pair,
+    pair_force,
+    pair_gap,
+    static_error,
+)
+from gearidae.engine.nodes import node_force, node_residual, unload
 from gearidae.engine.torque import torque_force
 
 __all__ = ["jacobian", "mesh_forces", "residual", "resisting_force", "roller_force"]
@@ -26,18 +36,23 @@ Floats = NDArray[np.float64]
 
 
 @compiled
-def roller_force(d: Floats, t: float, height: float, speed: float) -> tuple[float, float]:
+def roller_force(d: Floats, t: float, y: Floats) -> tuple[float, float]:
     """Force on a roller and its slope in the height, scaled."""
+    height, speed = y[at.U], y[at.V]
+    slot = int(d[at.HISTORIES])
+    elastic = d[at.NODES] > 0.0
+    if elastic:
+        unload(d)
     if height >= d[at.CUTOFF]:
         return 0.0, 0.0
-    return pair_force(d, int(d[at.HISTORIES]), True, t, height, speed, 0.0)
+    if elastic:
+        return node_force(d, slot, d[slot + at.PAIR] == 0.0, t, y, height, speed, 1.0)
+    return pair_force(d, slot, True, t, height, speed, 0.0)
 
 
 @compiled
-def mesh_forces(
-    d: Floats, t: float, u: float, v: float, phase: float, w: float
-) -> tuple[float, float, float, float, float, float]:
-    """Sum the forces of all pairs within reach, with their slopes.
+def mesh_forces(d: Floats, t: float, y: Floats) -> tuple[float, float, float, float, float, float]:
+    """Sum the forces of all pairs within reach, with their slopes; those of an elastic contact at fixed deflection.
 
     Returns
     -------
@@ -47,7 +62,11 @@ def mesh_forces(
         Their partial derivatives in u and phase.
     """
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
+    u, v, phase, w = y[at.U], y[at.V], y[at.PHASE], y[at.W]
     cutoff = d[at.CUTOFF]
+    elastic = d[at.NODES] > 0.0
+    if elastic:
+        unload(d)
     for coast in range(2):
         sign = 1.0 - 2.0 * coast
         if d[at.HALF_BACKLASH] - sign * u >= cutoff:  # tip relief only opens the gap: no pair can be in reach
@@ -58,7 +77,10 @@ def mesh_forces(
                 continue
             slot = history_slot(d, coast, pair)
             known = d[slot + at.PAIR] == pair
-            load, stiffness = pair_force(d, slot, known, t, gap, rate, inside)
+            if elastic:
+                load, stiffness = node_force(d, slot, known, t, y, gap, rate, footprint(d, inside))
+            else:
+                load, stiffness = pair_force(d, slot, known, t, gap, rate, inside)
             load *= sign
             # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair
             # backwards along its path
@@ -94,17 +116,19 @@ def residual(d: Floats, t: float, y: Floats, yp: Floats, out: Floats) -> None:
         The scene, see `layout`.
     t : float
         Time over tau.
-    y, yp, out : ndarray, shape (4,) or (2,)
+    y, yp, out : ndarray, shape (4,) or (2,), and the nodes
         State, its rate, and where the residual goes.
     """
     v = y[at.V]
     out[at.U] = yp[at.U] - v
     if d[at.KIND] == at.ROLLER:
-        force, _ = roller_force(d, t, y[at.U], v)
+        force, _ = roller_force(d, t, y)
         out[at.V] = yp[at.V] - d[at.GEAR_SHARE] * force
+        if d[at.NODES] > 0.0:
+            node_residual(d, y, out)
         return
     u, phase, w = y[at.U], y[at.PHASE], y[at.W]
-    force, relief, _, _, _, _ = mesh_forces(d, t, u, v, phase, w)
+    force, relief, _, _, _, _ = mesh_forces(d, t, y)
     force += d[at.DAMPING] * v
     drive = torque_force(d, int(d[at.DRIVE_AT]), t)
     if d[at.ERROR_ORDERS] == 0.0:
@@ -119,11 +143,13 @@ def residual(d: Floats, t: float, y: Floats, yp: Floats, out: Floats) -> None:
         out[at.W] = yp[at.W] - d[at.GEAR_SHARE] * (force + relief - resisting_force(d, t, w))
     out[at.V] = yp[at.V] + yp[at.W] - pinion
     out[at.PHASE] = yp[at.PHASE] - d[at.PHASE_RATE] * w
+    if d[at.NODES] > 0.0:
+        node_residual(d, y, out)
 
 
 @compiled
 def jacobian(d: Floats, t: float, cj: float, y: Floats, out: Floats) -> None:
-    """dF/dy + cj dF/dy', dense, column by column (Fortran order).
+    """dF/dy + cj dF/dy' of the motion, dense, column by column (Fortran order).
 
     The static error's own slopes are left out: it is small, and the Jacobian only steers Newton's iteration.
 
@@ -133,17 +159,17 @@ def jacobian(d: Floats, t: float, cj: float, y: Floats, out: Floats) -> None:
         The scene, see `layout`.
     t, cj : float
         Time over tau, and IDA's leading coefficient.
-    y : ndarray, shape (n,)
-    out : ndarray, shape (n * n,)
+    y : ndarray
+        State; the deflections of an elastic contact after the motion.
+    out : ndarray, shape (16,) or (4,)
     """
-    v = y[at.V]
     if d[at.KIND] == at.ROLLER:
-        _, slope = roller_force(d, t, y[at.U], v)
+        _, slope = roller_force(d, t, y)
         out[0], out[1] = cj, -d[at.GEAR_SHARE] * slope
         out[2], out[3] = -1.0, cj
         return
     w = y[at.W]
-    _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(d, t, y[at.U], v, y[at.PHASE], w)
+    _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(d, t, y)
     a1, a2, damping = d[at.PINION_SHARE], d[at.GEAR_SHARE], d[at.DAMPING]
     held = d[at.DRY] != 0.0 and d[at.SLIP] == 0.0
     out[:16] = 0.0

@@ -15,6 +15,8 @@ __all__ = [
     "BLOCK_EVENTS",
     "BLOCK_ROWS",
     "BLOCK_STEPS",
+    "CODES",
+    "FOLD_SHARE",
     "Block",
     "Ending",
     "Tally",
@@ -38,11 +40,23 @@ class Ending(Enum):
     """How a run ended: its status in the dataset, and a sentence."""
 
     FINISHED = ("finished", "")
-    CHATTER = ("chatter", "events crowded without bound: the contact chatters")
+    CHATTER = ("chatter", "event followed event without the time going on")
     STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
     NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
     TOO_ACCURATE = ("too_accurate", "the tolerance asks for more than double precision can give")
     SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
+    FOLD = (
+        "fold",
+        "the elastic contact folds: adhesion outgrows the stiffness of the bodies, and the surfaces would jump",
+    )
+    DEFLECTION = (
+        "deflection",
+        "the bodies give way too much for the asperity model; set contact.model to elastic",
+    )
+    TOO_DEEP = (
+        "too_deep",
+        "the teeth were pressed together more than the elastic contact's nodes were laid out for",
+    )
     NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
 
     @property
@@ -56,12 +70,25 @@ class Ending(Enum):
         return self.value[1]
 
 
-_FLAGS = {-2: Ending.TOO_ACCURATE, -3: Ending.STEP_UNDERFLOW, -4: Ending.NO_CONVERGENCE, 1: Ending.CHATTER}
+CODES = (1, 2)
+"""What a driver may end a run with of its own: crowded events, a gap beyond the model's bound."""
+FOLD_SHARE = 30.0
+"""A node that moves so many times as fast as the bodies is about to jump: the static curve folds."""
+
+_FLAGS = {
+    0: Ending.FINISHED,
+    -2: Ending.TOO_ACCURATE,
+    -3: Ending.STEP_UNDERFLOW,
+    -4: Ending.NO_CONVERGENCE,
+    1: Ending.CHATTER,
+}
 
 
-def ending_of_flag(flag: int) -> Ending:
-    """Name an error flag of IDA's (negative) or of the event handling (positive)."""
-    return Ending.FINISHED if flag == 0 else _FLAGS.get(flag, Ending.SOLVER_FAILURE)
+def ending_of_flag(flag: int, elastic: bool = False) -> Ending:
+    """Name an error flag of IDA's (negative) or one of `CODES`."""
+    if flag == CODES[1]:
+        return Ending.TOO_DEEP if elastic else Ending.DEFLECTION
+    return _FLAGS.get(flag, Ending.SOLVER_FAILURE)
 
 
 @dataclass(slots=True)

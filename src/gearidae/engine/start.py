@@ -9,25 +9,28 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
+from gearidae.engine.nodes import node_rates
 from gearidae.engine.residual import residual
 
 __all__ = ["first_step", "rebase", "set_rates"]
 
 Floats = NDArray[np.float64]
 
-PHASE_HIGH = 4096.0
-"""The phase is taken back to within this many pitches whenever the integration starts afresh."""
+PHASE_HIGH = 16.0
+"""Pitches at which whole ones are taken out of the phase: it is held to absolute tolerances, down to 1e-15."""
 
 
 @compiled
 def set_rates(d: Floats, t: float, y: Floats, yp: Floats) -> None:
-    """Solve F(t, y, y') = 0 for y', in place."""
+    """Solve F(t, y, y') = 0 for y', in place; its derivative in time where the nodes are concerned."""
     out = np.empty(y.size)
     yp[:] = 0.0
     residual(d, t, y, yp, out)
     yp[:] = -out
     if d[at.KIND] == at.GEARS:
         yp[at.V] -= yp[at.W]
+    if d[at.NODES] > 0.0:
+        node_rates(d, yp)
 
 
 @compiled
@@ -60,7 +63,13 @@ def first_step(
     curvature = 1e-9
     for i in range(y.size):
         curvature = max(curvature, abs(later[i] - yp[i]) / (probe * scale[i]))
-    return float(min(0.5 * math.sqrt(rtol / curvature), longest))
+    step = min(0.5 * math.sqrt(rtol / curvature), longest)
+    if d[at.DRY] != 0.0 and d[at.SLIP] != 0.0 and y[at.W] == 0.0:
+        # a slip that has just begun must not come to rest again within the first, linear step
+        change = abs(later[at.W] - yp[at.W]) / probe
+        if change > 0.0:
+            step = min(step, 0.25 * abs(yp[at.W]) / change)
+    return float(step)
 
 
 @compiled

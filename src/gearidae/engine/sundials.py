@@ -7,6 +7,7 @@ call it; no compiler and no second copy of the library are needed.
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -14,7 +15,7 @@ from typing import Any
 from llvmlite import binding
 from numba import types
 
-__all__ = ["unavailable"]
+__all__ = ["replace_steps", "unavailable"]
 
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
@@ -40,6 +41,39 @@ def unavailable() -> str:
         return f"the SUNDIALS library cannot be loaded ({error})"
     missing = [name for name in _NAMES if binding.address_of_symbol(name) is None]
     return f"the SUNDIALS library lacks {', '.join(missing)}" if missing else ""
+
+
+def replace_steps(linear: int, context: int, setup: int, solve: int) -> None:
+    """Give a dense linear solver another set-up and solve.
+
+    A linear solver is a record of pointers: content, a table of functions, its context. Where the table and the two
+    functions lie in it depends on SUNDIALS' version, so they are looked for by what they hold.
+
+    Parameters
+    ----------
+    linear, context : int
+        Addresses of the solver and of its context.
+    setup, solve : int
+        Addresses of functions ``int(linear, matrix)`` and ``int(linear, matrix, x, b, tolerance)``.
+
+    Raises
+    ------
+    RuntimeError
+        If the functions are not where they could be.
+    """
+    fields = [ctypes.c_int64.from_address(linear + 8 * i) for i in range(6)]
+    after = next((i for i, field in enumerate(fields) if field.value == context), 0)
+    wanted = {
+        binding.address_of_symbol("SUNLinSolSetup_Dense"): setup,
+        binding.address_of_symbol("SUNLinSolSolve_Dense"): solve,
+    }
+    table = fields[after - 1].value if after else 0
+    functions = [ctypes.c_int64.from_address(table + 8 * i) for i in range(12)] if table else []
+    found = [function for function in functions if function.value in wanted]
+    if len(found) != len(wanted):
+        raise RuntimeError("SUNDIALS lays out its linear solvers in an unknown way")
+    for function in found:
+        function.value = wanted[function.value]
 
 
 _PTR = types.intp

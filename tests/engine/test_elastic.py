@@ -1,0 +1,330 @@
+"""Teeth whose bodies give way: the deflections as unknowns of the integration."""
+
+import math
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.contact import asperity_of
+from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve, elastic_line_force
+from gearidae.engine import elastic, problem, solve
+from gearidae.engine import layout as at
+from gearidae.engine.backend import run_blocks
+from gearidae.engine.blocks import assemble, dense_jacobian, factorise, solve_blocks, store_size
+from gearidae.engine.problem import make_problem
+from gearidae.engine.residual import mesh_forces, residual
+from gearidae.engine.run import Tally
+from gearidae.engine.settle import settle_nodes
+from gearidae.records import EventKind
+
+
+def roller(name, fraction=0.0, **changes):
+    keys = {"contact.model": "elastic", "coating.sam_fraction": fraction, "run.samples": 20001}
+    return gd.preset(name).replace(keys | changes)
+
+
+@pytest.fixture(scope="module")
+def impacts():
+    cases = [(name, f) for name in ("roller_slow", "roller_fast") for f in (0.0, 1.0)]
+    return {(name, f): solve(roller(name, f)).samples for name, f in cases}
+
+
+@pytest.mark.parametrize(
+    ("name", "fraction", "peak"),
+    [
+        ("roller_slow", 0.0, 16.6e-6),
+        ("roller_slow", 1.0, 15.4e-6),
+        ("roller_fast", 0.0, 559e-6),
+        ("roller_fast", 1.0, 551e-6),
+    ],
+)
+def test_peaks_of_figures_2_and_3(impacts, name, fraction, peak):
+    assert impacts[name, fraction]["force"].max() == pytest.approx(peak, rel=0.02)
+
+
+def test_approach_and_pull_off_of_figure_2(impacts):
+    assert impacts["roller_slow", 0.0]["height"].min() == pytest.approx(10.8e-9, rel=0.02)
+    assert impacts["roller_slow", 1.0]["height"].min() == pytest.approx(12.3e-9, rel=0.02)
+    assert impacts["roller_slow", 0.0]["force"].min() == pytest.approx(-1.26e-6, rel=0.02)
+    assert impacts["roller_slow", 1.0]["force"].min() > -1e-3 * 1.26e-6
+
+
+def test_rigid_bodies_would_double_the_force():
+    run = solve(roller("roller_fast", **{"contact.model": "asperity"}))
+    assert run.samples["force"].max() == pytest.approx(1.1e-3, rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["roller_slow", "roller_fast"])
+@pytest.mark.parametrize("fraction", [0.0, 0.5])
+def test_force_is_that_of_the_static_contact(name, fraction):
+    """Inertia belongs to the roller alone: at every height the contact is the static one, histories and all."""
+    scene = roller(name, fraction, **{"run.rtol": 1e-9})
+    run = solve(scene)
+    height, force = run.samples["height"], run.samples["force"]
+    some = np.unique(np.linspace(0, height.size - 1, 60).astype(int))
+    path = np.insert(height[some], np.searchsorted(some, height.argmin()), height.min())
+    static = elastic_line_force(
+        path,
+        5e-6,
+        2e-6,
+        scene.surface,
+        coated_surface=scene.coated_surface,
+        sam_fraction=fraction,
+        nodes=32,
+    )
+    keep = np.delete(static, np.searchsorted(some, height.argmin()))
+    # 16 nodes where asperities let go: 5e-5 of the largest force, see the convergence below
+    np.testing.assert_allclose(force[some], keep, atol=1e-4 * force.max())
+
+
+def test_an_impact_loses_the_adhesion_energy():
+    """0.93550 Pc dc for every asperity that has joined, counted under the deflected gap at the lowest point."""
+    scene = roller("roller_slow", **{"run.rtol": 1e-9, "run.duration": 3e-5})
+    run = solve(scene)
+    height, speed = run.samples["height"], run.samples["speed"]
+    assert height[-1] > 15 * scene.surface.roughness
+    lost = 0.5 * scene.roller.mass * (speed[0] ** 2 - speed[-1] ** 2)
+    curve = elastic_line_curve([height.min()], 5e-6, 2e-6, scene.surface, nodes=40)
+    depth = np.interp(x := np.linspace(0, curve.x[-1], 4001), curve.x, curve.node_gap[0] - curve.x**2 / 1e-5)
+    above = 0.5 * np.vectorize(math.erfc)((depth + x**2 / 1e-5) / scene.surface.roughness / math.sqrt(2))
+    joined = scene.surface.asperity_density * 2e-6 * 2.0 * np.trapezoid(above, x)
+    tip = asperity_of(scene.surface)
+    # what lies between the nodes of the curve is interpolated: 1e-4
+    assert lost == pytest.approx(0.93550 * tip.pull_off * tip.stretch_limit * joined, rel=1e-3)
+
+
+def test_nodes_have_converged(monkeypatch):
+    """Loading and pull-off to 1e-7; where asperities begin to let go, node after node, to 1e-4 of the largest force."""
+    changes = {"run.rtol": 1e-9, "run.samples": 4001}
+    coarse = solve(roller("roller_fast", **changes)).samples
+    fine_grid = elastic.node_grid
+    monkeypatch.setattr(problem, "node_grid", lambda *arguments: fine_grid(*arguments, nodes=40))
+    fine = solve(roller("roller_fast", **changes)).samples
+    assert coarse["force"].max() == pytest.approx(fine["force"].max(), rel=1e-6)
+    assert coarse["force"].min() == pytest.approx(fine["force"].min(), rel=1e-6)
+    assert coarse["speed"][-1] == pytest.approx(fine["speed"][-1], rel=1e-6)
+    np.testing.assert_allclose(coarse["force"], fine["force"], atol=1e-4 * fine["force"].max())
+
+
+# -- gears ---------------------------------------------------------------------------------------------------------
+
+
+def meshing(gap=1.0, phase=0.3, fraction=0.5):
+    """Gears with two pairs in contact: one in the middle of the path, one held off by the tip relief."""
+    scene = gd.preset("teodorescu2009").replace(
+        {
+            "contact.model": "elastic",
+            "coating.sam_fraction": fraction,
+            "initial.gap": gap * 6e-9,
+            "initial.mesh_phase": phase,
+        }
+    )
+    return scene, make_problem(scene)
+
+
+@pytest.mark.parametrize("phase", [0.02, 0.3, 0.6])
+def test_force_of_a_pair_of_teeth_is_that_of_its_radius(phase):
+    """The influence coefficients follow the radius along the path of contact."""
+    scene, gears = meshing(phase=phase)
+    d, y = gears.data, gears.start
+    geometry = scene.geometry
+    total = 0.0
+    inside = [(phase + k) for k in (-1, 0, 1) if 0.0 <= phase + k <= geometry.contact_ratio]
+    for place in inside:
+        pinion = geometry.tangent_pinion - geometry.approach + place * geometry.base_pitch
+        both = geometry.tangent_pinion + geometry.tangent_gear
+        radius = pinion * (both - pinion) / both
+        total += elastic_line_force(
+            [6e-9],
+            radius,
+            2e-6,
+            scene.surface,
+            coated_surface=scene.coated_surface,
+            sam_fraction=0.5,
+            nodes=32,
+        )[0]
+    force = mesh_forces(d, 0.0, y)[0] * d[at.FORCE]
+    # six powers of length for the coefficients; pairs outside the path are held off by the tip relief
+    assert force == pytest.approx(total, rel=5e-6)
+
+
+@pytest.fixture
+def contact():
+    """A state with stretched and loading nodes, away from consistency, as Newton's iteration sees it."""
+    _, gears = meshing(gap=2.0, phase=0.05)
+    d, y = gears.data, gears.start
+    n = int(d[at.NODES])
+    slots = int(d[at.SLOTS])
+    for pair in (0, -1):  # pull asperities along at some nodes
+        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * (pair % slots)
+        assert d[slot + at.PAIR] == pair
+        d[slot + at.NODE_ROWS : slot + at.NODE_ROWS + 2 * n] -= np.tile(np.linspace(0.01, 0.05, n), 2)
+        d[slot + at.WAY] = 1.0
+    y[4:] += 1e-3 * np.sin(np.arange(y.size - 4))
+    y[at.V] = 0.1
+    return d, y
+
+
+def test_jacobian_is_the_slope_of_the_residual(contact):
+    d, y = contact
+    size, cj, t = y.size, 3.0, d[at.LAST_TIME]
+    exact = np.empty((size, size))
+    dense_jacobian(d, t, cj, y, np.empty(store_size(d)), exact)
+    yp = np.zeros(size)
+    step = 1e-6
+
+    def slope(k):
+        out = np.empty((2, size))
+        for side in (0, 1):
+            state, rate = y.copy(), yp.copy()
+            state[k] += (1 - 2 * side) * step
+            residual(d, t, state, rate, out[side])
+        return (out[0] - out[1]) / (2 * step)
+
+    by_state = np.column_stack([slope(k) for k in range(size)])
+    by_rate = np.zeros((size, size))
+    base = np.empty(size)
+    residual(d, t, y, yp, base)
+    for k in range(4):
+        unit = np.zeros(size)
+        unit[k] = 1.0
+        residual(d, t, y, unit, by_rate[:, k])
+        by_rate[:, k] -= base
+    differences = by_state + cj * by_rate
+    # the radius' own change with the phase is left out of the Jacobian on purpose
+    keep = np.ones(size, bool)
+    keep[at.PHASE] = False
+    scale = np.abs(exact).max(axis=1, keepdims=True)
+    # central differences over 1e-6: their rounding
+    assert np.max((np.abs(differences - exact) / scale)[:, keep]) < 1e-5
+
+
+def test_blocks_solve_what_the_whole_matrix_does(contact):
+    d, y = contact
+    store, size = np.empty(store_size(d)), y.size
+    whole = np.empty((size, size))
+    dense_jacobian(d, 0.0, 3.0, y, store, whole)
+    assemble(d, 0.0, 3.0, y, store)
+    assert factorise(store) == 0
+    b = np.random.default_rng(5).normal(size=size)
+    x = np.empty(size)
+    solve_blocks(store, b, x)
+    np.testing.assert_allclose(x, np.linalg.solve(whole, b), rtol=1e-9, atol=1e-9)
+
+
+def test_settled_nodes_satisfy_their_equations():
+    _, gears = meshing()
+    out = np.empty(gears.start.size)
+    residual(gears.data, 0.0, gears.start, np.zeros_like(gears.start), out)
+    assert np.abs(out[4:]).max() < 1e-11
+    assert np.abs(gears.start[4:]).max() > 0.01  # and do deflect
+    assert settle_nodes(gears.data, 0.0, gears.start.copy())
+
+
+def test_gears_in_light_contact_hardly_notice():
+    changes = {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 501}
+    scene = gd.preset("teodorescu2009_low_speed").replace(changes)
+    rigid = solve(scene.replace({"contact.model": "asperity"}))
+    given = solve(scene.replace({"contact.model": "elastic"}))
+    # loads of 1e-12 N deflect teeth by 1e-8 roughnesses; forces in the tail change by ten times as much
+    for name in ("gear_speed", "transmission_error"):
+        swing = np.ptp(rigid.samples[name])
+        np.testing.assert_allclose(given.samples[name], rigid.samples[name], atol=2e-3 * swing)
+    turning = [np.count_nonzero(r.events.kind == EventKind.TURNING_POINT) for r in (rigid, given)]
+    assert turning[0] == turning[1] > 3
+
+
+def test_both_backends_agree():
+    gears = gd.preset("teodorescu2009").replace({"contact.model": "elastic", "coating.sam_fraction": 0.5})
+    for scene, t_end in ((roller("roller_slow"), None), (gears, 1.5e-6)):
+        native, portable = (solve(scene, samples=301, t_end=t_end, backend=b) for b in ("native", "sksundae"))
+        assert native.status == portable.status == "finished"
+        np.testing.assert_array_equal(native.events.kind, portable.events.kind)
+        duration = native.time[-1]
+        np.testing.assert_allclose(native.events.time, portable.events.time, atol=1e-5 * duration)
+        for name, values in native.samples.items():
+            if name != "pairs_in_contact":
+                # the error at a tolerance of 1e-6, and the portable driver's own interpolation
+                np.testing.assert_allclose(portable.samples[name], values, atol=1e-3 * np.ptp(values))
+
+
+# -- automatic choice ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "fraction", "needs_bodies"),
+    [
+        ("teodorescu2009", 1.0, False),
+        ("teodorescu2009", 0.0, False),
+        ("teodorescu2009_low_speed", 0.5, False),
+        ("roller_slow", 0.0, True),
+        ("roller_fast", 0.0, True),
+    ],
+)
+def test_automatic_choice(name, fraction, needs_bodies):
+    chosen = make_problem(gd.preset(name).replace({"coating.sam_fraction": fraction}))
+    assert chosen.skipped["elastic_deflection"] == int(not needs_bodies)
+
+
+def test_bound_of_the_asperity_model():
+    """Where it is left, the static force is some 5 % below that of rigid bodies, as stated."""
+    scene = gd.preset("teodorescu2009").replace({"coating.sam_fraction": 1.0})
+    lowest = make_problem(scene).data[at.LOWEST_GAP]
+    gears = make_problem(scene.replace({"contact.model": "elastic", "initial.gap": lowest * 6e-9}))
+    deflected = gears.start[4:].max()
+    assert 0.5 * elastic.RIGID_DEFLECTION < deflected < elastic.RIGID_DEFLECTION
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_run_changes_over_to_the_elastic_model(monkeypatch, backend):
+    limit = elastic.rigid_limit
+    monkeypatch.setattr(problem, "rigid_limit", lambda *a: (limit(*a)[0], True))
+    auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 1001})
+    chosen = make_problem(auto)
+    blocks = list(run_blocks(chosen, 1e-6, 1001, backend, Tally()))
+    assert chosen.skipped["elastic_deflection"] == 0
+    rows = np.concatenate([block.rows for block in blocks])
+    given = solve(roller("roller_fast", **{"run.samples": 1001})).samples
+    # up to the change-over the rigid teeth have pushed a few per cent too hard
+    assert rows.shape[0] == 1001
+    assert rows[:, 2].max() == pytest.approx(given["force"].max(), rel=1e-3)
+    assert rows[-1, 1] == pytest.approx(given["speed"][-1], rel=5e-3)
+
+
+def test_run_resumes_from_before_and_after_the_change(monkeypatch):
+    limit = elastic.rigid_limit
+    monkeypatch.setattr(problem, "rigid_limit", lambda *a: (limit(*a)[0], True))
+    auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 501})
+    blocks = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Tally()))
+    rows = np.concatenate([block.rows for block in blocks])
+    (stop, last) = [k for k, block in enumerate(blocks) if block.checkpoint is not None]
+    assert last == len(blocks) - 1
+    rest = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Tally(), blocks[last].checkpoint))
+    assert sum(len(block.rows) for block in rest) == 0  # it was over
+    again = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Tally(), blocks[stop].checkpoint))
+    before = sum(len(block.rows) for block in blocks[: stop + 1])
+    np.testing.assert_array_equal(np.concatenate([block.rows for block in again]), rows[before:])
+
+
+# -- folds -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_fold_ends_the_run_by_name(backend):
+    """Half a nanometre of roughness: the static contact jumps, and the run stops where that does."""
+    scene = roller("roller_slow", **{"surface.roughness": 5e-10, "roller.height": 4e-9, "run.samples": 4001})
+    run = solve(scene, backend=backend)
+    assert run.status == "fold"
+    with pytest.raises(ElasticFoldError) as caught:
+        elastic_line_force([4e-9, 0.0], 5e-6, 2e-6, scene.surface)
+    # the last sample before: one of 4001
+    pace = np.abs(np.diff(run.samples["height"])).max()
+    assert run.samples["height"][-1] == pytest.approx(caught.value.gap, abs=2 * pace)
+
+
+def test_too_deep_is_named(monkeypatch):
+    monkeypatch.setattr(problem, "deepest_gap", lambda *arguments: 2.0)
+    run = solve(roller("roller_fast"))
+    assert run.status == "too_deep"
+    assert run.samples["height"][-1] > -1e-9
