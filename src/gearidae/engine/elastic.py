@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.contact.bulk import line_grid
+from gearidae.contact.bulk import LineGrid, line_grid
 from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve
 from gearidae.contact.jkr import asperity_of, contact_modulus
 from gearidae.contact.law import GAP_HIGH, GAP_LOW, law_table, law_value
@@ -88,6 +89,12 @@ class NodeGrid:
     body: Floats
 
 
+@lru_cache(maxsize=256)
+def _line_grid(reach: float, width: float, modulus: float, nodes: int) -> LineGrid:
+    """Grids are shared: the runs of a sweep mostly differ in something else."""
+    return line_grid(reach, width, modulus, nodes)
+
+
 def node_grid(
     scene: Scene, footing: Footing, force_unit: float, deepest: float, nodes: int = NODES
 ) -> NodeGrid:
@@ -112,12 +119,12 @@ def node_grid(
     middle = 0.5 * (footing.longest + footing.shortest)
     half = 0.5 * (footing.longest - footing.shortest) or 1.0
     places = np.polynomial.chebyshev.chebpts1(orders)
-    grids = [line_grid(reach * (middle + half * p), footing.width, modulus, nodes) for p in places]
+    grids = [_line_grid(reach * (middle + half * p), footing.width, modulus, nodes) for p in places]
     # pressures are in reference loads per face width and unit length
     pressure = force_unit / (footing.width * unit)
     values = np.stack([grid.compliance.T for grid in grids]) * (pressure / sigma)
     powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
-    start = line_grid(reach, footing.width, modulus, nodes)
+    start = _line_grid(reach, footing.width, modulus, nodes)
     body = np.concatenate([(start.x / unit) ** 2, start.weights / unit, powers.ravel()])
     return NodeGrid(nodes, orders, middle, half, body)
 

@@ -21,6 +21,7 @@ from gearidae.engine.mesh import (
     history_slot,
     last_pair,
     material_stretch,
+    nearest_gap,
     pair_gap,
     set_joined,
 )
@@ -68,14 +69,6 @@ def _pairs(d: Floats, coast: int, y: Floats) -> tuple[int, int]:
 
 
 @compiled
-def _nearest(d: Floats, coast: int, y: Floats) -> float:
-    """Gap of a pair on the path of contact, which no pair of this flank undercuts; a roller's height."""
-    if d[at.KIND] == at.ROLLER:
-        return y[at.U]
-    return d[at.HALF_BACKLASH] + (y[at.U] if coast else -y[at.U])
-
-
-@compiled
 def _kinematics(d: Floats, coast: int, pair: int, y: Floats) -> tuple[float, float]:
     """Gap and gap rate of a pair, or of the roller."""
     if d[at.KIND] == at.ROLLER:
@@ -103,7 +96,7 @@ def guard(d: Floats, t: float, y: Floats) -> float:
     for coast in range(2):
         if d[at.NEAR + coast] == 0.0:
             if coast == 0 or d[at.KIND] == at.GEARS:
-                least = min(least, _nearest(d, coast, y) - d[at.CUTOFF])
+                least = min(least, nearest_gap(d, coast, y) - d[at.CUTOFF])
             continue
         first, last = _pairs(d, coast, y)
         for pair in range(first, last + 1):
@@ -155,7 +148,7 @@ def accept(d: Floats, t: float, y: Floats) -> None:
     if d[at.DRY] != 0.0 and y[at.W] * d[at.SLIP] > d[at.REST_SPEED]:
         d[at.MOVING] = 1.0
     for coast in range(1 if d[at.KIND] == at.ROLLER else 2):
-        if _nearest(d, coast, y) >= d[at.CUTOFF]:
+        if nearest_gap(d, coast, y) >= d[at.CUTOFF]:
             if d[at.NEAR + coast] != 0.0:
                 _forget(d, coast)
             continue

@@ -30,6 +30,7 @@ __all__ = [
     "history_slot",
     "last_pair",
     "material_stretch",
+    "nearest_gap",
     "pair_force",
     "pair_gap",
     "set_joined",
@@ -127,6 +128,14 @@ def footprint(d: Floats, inside: float) -> float:
     """Length of a contact of given gap, ``sqrt(R / pb)``: R is the reduced radius of the two involutes."""
     pinion = d[at.START_RADIUS] + inside
     return math.sqrt(pinion - pinion * pinion * d[at.SUM_CURVATURE])
+
+
+@compiled
+def nearest_gap(d: Floats, coast: int, y: Floats) -> float:
+    """Gap of a pair on the path of contact, which no pair of this flank undercuts; a roller's height."""
+    if d[at.KIND] == at.ROLLER:
+        return y[at.U]
+    return d[at.HALF_BACKLASH] + (y[at.U] if coast else -y[at.U])
 
 
 @compiled

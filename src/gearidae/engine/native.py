@@ -25,6 +25,7 @@ from gearidae.engine.run import (
     BLOCK_STEPS,
     CHECKPOINT_STEPS,
     CODES,
+    CONVERGENCE_FAILURES_HIGH,
     FOLD_SHARE,
     Block,
     Ending,
@@ -111,6 +112,7 @@ def open_solver(
     flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
     flag |= sun.IDASetJacFn(solver, calls[1])
     flag |= sun.IDASetMaxNumSteps(solver, -1)
+    flag |= sun.IDASetMaxConvFails(solver, CONVERGENCE_FAILURES_HIGH)
     falling = np.full(1, -1, np.int32)
     flag |= sun.IDARootInit(solver, 1, calls[2])
     flag |= sun.IDASetRootDirection(solver, falling.ctypes.data)

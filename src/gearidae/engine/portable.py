@@ -26,6 +26,7 @@ from gearidae.engine.run import (
     BLOCK_ROWS,
     CHECKPOINT_STEPS,
     CODES,
+    CONVERGENCE_FAILURES_HIGH,
     FOLD_SHARE,
     Block,
     Ending,
@@ -164,6 +165,7 @@ class _Solver:
             atol=atol,
             first_step=step,
             max_num_steps=10_000_000,
+            max_conv_fails=CONVERGENCE_FAILURES_HIGH,
         )
         self._last: Any = None
 

@@ -16,6 +16,7 @@ __all__ = [
     "BLOCK_ROWS",
     "BLOCK_STEPS",
     "CODES",
+    "CONVERGENCE_FAILURES_HIGH",
     "FOLD_SHARE",
     "Block",
     "Ending",
@@ -70,6 +71,8 @@ class Ending(Enum):
         return self.value[1]
 
 
+CONVERGENCE_FAILURES_HIGH = 40
+"""Failures of Newton's iteration in one step, each of which quarters it: a step out of long flight lands in a tooth."""
 CODES = (1, 2)
 """What a driver may end a run with of its own: crowded events, a gap beyond the model's bound."""
 FOLD_SHARE = 30.0

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
+from gearidae.engine.mesh import nearest_gap
 from gearidae.engine.nodes import node_rates
 from gearidae.engine.residual import residual
 
@@ -69,6 +70,11 @@ def first_step(
         change = abs(later[at.W] - yp[at.W]) / probe
         if change > 0.0:
             step = min(step, 0.25 * abs(yp[at.W]) / change)
+    for coast in range(1 if d[at.KIND] == at.ROLLER else 2):
+        # free flight has no curvature, and the flank at its end comes without warning
+        ahead = nearest_gap(d, coast, y) - d[at.CUTOFF]
+        if ahead > 0.0:
+            step = min(step, 0.5 * max(ahead, 1.0) / max(abs(y[at.V]), 1e-9))
     return float(step)
 
 
