@@ -1,5 +1,32 @@
+import numpy as np
+import pytest
 from hypothesis import settings
+
+from gearidae.engine import backend as backend_module
+from gearidae.engine.run import Block, Ending
 
 # Compilation, once per machine, falls into whichever example comes first.
 settings.register_profile("gearidae", deadline=None)
 settings.load_profile("gearidae")
+
+
+@pytest.fixture
+def end_early(monkeypatch):
+    """Let every run end before its time: after a share of its output, by Ctrl-C or by chatter."""
+
+    def arrange(status, share=0.5):
+        def cut(problem, rtol, samples, backend, tally, resume=None):
+            blocks = list(whole(problem, rtol, samples, backend, tally, resume))
+            rows = np.concatenate([block.rows for block in blocks])
+            events = np.concatenate([block.events for block in blocks])
+            kept = int(share * len(rows))
+            time = blocks[-1].time * (kept - 1) / (samples - 1)
+            yield Block(rows[:kept], events[events[:, 0] <= time], time)
+            if status == "interrupted":
+                raise KeyboardInterrupt
+            tally.ending = Ending.CHATTER
+
+        whole = backend_module.run_blocks
+        monkeypatch.setattr(backend_module, "run_blocks", cut)
+
+    return arrange

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from types import ModuleType
 
@@ -11,7 +10,8 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae import engine
+from gearidae.engine import backend
+from gearidae.engine.run import Ending
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 201})
@@ -22,28 +22,10 @@ ROLLER = gd.preset("roller_slow").replace({"run.samples": 101})
 def no_engine(monkeypatch):
     """Fail the test if anything is run."""
 
-    def solve(*arguments, **options):
+    def run_blocks(*arguments, **options):
         pytest.fail("the engine was started")
 
-    monkeypatch.setattr(engine, "solve", solve)
-
-
-def ending(monkeypatch, status, message, share=0.5):
-    """Let the engine end early, with the first part of a real run."""
-    solve = engine.solve
-
-    def cut(scene, **options):
-        solution = solve(scene, **options)
-        kept = int(share * len(solution.time))
-        return dataclasses.replace(
-            solution,
-            time=solution.time[:kept],
-            samples={name: values[:kept] for name, values in solution.samples.items()},
-            status=status,
-            message=message,
-        )
-
-    monkeypatch.setattr(engine, "solve", cut)
+    monkeypatch.setattr(backend, "run_blocks", run_blocks)
 
 
 def test_gear_run():
@@ -112,7 +94,10 @@ def test_progress_is_silent_where_there_is_no_terminal(capfd):
         ({"t_end": float("inf")}, "run.duration"),
         ({"samples": 1}, "run.samples"),
         ({"samples": 10.5}, "run.samples"),
+        ({"samples": "2 um"}, "run.samples"),
+        ({"samples": "1 mHz"}, "run.samples"),
         ({"backend": "magic"}, "backend"),
+        ({"resume": True}, "resume"),
         ({"archive": 3}, "archive"),
         ({"archive": "/nowhere/at/all.nc"}, "archive"),
     ],
@@ -139,27 +124,38 @@ def test_an_archive_that_exists_is_refused_before_anything_runs(tmp_path):
     assert path.read_bytes() == b"precious"
 
 
-def test_a_solver_in_trouble_hands_over_what_it_reached(monkeypatch, tmp_path):
+@pytest.mark.parametrize("archived", [False, True])
+def test_a_solver_in_trouble_hands_over_what_it_reached(archived, end_early, tmp_path):
     whole = gd.simulate(LOW)
-    ending(monkeypatch, "chatter", "events crowded without bound")
-    with pytest.raises(gd.SolverError, match="events crowded without bound at t = ") as caught:
-        gd.simulate(LOW, archive=tmp_path / "run.nc")
+    end_early("chatter")
+    options = {"archive": tmp_path / "run.nc"} if archived else {}
+    with pytest.raises(gd.SolverError, match=Ending.CHATTER.message + " at t = ") as caught:
+        gd.simulate(LOW, **options)
     error = caught.value
     assert error.dataset.sizes["time"] == 100
     assert error.dataset.attrs["status"] == "chatter"
     assert np.array_equal(error.dataset.gear_speed, whole.gear_speed[:100])
-    assert error.time == whole.time[99]
+    assert error.time == pytest.approx(whole.time[99].item(), rel=1e-12)
     assert error.state["gear_speed"] == whole.gear_speed[99]
     assert error.last_event != "none"
     assert "\n" not in str(error)
-    xr.testing.assert_identical(gd.open_archive(tmp_path / "run.nc"), error.dataset)
+    if archived:
+        xr.testing.assert_identical(gd.open_archive(tmp_path / "run.nc"), error.dataset)
 
 
-def test_a_run_that_is_interrupted_is_kept(monkeypatch, tmp_path):
-    ending(monkeypatch, "interrupted", "interrupted by the user")
-    with pytest.raises(KeyboardInterrupt, match=r"run\.nc"):
-        gd.simulate(LOW, archive=tmp_path / "run.nc")
-    assert gd.open_archive(tmp_path / "run.nc").attrs["status"] == "interrupted"
+@pytest.mark.parametrize("archived", [False, True])
+def test_a_run_that_is_interrupted_is_kept(archived, end_early, tmp_path):
+    whole = gd.simulate(LOW)
+    end_early("interrupted")
+    options = {"archive": tmp_path / "run.nc"} if archived else {}
+    with pytest.raises(KeyboardInterrupt, match=r"run\.nc" if archived else "^$") as caught:
+        gd.simulate(LOW, **options)
+    ds = caught.value.dataset
+    assert ds.attrs["status"] == "interrupted"
+    assert np.array_equal(ds.gear_speed, whole.gear_speed[:100])
+    assert 0 < ds.sizes["event"] < whole.sizes["event"]
+    if archived:
+        xr.testing.assert_identical(gd.open_archive(tmp_path / "run.nc"), ds)
 
 
 def test_modules_do_not_take_the_place_of_functions():

@@ -18,22 +18,11 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.errors import SolverError
 from gearidae.records import GEAR_COLUMNS
+from sweeps import without_times
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 201})
 KEY = "coating.sam_fraction"
 FRACTIONS = [1.0, 0.5, 0.45]
-
-
-def without_times(ds):
-    """Drop what depends on the moment and the machine's load."""
-    ds = ds.copy()
-    ds["wall_time"] = 0.0 * ds["wall_time"]
-    ds.attrs = {
-        name: value
-        for name, value in ds.attrs.items()
-        if name not in ("history", "date_created", "wall_time")
-    }
-    return ds
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["GearidaeError", "SceneError", "SolverError"]
+__all__ = ["GearidaeError", "Interrupted", "SceneError", "SolverError"]
 
 
 class GearidaeError(Exception):
@@ -97,3 +97,19 @@ def _rebuild_solver_error(
     dataset: xr.Dataset | None,
 ) -> SolverError:
     return SolverError(message, time=time, state=state, last_event=last_event, advice=advice, dataset=dataset)
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a run; what had been computed until then is kept.
+
+    Parameters
+    ----------
+    message : str
+        Where it is kept; empty if nowhere but here.
+    dataset : xarray.Dataset
+        The samples and events recorded so far.
+    """
+
+    def __init__(self, message: str, dataset: xr.Dataset) -> None:
+        self.dataset = dataset
+        super().__init__(*([message] if message else []))

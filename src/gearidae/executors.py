@@ -1,17 +1,24 @@
-"""Where the runs of a sweep are computed: here, in threads, or in processes."""
+"""Where the runs of a sweep are computed: here, in threads, in processes, or on a Dask cluster."""
 
 from __future__ import annotations
 
 import multiprocessing
 import os
 import signal
+import socket
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
 
+from gearidae import __version__
 from gearidae.errors import SceneError
 
-__all__ = ["check_jobs", "own_executor", "stop"]
+__all__ = ["check_executor", "check_jobs", "dask_executor", "own_executor", "stop"]
+
+_PATIENCE = 10.0
+"""How long to wait for a Dask scheduler to answer [s]."""
 
 
 def check_jobs(jobs: int | None) -> int:
@@ -37,6 +44,83 @@ def check_jobs(jobs: int | None) -> int:
     return jobs
 
 
+def check_executor(executor: object) -> None:
+    """Make sure that something is an executor, as far as that can be seen.
+
+    Parameters
+    ----------
+    executor : object
+        What was given as executor, or None.
+
+    Raises
+    ------
+    SceneError
+        If it is not one; a Dask client is not, but has one.
+    """
+    if hasattr(executor, "get_executor"):
+        raise SceneError(
+            "executor", type(executor).__name__, "is a Dask client: pass its client.get_executor()"
+        )
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise SceneError("executor", executor, "must be an executor, as those of concurrent.futures")
+
+
+@contextmanager
+def dask_executor(address: str) -> Iterator[Executor]:
+    """Provide the executor of a Dask cluster.
+
+    Parameters
+    ----------
+    address : str
+        Of the cluster's scheduler, ``tcp://host:8786``. Its workers need the same version of gearidae.
+
+    Yields
+    ------
+    Executor
+        On leaving, the connection is closed, and runs that have not been finished are dropped.
+
+    Raises
+    ------
+    SceneError
+        If Dask is not installed, no scheduler answers at the address, or one of its workers lacks this version.
+    """
+    try:
+        distributed: Any = import_module("distributed")
+    except ImportError:
+        raise SceneError(
+            "--dask", address, "needs Dask's scheduler: python -m pip install 'gearidae[dask]'"
+        ) from None
+    try:
+        # a client that fails to connect can leave its event loop unusable for the next: look before
+        comm = import_module("distributed.comm")
+        resolved = comm.resolve_address(address)
+        if resolved.startswith(("tcp://", "tls://")):
+            socket.create_connection(comm.get_address_host_port(resolved), timeout=_PATIENCE).close()
+        client = distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        reason = str(error) or type(error).__name__
+        raise SceneError("--dask", address, f"no Dask scheduler answers there ({reason})") from error
+    with client:
+        _check_workers(client, address)
+        yield client.get_executor()
+
+
+def _check_workers(client: Any, address: str) -> None:
+    """Refuse a cluster that cannot run our scenes, as its workers would not report that: the sweep would hang."""
+
+    def version() -> str:  # inside another function, so that it is sent as it is and not by its name
+        import gearidae
+
+        return gearidae.__version__
+
+    for worker, answer in client.run(version, on_error="return").items():
+        if answer != __version__:
+            found = answer if isinstance(answer, str) else f"{type(answer).__name__}: {answer}"
+            raise SceneError(
+                "--dask", address, f"its worker {worker} needs gearidae {__version__}, and has: {found}"
+            )
+
+
 @contextmanager
 def own_executor(jobs: int, runs: int, *, releases_gil: bool) -> Iterator[Executor | None]:
     """Provide the executor that suits the solver, or None where runs are best computed one by one here.
@@ -58,7 +142,7 @@ def own_executor(jobs: int, runs: int, *, releases_gil: bool) -> Iterator[Execut
         It is shut down on leaving; runs that have not begun are dropped.
     """
     workers = min(jobs, runs)
-    if workers == 1:
+    if workers <= 1:
         yield None
         return
     executor: Executor

@@ -152,7 +152,7 @@ def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
     status = str(run_value(run, "status"))
     impacts = _impacts(run)
     verdict, restitution = "unfinished", np.nan
-    if status == "finished":
+    if status == "finished" and speed.size:
         verdict = "sticks" if impacts else "flies"
         if impacts and not _in_touch(run) and speed[-1] > 0.0:
             verdict, restitution = "rebounds", float(speed[-1] / abs(speed[0]))

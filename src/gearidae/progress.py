@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import monotonic
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -46,13 +47,26 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunPro
             TextColumn("{task.description}"),
             BarColumn(),
             TextColumn(
-                f"{{task.completed:.4g}} of {duration * scale:.4g} {prefix}, {{task.fields[events]}} events"
+                f"{{task.completed:.4g}} of {duration * scale:.4g} {prefix}, {{task.fields[events]}} events, "
+                f"{{task.fields[rate]:.3g}} {prefix} per second"
             ),
             TimeRemainingColumn(),
             console=_console(),
         ) as bar:
-            task = bar.add_task("simulating", total=duration * scale, events=0)
-            yield lambda time, events: bar.update(task, completed=time * scale, events=events)
+            task = bar.add_task("simulating", total=duration * scale, events=0, rate=0.0)
+            begun: list[tuple[float, float]] = []
+
+            def update(time: float, events: int) -> None:
+                now = monotonic()
+                if (
+                    not begun
+                ):  # the rate counts from the first report: compiling is over, and a resumed run is back
+                    begun.append((now, time))
+                elapsed = now - begun[0][0]
+                rate = (time - begun[0][1]) / elapsed * scale if elapsed > 0.0 else 0.0
+                bar.update(task, completed=time * scale, events=events, rate=rate)
+
+            yield update
             bar.update(task, refresh=True)
 
 

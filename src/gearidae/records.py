@@ -121,6 +121,8 @@ class Solution:
         ``finished``, or the named reason why the run ended early.
     message : str
         The status in a sentence; empty when finished.
+    reached : float, optional
+        Simulated time reached [s]; by default that of the last sample.
     """
 
     time: NDArray[np.float64]
@@ -129,3 +131,4 @@ class Solution:
     statistics: Statistics
     status: str
     message: str
+    reached: float | None = None

@@ -22,7 +22,7 @@ _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "f
 
 
 def prepare(
-    scene: Scene, *, rtol: float | None, t_end: float | None, samples: int | None, backend: str = "auto"
+    scene: Scene, *, rtol: float | None, t_end: float | None, samples: int | str | None, backend: str = "auto"
 ) -> Scene:
     """Put the settings of one call into the scene, so that the scene says exactly what was run.
 
@@ -34,8 +34,8 @@ def prepare(
         Relative tolerance in place of ``run.rtol``.
     t_end : float, optional
         Simulated time [s] in place of ``run.duration``.
-    samples : int, optional
-        Number of samples in place of ``run.samples``.
+    samples : int or str, optional
+        Number or rate of samples, or ``"off"``, in place of ``run.samples``.
     backend : str, optional
         As for `simulate`.
 
@@ -109,15 +109,17 @@ def unsolved(status: str, message: str) -> Solution:
     return Solution(np.empty(0), {}, events, Statistics(0, 0, 0, 0, 0, 0, 0, 0.0, ""), status, message)
 
 
-def early_end(solution: Solution, ds: xr.Dataset) -> SolverError:
+def early_end(ds: xr.Dataset, time: float, message: str = "", advice: str = _ADVICE) -> SolverError:
     """Say where and how a run ended before its time.
 
     Parameters
     ----------
-    solution : Solution
-        What the engine handed up, with a status other than ``finished``.
     ds : xarray.Dataset
-        The same as a dataset.
+        What there is of the run, with a status other than ``finished``.
+    time : float
+        Simulated time reached [s].
+    message, advice : str, optional
+        What happened and what to try; by default what the dataset says, and another tolerance.
 
     Returns
     -------
@@ -125,22 +127,24 @@ def early_end(solution: Solution, ds: xr.Dataset) -> SolverError:
         To be raised; carries `ds`.
     """
     state: dict[str, float] = {}
-    if len(solution.time):
-        state = {name: float(solution.samples[name][-1]) for name in _STATE if name in solution.samples}
+    if ds.sizes["time"]:
+        last = ds.isel(time=-1)
+        state = {name: float(last[name]) for name in _STATE if name in ds}
     return SolverError(
-        solution.message or solution.status,
-        time=float(solution.time[-1]) if len(solution.time) else 0.0,
+        message or str(ds.attrs["message"] or ds.attrs["status"]),
+        time=time,
         state=state,
-        last_event=_last_event(solution.events),
-        advice=_ADVICE,
+        last_event=_last_event(ds),
+        advice=advice,
         dataset=ds,
     )
 
 
-def _last_event(events: Events) -> str:
-    if not len(events):
+def _last_event(ds: xr.Dataset) -> str:
+    if not ds.sizes["event"]:
         return "none"
-    kind = EventKind(int(events.kind[-1])).name.lower().replace("_", " ")
-    flank: Any = Flank(int(events.flank[-1]))
-    where = "" if flank is Flank.NONE else f" of pair {events.pair[-1]} ({flank.name.lower()} flank)"
-    return f"{kind}{where} at {events.time[-1]:.9g} s"
+    last = ds.isel(event=-1)
+    kind = EventKind(int(last["event_kind"])).name.lower().replace("_", " ")
+    flank: Any = Flank(int(last["event_flank"]))
+    where = "" if flank is Flank.NONE else f" of pair {int(last['event_pair'])} ({flank.name.lower()} flank)"
+    return f"{kind}{where} at {float(last['event_time']):.9g} s"

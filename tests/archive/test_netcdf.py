@@ -15,6 +15,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.archive import check_target, combine, save, to_dataset
 from gearidae.archive import netcdf as netcdf_module
+from gearidae.archive.definition import CHUNK
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
 
@@ -69,7 +70,7 @@ def test_file_is_netcdf4_with_units_and_without_needless_fill_values(sweep, tmp_
 @pytest.fixture
 def large(make_solution):
     """Fill several chunks, unevenly."""
-    scene = LOW.replace({"run.samples": 2 * netcdf_module._CHUNK // 8 + 7})
+    scene = LOW.replace({"run.samples": 2 * CHUNK // 8 + 7})
     solution = make_solution(scene)
     solution.samples["pairs_in_contact"] = np.floor(
         solution.samples["pairs_in_contact"] + solution.time * 100
@@ -211,14 +212,14 @@ def test_damage_within_samples_is_noticed(large, tmp_path):
 def _wait_while_writing(path, started):
     scene = gd.preset("teodorescu2009_low_speed")
     template = xr.open_dataset(path, engine="netcdf4").load()
-    original = netcdf_module._sync
+    original = netcdf_module.sync
 
     def stop_here(target):
         started.set()
         threading.Event().wait()
         original(target)
 
-    netcdf_module._sync = stop_here
+    netcdf_module.sync = stop_here
     save(template.assign_attrs(title=scene.name), path, overwrite=True)
 
 

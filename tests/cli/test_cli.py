@@ -15,6 +15,7 @@ import pytest
 import gearidae as gd
 from gearidae import engine
 from gearidae.cli import main
+from gearidae.engine.run import Ending
 
 CASES = Path(__file__).parents[2] / "cases"
 SHORT = ["--set", "run.duration=2 ms", "run.samples=101"]
@@ -144,7 +145,7 @@ def test_init_writes_a_case_that_is_the_preset(folder, capfd):
     [
         ["run"],
         ["run", "nowhere.toml"],
-        ["run", "low.toml", "--resume"],
+        ["run", "low.toml", "--resume", "--overwrite"],
         ["run", "low.toml", "extra"],
         ["run", "low.toml", "--rtol", "tight"],
         ["run", "low.toml", "--rtol", "-1"],
@@ -197,12 +198,12 @@ def test_pictures_are_overwritten_only_if_asked(low, folder):
     assert (folder / "low.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_solver_in_trouble_is_exit_3_and_the_archive_is_kept(low, folder, capfd, monkeypatch):
-    cut_runs(monkeypatch, lambda scene: True, "chatter")
+def test_a_solver_in_trouble_is_exit_3_and_the_archive_is_kept(low, folder, capfd, end_early):
+    end_early("chatter", share=0.4)
     assert main(["run", low, *SHORT]) == 3
     out, err = capfd.readouterr()
     assert one_line(err)
-    assert "it chatters" in err
+    assert Ending.CHATTER.message in err
     assert "low.nc" in out
     ds = gd.open_archive("low.nc")
     assert (ds.attrs["status"], ds.sizes["time"]) == ("chatter", 40)
@@ -217,12 +218,13 @@ def test_a_failed_run_of_a_sweep_is_exit_3_and_named(low, folder, capfd, monkeyp
     assert gd.open_archive("low.nc").status.values.tolist() == ["finished", "chatter"]
 
 
-def test_ctrl_c_is_exit_130_and_the_archive_is_kept(low, folder, capfd, monkeypatch):
-    cut_runs(monkeypatch, lambda scene: True, "interrupted")
+def test_ctrl_c_is_exit_130_and_the_archive_is_kept(low, folder, capfd, end_early):
+    end_early("interrupted")
     assert main(["run", low, *SHORT]) == 130
     err = capfd.readouterr().err
     assert one_line(err)
     assert "low.nc" in err
+    assert "--resume" in err
     assert gd.open_archive("low.nc").attrs["status"] == "interrupted"
 
 

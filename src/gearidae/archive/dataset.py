@@ -17,7 +17,7 @@ from gearidae.errors import SceneError
 from gearidae.records import Solution
 from gearidae.scene import Scene, describe_key
 
-__all__ = ["combine", "dimension_names", "to_dataset"]
+__all__ = ["combine", "dimension_names", "key_labels", "reached", "to_dataset"]
 
 _COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
 _RESERVED = {*by_name(), "event", "scene", "coordinates"}
@@ -51,13 +51,20 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             "sam_fraction": ((), fraction, SAM_FRACTION.attributes),
         },
         attrs={
-            **provenance(scene, f"simulated {solution.time[-1] if len(solution.time) else 0.0:g} s"),
+            **provenance(scene, f"simulated {reached(solution):g} s"),
             "status": solution.status,
             "message": solution.message,
             **_totals([solution]),
             **surface_regimes(scene),
         },
     )
+
+
+def reached(solution: Solution) -> float:
+    """Return the simulated time that a run reached [s]."""
+    if solution.reached is not None:
+        return solution.reached
+    return float(solution.time[-1]) if len(solution.time) else 0.0
 
 
 def combine(
@@ -89,7 +96,7 @@ def combine(
     names = dimension_names(swept)
     dims = tuple(names.values())
     shape = tuple(len(values) for values in swept.values())
-    labels = {names[key]: _labels(key, names[key], values) for key, values in swept.items()}
+    labels = {names[key]: key_labels(key, names[key], values) for key, values in swept.items()}
 
     time = max((solution.time for solution in solutions), key=len)
     variables: dict[Hashable, Any] = {}
@@ -170,7 +177,7 @@ def _columns(scene: Scene) -> tuple[str, ...]:
     return columns(is_roller=scene.roller is not None)
 
 
-def _labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:
+def key_labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:
     """Coordinate of a swept key: its numbers or words; lists are numbered and spelled out in `comment`."""
     attributes = _key_attributes(key)
     if all(isinstance(value, int | float) and not isinstance(value, bool) for value in values):

@@ -11,6 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.definition import chunked
+from gearidae.archive.disk import sync
+from gearidae.archive.growing import is_growing, trimmed
+from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.variables import EVENTS, columns
 from gearidae.errors import SceneError
@@ -22,10 +26,6 @@ _ATTRIBUTES = ("title", "history", "source", "status", "message", "rtol", "t_end
 """Attributes that readers of an archive rely on."""
 _LAZY_ABOVE = 256 * 2**20
 """Archives larger than this [bytes in memory] are read piece by piece as they are used."""
-_CHUNKED_ABOVE = 2**16
-"""Variables larger than this [bytes] are stored in chunks, each with a checksum."""
-_CHUNK = 2**20
-"""Largest chunk [bytes]."""
 
 
 def check_target(path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
@@ -93,9 +93,9 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
     part = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
     try:
         ds.drop_encoding().to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds))
-        _sync(part)
+        sync(part)
         part.replace(target)
-        _sync(target.parent)
+        sync(target.parent)
     except (OSError, RuntimeError) as error:  # netCDF4 reports a full disk as either
         raise SceneError("archive", path, f"could not be written ({error})") from error
     finally:
@@ -114,7 +114,8 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Identical to what was saved. Archives of more than 256 MB are read piece by piece as they are used
+        Identical to what was saved. Of a run that is not at its end yet, what there is so far, with the status
+        ``running`` or ``interrupted``. Archives of more than 256 MB are read piece by piece as they are used
         (the file stays open until ``ds.close()``), smaller ones at once.
 
     Raises
@@ -131,12 +132,15 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, f"cannot be read ({error.strerror})") from error
     if signature != _HDF5_SIGNATURE:
         raise SceneError("archive", path, "is not a netCDF4 file")
+    running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
         ds = xr.open_dataset(source, engine="netcdf4", decode_times=False)
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         raise SceneError("archive", path, f"is damaged or not a netCDF4 file ({error})") from error
     try:
         _check_layout(ds, path)
+        if is_growing(ds):
+            ds = trimmed(ds, running=running)
         if ds.nbytes <= _LAZY_ABOVE:
             ds.load()
     except SceneError:
@@ -188,35 +192,11 @@ def _scene(text: object) -> dict[str, object] | None:
 
 
 def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
-    """How to store each variable: checksums on all that is large, compression where it pays.
-
-    Counts and flags shrink to a hundredth at half the speed of plain writing; samples of motion, whose last
-    digits are noise, to two thirds at a twentieth, so they are left as they are.
-    """
+    """How to store each variable."""
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in ds.variables.items():
-        entry: dict[str, Any] = {}
+        entry = chunked(str(name), variable.dtype, variable.shape, variable.nbytes)
         if variable.dtype.kind == "f" and name in ds.coords:
             entry["_FillValue"] = None  # coordinates have no gaps
-        if variable.dtype.kind in "fi" and variable.nbytes > _CHUNKED_ABOVE:
-            entry |= {"fletcher32": True, "chunksizes": _chunks(variable)}
-            if variable.dtype.kind == "i" or name == "pairs_in_contact":
-                entry |= {"zlib": True, "complevel": 1, "shuffle": True}
         encoding[str(name)] = entry
     return encoding
-
-
-def _chunks(variable: xr.Variable) -> tuple[int, ...]:
-    """One run to a chunk, cut along the last dimension into even pieces of at most a megabyte."""
-    length = variable.shape[-1]
-    pieces = -(-length * variable.dtype.itemsize // _CHUNK)
-    return (*(1,) * (variable.ndim - 1), -(-length // pieces))
-
-
-def _sync(path: Path) -> None:
-    """Wait until a file, or a folder's list of names, is on the disk."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -18,6 +18,7 @@ app = App(
     default_parameter=Parameter(negative=()),
     suppress_keyboard_interrupt=False,  # `main` says what is kept
 )
+app.meta.suppress_keyboard_interrupt = False
 
 Case = Annotated[str, Parameter(help="Case file (TOML), or the name of a preset.")]
 Output = Annotated[
@@ -43,11 +44,14 @@ def run(
     settings: Settings = None,
     rtol: Rtol = None,
     overwrite: Overwrite = False,
+    resume: Annotated[
+        bool, Parameter(help="Go on with the run that the output holds, if it is not at its end.")
+    ] = False,
 ) -> int:
-    """Run one scene and keep it as a netCDF archive."""
+    """Run one scene and keep it as a netCDF archive, which can be opened while the run goes on."""
     from gearidae.cli.simulation import run_case
 
-    return run_case(case, output, settings or [], rtol, overwrite=overwrite)
+    return run_case(case, output, settings or [], rtol, overwrite=overwrite, resume=resume)
 
 
 @app.command
@@ -64,13 +68,36 @@ def sweep(
     output: Output = None,
     settings: Settings = None,
     rtol: Rtol = None,
+    zipped: Annotated[
+        bool, Parameter(help="Walk the values of all keys together instead of in all combinations.")
+    ] = False,
     jobs: Annotated[int | None, Parameter(help="Runs at a time; by default one per core.")] = None,
+    dask: Annotated[
+        str | None, Parameter(help="Address of a Dask scheduler whose cluster computes the runs.")
+    ] = None,
+    resume: Annotated[
+        bool, Parameter(help="Go on with a sweep that was cut off: its finished runs are taken as they are.")
+    ] = False,
     overwrite: Overwrite = False,
 ) -> int:
-    """Run a scene for several values of one or more keys, into one archive."""
+    """Run a scene for several values of one or more keys, into one archive.
+
+    Until the archive is written, finished runs are kept beside it, in OUT.nc.runs.
+    """
     from gearidae.cli.simulation import sweep_case
 
-    return sweep_case(case, over, output, settings or [], rtol, jobs, overwrite=overwrite)
+    return sweep_case(
+        case,
+        over,
+        output,
+        settings or [],
+        rtol,
+        jobs,
+        dask,
+        zipped=zipped,
+        resume=resume,
+        overwrite=overwrite,
+    )
 
 
 @app.command
@@ -88,6 +115,19 @@ def plot(
     from gearidae.cli.files import draw
 
     return draw(archive, picture, output, overwrite=overwrite)
+
+
+@app.command
+def report(
+    archive: Annotated[Path, Parameter(help="Archive to report on.")],
+    *,
+    output: Output = None,
+    overwrite: Overwrite = False,
+) -> int:
+    """Write one self-contained HTML page about an archive: outcome, time series, pictures, events, scene."""
+    from gearidae.cli.report import report_archive
+
+    return report_archive(archive, output, overwrite=overwrite)
 
 
 @app.command(name="coating-map")
@@ -168,8 +208,15 @@ def bench(
         Path | None, Parameter(name=["--output", "-o"], help="Folder for tables, all points and pictures.")
     ] = None,
     quick: Annotated[bool, Parameter(help="Fewer scenes, tolerances and rounds.")] = False,
+    stress: Annotated[
+        bool, Parameter(help="Run random scenes over wide ranges instead, and account for every ending.")
+    ] = False,
+    runs: Annotated[int, Parameter(help="Random scenes to run.")] = 2000,
+    seed: Annotated[int, Parameter(help="Which random scenes.")] = 1,
 ) -> int:
     """Measure run time against error on this machine, and hold it against other integrators."""
-    from gearidae.cli.bench import bench_scenes
+    from gearidae.cli.bench import bench_scenes, bench_stress
 
+    if stress:
+        return bench_stress(runs, seed, output)
     return bench_scenes(scenes or [], output, quick=quick)

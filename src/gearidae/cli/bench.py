@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 
 from rich import box
@@ -13,12 +14,15 @@ from rich.table import Table
 
 from gearidae.bench import Result, Settings, find_scenes, run_benchmark
 from gearidae.bench.files import write_result
+from gearidae.bench.stress import run_stress
+from gearidae.bench.stress_report import counts, page, quantiles
 from gearidae.bench.tables import ERRORS, beyond_rows, equal_error_rows
-from gearidae.cli.codes import DONE
+from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import say, show
 from gearidae.cli.tables import show_rows
+from gearidae.errors import SceneError
 
-__all__ = ["bench_scenes"]
+__all__ = ["bench_scenes", "bench_stress"]
 
 _QUICK_SCENES = ("low_sam", "high_sam", "roller_slow_bare")
 _QUICK = Settings(rounds=3, longest=1.0, share=1.0, every=2)
@@ -57,6 +61,41 @@ def bench_scenes(scenes: Sequence[str], output: Path | None, *, quick: bool) -> 
         write_result(result, output)
         say(f"Results: {output}")
     return DONE
+
+
+def bench_stress(runs: int, seed: int, output: Path | None) -> int:
+    """Run random scenes, print how they ended, and write the page about them if asked.
+
+    Parameters
+    ----------
+    runs, seed : int
+        How many scenes, and which.
+    output : Path or None
+        Folder for ``stress.md``.
+
+    Returns
+    -------
+    int
+        Exit code: `UNFINISHED` if any outcome is unsound.
+    """
+    if runs < 1 or seed < 0:
+        raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
+    with Console(stderr=True).status("") as status:
+        outcomes = run_stress(runs, seed, lambda number: status.update(f"{number + 1} of {runs} ..."))
+    rows = [(ending, str(number), "") for ending, number in counts(outcomes).items()]
+    rows += [
+        (f"error / rtol of {100 * share:g} %", f"{ratio:.2g}", "at most")
+        for share, ratio in quantiles(outcomes).items()
+    ]
+    show_rows(rows)
+    unsound = [outcome for outcome in outcomes if not outcome.sound]
+    for outcome in unsound:
+        say(f"scene {outcome.number}: {outcome.status} {outcome.message} {outcome.complaint}")
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        (output / "stress.md").write_text(page(outcomes, seed, datetime.now(UTC).date()))
+        say(f"Report: {output / 'stress.md'}")
+    return UNFINISHED if unsound else DONE
 
 
 def _print(result: Result) -> None:

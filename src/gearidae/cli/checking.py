@@ -127,6 +127,6 @@ def _run(scene: Scene) -> Rows:
     yield (
         "duration",
         f"{run.duration * 1e3:g} ms",
-        f"{run.samples} samples, {columns * run.samples * 8e-6:.3g} MB",
+        f"{run.sample_count} samples, {columns * run.sample_count * 8e-6:.3g} MB",
     )
     yield "relative tolerance", f"{run.rtol:g}", ""

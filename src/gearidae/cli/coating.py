@@ -12,7 +12,7 @@ import gearidae as gd
 from gearidae.archive import check_target, save
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
-from gearidae.cli.output import say
+from gearidae.cli.output import is_quiet, say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.values import default_output, sweep_values
 from gearidae.executors import check_jobs
@@ -63,7 +63,7 @@ def map_case(
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
     check_target(target, overwrite=overwrite)
-    chart = gd.analysis.coating_map(scene, fractions, over=values, jobs=workers, progress=True)
+    chart = gd.analysis.coating_map(scene, fractions, over=values, jobs=workers, progress=not is_quiet())
     save(chart, target, overwrite=overwrite)
     show_rows(_rows(chart))
     say(f"Map: {target}")

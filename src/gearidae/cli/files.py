@@ -12,7 +12,7 @@ import gearidae as gd
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
-from gearidae.cli.tables import show_outcomes, show_rows
+from gearidae.cli.tables import show_account, show_outcomes, show_rows
 from gearidae.cli.values import default_output
 from gearidae.errors import SceneError
 
@@ -133,6 +133,7 @@ def describe(archive: Path) -> int:
     ds = gd.open_archive(archive)
     show_rows(_description(archive, ds))
     show_outcomes(ds)
+    show_account(ds)
     return DONE
 
 

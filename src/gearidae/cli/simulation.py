@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 import gearidae as gd
 from gearidae.archive.select import run_value, runs
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import complain, say
-from gearidae.cli.tables import label_text, show_outcomes
+from gearidae.cli.output import complain, is_quiet, say
+from gearidae.cli.tables import label_text, show_account, show_outcomes
 from gearidae.cli.values import default_output, sweep_values
-from gearidae.errors import SolverError
-from gearidae.executors import check_jobs
+from gearidae.errors import SceneError, SolverError
+from gearidae.executors import check_jobs, dask_executor
 
 __all__ = ["run_case", "sweep_case"]
 
 
 def run_case(
-    case: str, output: Path | None, settings: Sequence[str], rtol: float | None, *, overwrite: bool
+    case: str,
+    output: Path | None,
+    settings: Sequence[str],
+    rtol: float | None,
+    *,
+    overwrite: bool,
+    resume: bool,
 ) -> int:
     """Run one scene, keep its archive, say what it did.
 
@@ -35,23 +43,33 @@ def run_case(
         Relative tolerance in place of the scene's.
     overwrite : bool
         Whether the archive may replace a file.
+    resume : bool
+        Whether to go on with the run in the archive.
 
     Returns
     -------
     int
         Exit code.
     """
+    _check_resume(resume=resume, overwrite=overwrite)
     target = output or default_output(case, ".nc")
     scene = read_scene(case, settings)
+    was_finished = resume and target.exists() and gd.open_archive(target).attrs["status"] == "finished"
     try:
-        ds = gd.simulate(scene, rtol=rtol, progress=True, archive=target, overwrite=overwrite)
+        ds = gd.simulate(
+            scene, rtol=rtol, progress=not is_quiet(), archive=target, overwrite=overwrite, resume=resume
+        )
     except SolverError as error:
         if error.dataset is not None:
             show_outcomes(error.dataset)
+            show_account(error.dataset)
             say(f"Archive of the run up to there: {target}")
         complain(str(error))
         return UNFINISHED
     show_outcomes(ds)
+    show_account(ds)
+    if was_finished:
+        say("The run in this archive had been finished before: nothing was left to do.")
     say(f"Archive: {target}")
     return DONE
 
@@ -63,7 +81,10 @@ def sweep_case(
     settings: Sequence[str],
     rtol: float | None,
     jobs: int | None,
+    dask: str | None,
     *,
+    zipped: bool,
+    resume: bool,
     overwrite: bool,
 ) -> int:
     """Run a sweep, keep its archive, say what each run did.
@@ -76,6 +97,12 @@ def sweep_case(
         ``key=values`` pairs.
     jobs : int or None
         Runs at a time; None for one per core.
+    dask : str or None
+        Address of the scheduler of a Dask cluster that computes the runs; None for this machine.
+    zipped : bool
+        Whether the values of all keys are walked together.
+    resume : bool
+        Whether to go on with a sweep that was cut off.
 
     Returns
     -------
@@ -84,12 +111,37 @@ def sweep_case(
     """
     target = output or default_output(case, ".nc")
     values = sweep_values(over)
+    _check_resume(resume=resume, overwrite=overwrite)
+    if dask is not None and jobs is not None:
+        raise SceneError(
+            "--jobs", jobs, "does not go with --dask: the cluster decides how many runs at a time"
+        )
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    ds = gd.sweep(scene, values, rtol=rtol, progress=True, archive=target, overwrite=overwrite, jobs=workers)
+    with ExitStack() as stack:
+        # what a sweep warns of, such as a damaged run, is for the user to read and not to look up in the code
+        stack.enter_context(warnings.catch_warnings(action="always", category=UserWarning))
+        warnings.showwarning = lambda message, *_: complain(str(message))
+        ds = gd.sweep(
+            scene,
+            values,
+            None if dask is None else stack.enter_context(dask_executor(dask)),
+            rtol=rtol,
+            progress=not is_quiet(),
+            archive=target,
+            overwrite=overwrite,
+            jobs=workers,
+            zipped=zipped,
+            resume=resume,
+        )
     show_outcomes(ds)
     say(f"Archive: {target}")
     failed = [(label, run) for label, run in runs(ds) if run_value(run, "status") != "finished"]
     for label, run in failed:
         complain(f"{label_text(label)}: {run_value(run, 'message') or run_value(run, 'status')}")
     return UNFINISHED if failed else DONE
+
+
+def _check_resume(*, resume: bool, overwrite: bool) -> None:
+    if overwrite and resume:
+        raise SceneError("--resume", "(given)", "keeps what there is, and --overwrite does not: choose one")

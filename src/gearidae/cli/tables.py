@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -15,7 +16,7 @@ from gearidae.archive.select import swept_dims
 from gearidae.cli.output import show
 from gearidae.outcome import GearOutcome, RollerOutcome, outcomes
 
-__all__ = ["label_text", "show_outcomes", "show_rows"]
+__all__ = ["label_text", "show_account", "show_outcomes", "show_rows"]
 
 _GEAR_HEADINGS = ("what it did", "min rad/s", "max rad/s", "impacts", "wall s")
 _ROLLER_HEADINGS = ("what it did", "peak uN", "pull-off uN", "restitution", "impacts", "wall s")
@@ -39,6 +40,42 @@ def show_outcomes(ds: xr.Dataset) -> None:
         cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome)
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
     show(table)
+
+
+def show_account(ds: xr.Dataset) -> None:
+    """Print the account that a dataset carries: times, forces, and where the energy went.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run of gears; nothing is printed of any other.
+    """
+    if "account" in ds.attrs:
+        show_rows(_account_rows(json.loads(ds.attrs["account"])))
+
+
+def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
+    def number(name: str, scale: float = 1.0) -> str:
+        return "-" if told[name] is None else f"{told[name] * scale:.4g}"
+
+    yield "Account of the run", "", ""
+    yield "up to speed", f"{number('time_to_speed', 1e3)} ms", f"95 % of {number('top_speed')} rad/s"
+    held = f"held by {told['held_by']} at the end" if told["held_by"] else ""
+    times = "once" if told["sticks"] == 1 else f"{told['sticks']} times"
+    yield "held by dry resistance", f"{number('time_at_rest', 1e3)} ms", f"stuck {times}; {held}".rstrip("; ")
+    yield "held by adhesion", f"{number('time_adhering', 1e3)} ms", "turned back within half a pitch"
+    if told["largest_force"] is not None:
+        when = f"at {number('largest_force_time', 1e3)} ms"
+        yield "largest force", f"{number('largest_force', 1e6)} uN", when
+    if told["drive_work"] is not None:
+        yield "work of the drive", f"{told['drive_work']:.5g} J", "of which went into"
+        for name in ("drag_loss", "dry_loss", "damping_loss", "kinetic_change"):
+            yield name.replace("_", " "), f"{told[name]:.5g} J", ""
+        yield (
+            "contacts",
+            f"{told['contact_loss']:.5g} J",
+            f"the rest, to {told['uncertainty']:.1g} J: adhesion",
+        )
 
 
 def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:

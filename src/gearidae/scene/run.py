@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Final, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from gearidae.errors import SceneError
 from gearidae.scene.group import Group
-from gearidae.scene.quantity import Count, Quantity
+from gearidae.scene.quantity import Quantity, Sampling
 
 __all__ = ["Initial", "Roller", "Run"]
+
+MOST_SAMPLES: Final = 100_000_000
 
 
 class Initial(Group):
@@ -28,12 +31,32 @@ class Run(Group):
     duration: Annotated[float, Quantity(unit="s", above=0, shown=("ms", -3))] = Field(
         description="simulated time"
     )
-    samples: Annotated[int, Count(at_least=2, at_most=100_000_000)] = Field(
-        default=10_001, description="uniform samples, both ends included"
+    samples: Annotated[int | str, Sampling(at_least=2, at_most=MOST_SAMPLES)] = Field(
+        default=10_001, description="uniform samples, both ends included: a number, a rate, or off"
     )
     rtol: Annotated[float, Quantity(unit="1", at_least=1e-12, at_most=0.1)] = Field(
         default=1e-6, description="relative tolerance of the solver"
     )
+
+    @model_validator(mode="after")
+    def _countable(self) -> Self:
+        """Refuse a rate that gives too few samples in this duration, or too many."""
+        if isinstance(self.samples, str) and self.samples != "off":
+            wanted = self.duration * Sampling.rate(self.samples) + 1.0
+            if not 1.5 <= wanted < MOST_SAMPLES + 0.5:
+                raise SceneError(
+                    "samples",
+                    self.samples,
+                    f"gives {wanted:.4g} samples in {self.duration:g} s; there must be 2..{MOST_SAMPLES:g}",
+                )
+        return self
+
+    @property
+    def sample_count(self) -> int:
+        """Number of samples; 0 if they are off."""
+        if isinstance(self.samples, int):
+            return self.samples
+        return 0 if self.samples == "off" else round(self.duration * Sampling.rate(self.samples)) + 1
 
 
 class Roller(Group):

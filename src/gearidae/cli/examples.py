@@ -1,0 +1,28 @@
+"""Examples below the help of each command; the tests parse every one of them."""
+
+from __future__ import annotations
+
+__all__ = ["EXAMPLES"]
+
+EXAMPLES: dict[str, tuple[str, ...]] = {
+    "run": (
+        "gearidae run mine.toml",
+        "gearidae run teodorescu2009_low_speed --set coating.sam_fraction=0.5 -o half.nc",
+        'gearidae run mine.toml --set "mesh.backlash=0.3 um" "run.duration=50 ms" --overwrite',
+    ),
+    "sweep": (
+        "gearidae sweep mine.toml --over coating.sam_fraction=1:0.4:-0.05",
+        "gearidae sweep mine.toml --over coating.sam_fraction=1,0.5 mesh.backlash=0.2e-6,0.3e-6 --jobs 2 -o grid.nc",
+    ),
+    "plot": (
+        "gearidae plot mine.nc",
+        "gearidae plot mine.nc --picture power_spectrum -o spectrum.pdf",
+    ),
+    "report": ("gearidae report mine.nc -o mine.html",),
+    "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
+    "assess": ("gearidae assess signal.csv --map map.nc",),
+    "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
+    "init": ("gearidae init mine", "gearidae init mine --preset teodorescu2009"),
+    "info": ("gearidae info mine.nc",),
+    "bench": ("gearidae bench --quick",),
+}

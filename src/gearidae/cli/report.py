@@ -1,0 +1,42 @@
+"""``gearidae report``: one self-contained page about an archive."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gearidae as gd
+from gearidae.cli.codes import DONE
+from gearidae.cli.output import say
+from gearidae.cli.values import default_output
+
+__all__ = ["report_archive"]
+
+
+def report_archive(archive: Path, output: Path | None, *, overwrite: bool) -> int:
+    """Write the report of an archive.
+
+    Parameters
+    ----------
+    archive : Path
+        What to report on.
+    output : Path or None
+        HTML file to write; None for the archive's name with ``.html``.
+    overwrite : bool
+        Whether the page may replace a file.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be read or the page cannot be written.
+    """
+    from gearidae.report import write_report
+
+    ds = gd.open_archive(archive)
+    target = write_report(ds, output or default_output(str(archive), ".html"), overwrite=overwrite)
+    say(f"Report: {target}")
+    return DONE

@@ -1,0 +1,114 @@
+"""What holds for every command: how much is said, and the log file."""
+
+from __future__ import annotations
+
+import logging
+import platform
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import CycloptsError, Parameter
+
+import gearidae
+from gearidae.cli.app import app
+from gearidae.cli.examples import EXAMPLES
+from gearidae.cli.output import hushed
+from gearidae.errors import GearidaeError, SceneError
+
+__all__ = ["app", "session"]
+
+_WRITERS = ("coating-map", "init", "plot", "report", "run", "sweep")
+"""Commands that write a file; what the others print is what they are asked for, and stays."""
+
+log = logging.getLogger("gearidae")
+
+app.meta.suppress_keyboard_interrupt = False  # as in the app itself: `main` says what is kept
+app.register_install_completion_command()
+for _name, _lines in EXAMPLES.items():
+    app[_name].help_epilogue = "Examples:\n\n" + "\n\n".join(f"    {_line}" for _line in _lines)
+
+
+@app.meta.default
+def session(
+    *tokens: Annotated[str, Parameter(show=False, allow_leading_hyphen=True)],
+    quiet: Annotated[
+        bool, Parameter(name=["--quiet", "-q"], help="Print no summary and no progress, only complaints.")
+    ] = False,
+    verbose: Annotated[
+        bool, Parameter(name=["--verbose", "-v"], help="Tell on standard error what is being done.")
+    ] = False,
+    log_file: Annotated[
+        Path | None, Parameter(name="--log", help="Also append everything, with times, to this file.")
+    ] = None,
+) -> object:
+    """Run one command under these options.
+
+    Parameters
+    ----------
+    *tokens : str
+        The command and its own arguments.
+    quiet, verbose : bool
+        How much to say.
+    log_file : Path, optional
+        File to append the log to.
+
+    Returns
+    -------
+    object
+        What the command returns: its exit code, or nothing.
+
+    Raises
+    ------
+    SceneError
+        If both `quiet` and `verbose` are asked for, or the log cannot be written.
+    """
+    if quiet and verbose:
+        raise SceneError("--quiet", "--verbose", "say one of the two")
+    level = logging.ERROR if quiet else logging.INFO if verbose else logging.WARNING
+    with _logging(level, log_file), hushed(quiet and bool(tokens) and tokens[0] in _WRITERS):
+        return _run(tokens)
+
+
+def _run(tokens: tuple[str, ...]) -> object:
+    log.info(
+        "gearidae %s, Python %s, %s: %s",
+        gearidae.__version__, platform.python_version(), platform.platform(), " ".join(tokens),
+    )  # fmt: skip
+    began = time.perf_counter()
+    try:
+        code: object = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+    except (CycloptsError, GearidaeError, KeyboardInterrupt) as error:
+        log.debug("%s: %s", type(error).__name__, error)  # for the file; on the terminal it is said anyway
+        raise
+    log.info("done in %.2f s, exit code %s", time.perf_counter() - began, code if code is not None else 0)
+    return code
+
+
+@contextmanager
+def _logging(level: int, path: Path | None) -> Iterator[None]:
+    """Send the package's log to standard error and, in full, to a file, for as long as a command runs."""
+    terminal = logging.StreamHandler()
+    terminal.setLevel(level)
+    terminal.setFormatter(logging.Formatter("%(message)s"))
+    handlers: list[logging.Handler] = [terminal]
+    if path is not None:
+        try:
+            file = logging.FileHandler(path, encoding="utf-8")
+        except OSError as error:
+            raise SceneError("--log", path, f"cannot be written ({error.strerror})") from error
+        file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+        handlers.append(file)
+    before = log.level
+    log.setLevel(logging.DEBUG if path is not None else level)
+    for handler in handlers:
+        log.addHandler(handler)
+    try:
+        yield
+    finally:
+        for handler in handlers:
+            log.removeHandler(handler)
+            handler.close()
+        log.setLevel(before)

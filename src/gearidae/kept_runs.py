@@ -1,0 +1,202 @@
+"""Finished runs of a sweep, kept on disk until the whole sweep is, so that it can go on where it was cut off."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import secrets
+import warnings
+from collections.abc import Collection
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import netCDF4
+import numpy as np
+
+from gearidae.archive.provenance import SCHEMA_VERSION, provenance
+from gearidae.records import Events, Solution, Statistics
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["KeptRuns", "folder_beside"]
+
+_LAYOUT = 1
+"""Version of the files' layout."""
+_OURS = re.compile(r"\.?[0-9a-f]{64}(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
+"""Names of our files, finished or cut off while they were written."""
+_EVENTS = {"time": np.float64, "kind": np.int8, "pair": np.int64, "flank": np.int8, "gap_rate": np.float64}
+"""Rows of the table of events, all of which double precision holds exactly, and their types in memory."""
+
+
+def folder_beside(archive: Path) -> Path:
+    """Where the runs of an unfinished sweep are kept: ``OUT.nc.runs`` beside ``OUT.nc``."""
+    return archive.with_name(f"{archive.name}.runs")
+
+
+class KeptRuns:
+    """The folder of finished runs of one sweep.
+
+    Each run is a netCDF file named by the hash of all that its result depends on: the scene (with its
+    duration, samples and tolerance), the driver of the solver, and the versions of the software. It appears
+    under its name only when it is complete. It is not forced onto the disk, which would take longer than many
+    a run; what a power failure leaves of it is told by its checksum. Nothing in a file is ever executed.
+
+    Parameters
+    ----------
+    archive : Path
+        Where the whole sweep is to go.
+    scene : Scene
+        Any scene of the sweep.
+    backend : str
+        The driver that runs, ``native`` or ``sksundae``.
+    """
+
+    def __init__(self, archive: Path, scene: Scene, backend: str) -> None:
+        self.folder = folder_beside(archive)
+        self._circumstances = {
+            "layout": _LAYOUT,
+            "schema": SCHEMA_VERSION,
+            "software": provenance(scene, "")["source"],
+            "backend": backend,
+        }
+        self._warned = False
+
+    def count(self) -> int:
+        """Count the runs that are kept."""
+        return sum(path.suffix == ".nc" for path in self._files())
+
+    def key(self, scene: Scene) -> str:
+        """Hash of a scene and of all else that its result depends on."""
+        text = json.dumps({**self._circumstances, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def keep(self, scene: Scene, solution: Solution) -> None:
+        """Write a finished run.
+
+        A run that cannot be kept is no reason to stop; that is said in one warning for the sweep.
+        """
+        key = self.key(scene)
+        part = self.folder / f".{key}.{os.getpid()}-{secrets.token_hex(4)}.part"
+        try:
+            self.folder.mkdir(exist_ok=True)
+            try:
+                _write(part, key, solution)
+                part.replace(self._path(key))
+            finally:
+                part.unlink(missing_ok=True)
+        except (OSError, RuntimeError) as error:  # netCDF4 reports a full disk as either
+            if not self._warned:
+                warnings.warn(f"finished runs cannot be kept in {self.folder} ({error})", stacklevel=2)
+            self._warned = True
+
+    def take(self, scene: Scene) -> Solution | None:
+        """Read a run back; None, and a warning, if its file is damaged or not what its name says."""
+        key = self.key(scene)
+        path = self._path(key)
+        if not path.is_file():
+            return None
+        try:
+            return _read(path, key)
+        except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
+            warnings.warn(f"{path} is ignored and its run computed again ({error})", stacklevel=2)
+            return None
+
+    def note_strangers(self, scenes: Collection[Scene]) -> None:
+        """Warn of kept runs that are none of these scenes."""
+        own = {self._path(self.key(scene)) for scene in scenes}
+        strangers = sum(path.suffix == ".nc" and path not in own for path in self._files())
+        if strangers:
+            warnings.warn(
+                f"{strangers} of the runs kept in {self.folder} are of other scenes, settings or versions; "
+                "they are ignored and left there",
+                stacklevel=2,
+            )
+
+    def remove(self, scenes: Collection[Scene] | None = None) -> None:
+        """Delete the kept runs of some scenes, or all of them, and the folder if nothing else is in it."""
+        own = None if scenes is None else {self._path(self.key(scene)) for scene in scenes}
+        for path in self._files():
+            if own is None or path in own or path.suffix == ".part":
+                path.unlink(missing_ok=True)
+        if self.folder.is_dir() and not any(self.folder.iterdir()):
+            self.folder.rmdir()
+
+    def _path(self, key: str) -> Path:
+        return self.folder / f"{key}.nc"
+
+    def _files(self) -> list[Path]:
+        if not self.folder.is_dir():
+            return []
+        return [path for path in self.folder.iterdir() if _OURS.fullmatch(path.name)]
+
+
+def _write(path: Path, key: str, solution: Solution) -> None:
+    """Two tables and a header in the classic format: a tenth of the time that an archive takes."""
+    samples = np.stack([solution.time, *solution.samples.values()])
+    events = np.stack([getattr(solution.events, name).astype(np.float64) for name in _EVENTS])
+    header = json.dumps(
+        {
+            "key": key,
+            "columns": list(solution.samples),
+            "statistics": asdict(solution.statistics),
+            "status": solution.status,
+            "message": solution.message,
+            "reached": solution.reached,
+        },
+        default=int,  # numpy's integers
+    )
+    with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
+        file.set_fill_off()
+        for name, table in (("samples", samples), ("events", events)):
+            if not table.size:  # the classic format has no dimensions of length zero
+                continue
+            dims = (f"{name}_row", f"{name}_number")
+            for dim, size in zip(dims, table.shape, strict=True):
+                file.createDimension(dim, size)
+            file.createVariable(name, np.float64, dims)[:] = table
+        file.setncatts(
+            {
+                "title": "a finished run of an unfinished sweep of gearidae",
+                "header": header,
+                "checksum": _checksum(header, samples, events),
+            }
+        )
+
+
+def _read(path: Path, key: str) -> Solution:
+    """Rebuild what `_write` wrote; ValueError if the file is another's or damaged."""
+    with netCDF4.Dataset(path, "r") as file:
+        file.set_auto_maskandscale(False)
+        text = str(file.getncattr("header"))
+        header: dict[str, Any] = json.loads(text)
+        samples, events = (
+            np.array(file[name][:], np.float64) if name in file.variables else np.empty((rows, 0))
+            for name, rows in (("samples", 1 + len(header["columns"])), ("events", len(_EVENTS)))
+        )
+        if file.getncattr("checksum") != _checksum(text, samples, events):
+            raise ValueError("its checksum does not agree")
+    if header["key"] != key:
+        raise ValueError("it is of another scene, setting or version")
+    columns = {name: row.copy() for name, row in zip(header["columns"], samples[1:], strict=True)}
+    table = {name: row.astype(dtype) for (name, dtype), row in zip(_EVENTS.items(), events, strict=True)}
+    return Solution(
+        samples[0].copy(),
+        columns,
+        Events(**table),
+        Statistics(**header["statistics"]),
+        header["status"],
+        header["message"],
+        header["reached"],
+    )
+
+
+def _checksum(header: str, *tables: np.ndarray[Any, np.dtype[np.float64]]) -> str:
+    digest = hashlib.sha256(header.encode())
+    for table in tables:
+        digest.update(repr(table.shape).encode())
+        digest.update(np.ascontiguousarray(table, dtype="<f8").tobytes())
+    return digest.hexdigest()

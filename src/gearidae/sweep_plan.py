@@ -1,0 +1,195 @@
+"""What a sweep varies: the scenes of its runs, and the dimensions and labels of the result."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from gearidae.archive import combine, dimension_names
+from gearidae.archive.dataset import key_labels
+from gearidae.archive.provenance import provenance
+from gearidae.errors import SceneError
+from gearidae.records import Solution
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gearidae.scene import Scene
+
+__all__ = ["SweepPlan", "plan_sweep"]
+
+_ONE_TIME_AXIS = ("run.duration", "run.samples")
+
+Axis = dict[str, list[Any]]
+"""Values of the keys that are walked together along one dimension; the first key labels it."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepPlan:
+    """Every run of a sweep.
+
+    Attributes
+    ----------
+    base : Scene
+        What the runs have in common.
+    axes : tuple of dict
+        For each dimension, the values of its keys in SI units; several keys where they are zipped.
+    scenes : list of Scene
+        One for each run; the last axis changes fastest.
+    """
+
+    base: Scene
+    axes: tuple[Axis, ...]
+    scenes: list[Scene]
+
+    @property
+    def swept(self) -> str:
+        """Values of every key, as the attribute ``swept`` of the result holds them."""
+        return json.dumps({key: axis[key] for axis in self.axes for key in axis}, allow_nan=False)
+
+    @property
+    def zipped(self) -> str:
+        """Keys that are walked together, as the attribute ``zipped`` of the result; empty without any."""
+        return ", ".join(itertools.chain(*(axis for axis in self.axes if len(axis) > 1)))
+
+    def stack(self, solutions: Sequence[Solution]) -> xr.Dataset:
+        """Put the runs into one dataset.
+
+        Parameters
+        ----------
+        solutions : sequence of Solution
+            In the order of the scenes.
+
+        Returns
+        -------
+        xarray.Dataset
+            See `gearidae.sweep`.
+        """
+        leaders = {leader: axis[leader] for axis in self.axes for leader in [next(iter(axis))]}
+        ds = combine(self.base, leaders, self.scenes, solutions)
+        if not self.zipped:
+            return ds
+        names = dimension_names([key for axis in self.axes for key in axis])
+        renamed = {
+            short: names[key] for key, short in dimension_names(leaders).items() if short != names[key]
+        }
+        ds = ds.rename(renamed | {f"event_{short}": f"event_{name}" for short, name in renamed.items()})
+        for axis in self.axes:
+            leader, *others = axis
+            ds = ds.assign_coords({names[key]: key_labels(key, names[leader], axis[key]) for key in others})
+        about = provenance(self.base, "", swept=tuple(" with ".join(axis) for axis in self.axes))
+        return ds.assign_attrs(
+            title=about["title"], summary=about["summary"], swept=self.swept, zipped=self.zipped
+        )
+
+
+def plan_sweep(
+    base: Scene, over: Mapping[str, Iterable[Any]], *, zipped: bool | Collection[str] = False
+) -> SweepPlan:
+    """Derive all scenes of a sweep, before anything is run.
+
+    Parameters
+    ----------
+    base : Scene
+        What the runs have in common.
+    over : mapping of str to iterable
+        Values of each swept key.
+    zipped : bool or collection of str, optional
+        As for `gearidae.sweep`.
+
+    Returns
+    -------
+    SweepPlan
+
+    Raises
+    ------
+    SceneError
+        If a key or a value is not allowed, stands twice, or zipped keys differ in the number of values.
+    """
+    listed = _listed(over)
+    groups = _groups(listed, zipped)
+    steps = [list(zip(*group.values(), strict=True)) for group in groups]
+    scenes = [
+        base.replace(dict(zip(listed, itertools.chain(*values), strict=True)))
+        for values in itertools.product(*steps)
+    ]
+    axes: list[Axis] = []
+    stride = len(scenes)
+    for group, length in zip(groups, map(len, steps), strict=True):
+        stride //= length
+        own = [scenes[index * stride] for index in range(length)]
+        axis = {key: [_held(scene, key) for scene in own] for key in group}
+        leader = next(iter(axis))
+        for index, value in enumerate(axis[leader]):
+            if value in axis[leader][:index]:
+                alone = "" if len(axis) == 1 else _LEADER
+                raise SceneError(leader, group[leader][index], f"stands twice in the list of values{alone}")
+        axes.append(axis)
+    return SweepPlan(base, tuple(axes), scenes)
+
+
+_LEADER = (
+    ", and the first of the zipped keys labels the runs: put one first whose values all differ "
+    '("name" gives the runs names of their own)'
+)
+
+
+def _listed(over: Mapping[str, Iterable[Any]]) -> dict[str, list[Any]]:
+    """Values of each swept key as a list that is not empty."""
+    if not isinstance(over, Mapping) or not over:
+        raise SceneError(
+            "over", over, 'must be a table of keys and their values, {"coating.sam_fraction": [1, 0.5]}'
+        )
+    listed: dict[str, list[Any]] = {}
+    for key, values in over.items():
+        if key in _ONE_TIME_AXIS:
+            raise SceneError(key, values, "cannot be swept, because all runs share one time axis")
+        if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
+            raise SceneError(key, values, "must be a list of values to sweep over")
+        # numpy's scalars become plain numbers, which is what scenes are made of
+        listed[key] = [value.item() if hasattr(value, "item") else value for value in values]
+        if not listed[key]:
+            raise SceneError(key, "[]", "must be a list of at least one value")
+    return listed
+
+
+def _groups(listed: dict[str, list[Any]], zipped: bool | Collection[str]) -> list[Axis]:
+    """Keys that share a dimension, with their values; `listed` is put into the same order."""
+    if isinstance(zipped, bool):
+        together = list(listed) if zipped else []
+    elif not isinstance(zipped, Collection):
+        raise SceneError("zipped", zipped, "must be True, False or keys that are walked together")
+    else:
+        named = [zipped] if isinstance(zipped, str) else list(zipped)
+        for key in named:
+            if not isinstance(key, str) or key not in listed:
+                raise SceneError("zipped", key, f"must be among the swept keys {', '.join(map(str, listed))}")
+        together = [key for key in listed if key in named]
+    groups: list[Axis] = []
+    for key, values in listed.items():
+        if key not in together:
+            groups.append({key: values})
+        elif key == together[0]:
+            groups.append({each: listed[each] for each in together})
+        elif len(values) != len(listed[together[0]]):
+            raise SceneError(
+                key,
+                f"{len(values)} values",
+                f"must be as many as {together[0]} has, {len(listed[together[0]])}: they are zipped",
+            )
+    for key in [key for group in groups for key in group]:
+        listed[key] = listed.pop(key)
+    return groups
+
+
+def _held(scene: Scene, key: str) -> Any:
+    """Value of a dotted key in SI units, as plain data."""
+    value: Any = scene.to_dict()
+    for part in key.split("."):
+        if isinstance(value, list) and not part.isdigit():
+            value = value[0]  # a list of one may go without its number
+        value = value[int(part)] if isinstance(value, list) else value.get(part)
+    return value

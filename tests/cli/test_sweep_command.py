@@ -1,0 +1,75 @@
+"""``gearidae sweep``: what it adds to `gearidae.sweep` is options, and words for the user."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+import xarray as xr
+
+import gearidae as gd
+from gearidae import engine
+from gearidae.cli import main
+from sweeps import without_times
+
+FRACTIONS = [1.0, 0.5, 0.45]
+SHORT = ["--set", "run.duration=1 ms", "run.samples=11"]
+SWEEP = ["sweep", "teodorescu2009_low_speed", "--over", "coating.sam_fraction=1,0.5,0.45", *SHORT]
+LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "1 ms", "run.samples": 11})
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def interrupted(monkeypatch, folder, capsys):
+    """Files of a sweep that Ctrl-C ended in its last run."""
+    solve = engine.solve
+
+    def deed(scene, **options):
+        if scene.coating.sam_fraction == 0.45:
+            os.kill(os.getpid(), signal.SIGINT)
+        return solve(scene, **options)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(engine, "solve", deed)
+        assert main([*SWEEP, "--jobs", "1", "-o", "out.nc"]) == 130
+    assert "--resume" in capsys.readouterr().err
+    assert len(list((folder / "out.nc.runs").iterdir())) == 2
+    return folder
+
+
+def test_resume(interrupted, capsys):
+    assert main([*SWEEP, "-o", "out.nc"]) == 2
+    assert "go on with --resume" in capsys.readouterr().err
+    assert main([*SWEEP, "-o", "out.nc", "--resume"]) == 0
+    expected = gd.sweep(LOW, {"coating.sam_fraction": FRACTIONS})
+    xr.testing.assert_identical(without_times(gd.open_archive("out.nc")), without_times(expected))
+    assert [path.name for path in interrupted.iterdir()] == ["out.nc"]
+
+
+def test_a_damaged_run_is_one_line(interrupted, capsys):
+    next((interrupted / "out.nc.runs").iterdir()).write_bytes(b"damaged")
+    assert main([*SWEEP, "-o", "out.nc", "--resume"]) == 0
+    complaint = capsys.readouterr().err
+    assert complaint.startswith("gearidae: ")
+    assert "ignored and its run computed again" in complaint
+    assert complaint.count("\n") == 1
+
+
+def test_resume_and_overwrite_contradict_each_other(capsys):
+    assert main([*SWEEP, "--resume", "--overwrite"]) == 2
+    assert "choose one" in capsys.readouterr().err
+
+
+def test_zipped(capsys):
+    command = ["sweep", "teodorescu2009_low_speed", *SHORT, "--zipped", "-o", "out.nc"]
+    over = ["--over", "drive.torque=4.5e-18,4e-18", "coating.sam_fraction=1,0.5"]
+    assert main([*command, *over]) == 0
+    assert gd.open_archive("out.nc").sam_fraction.dims == ("torque",)
+    assert main([*command, *over, "--over", "load.drag=1:3:1", "--overwrite"]) == 2
+    assert "load.drag = 3 values: must be as many as drive.torque has, 2" in capsys.readouterr().err
