@@ -1,0 +1,40 @@
+"""Sphinx configuration; tables of keys, variables and options are written from the code before each build."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from generate import write_tables
+
+import gearidae
+
+project = "gearidae"
+author = "The gearidae authors"
+copyright = "2026, the gearidae authors"  # noqa: A001
+version = release = gearidae.__version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.viewcode",
+    "numpydoc",
+    "mathml",
+]
+html_math_renderer = "mathml"
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build", "**/generated/*.inc.md"]
+html_theme = "furo"
+html_title = f"gearidae {release}"
+autosummary_generate = True
+autodoc_typehints = "none"  # the docstrings name types and shapes
+numpydoc_show_class_members = False
+numpydoc_class_members_toctree = False
+highlight_language = "none"
+
+
+def setup(app: object) -> None:
+    """Write the generated tables before anything is read."""
+    write_tables(Path(__file__).parent / "reference" / "generated")

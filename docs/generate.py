@@ -1,0 +1,105 @@
+"""Tables of the reference that follow from the code: scene keys, dataset variables, commands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from cyclopts import Argument
+
+from gearidae.archive.variables import EVENTS, RUN, SAM_FRACTION, SAMPLES, TIME, Variable
+from gearidae.cli.session import app
+from gearidae.records import EventKind, Flank
+from gearidae.scene import describe_keys
+
+__all__ = ["command_tables", "dataset_tables", "key_table", "write_tables"]
+
+
+def write_tables(folder: Path) -> None:
+    """Write all tables as files to be included."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in (
+        ("keys", key_table()),
+        ("dataset", dataset_tables()),
+        ("commands", command_tables()),
+    ):
+        target = folder / f"{name}.inc.md"
+        if not target.exists() or target.read_text(encoding="utf-8") != text:
+            target.write_text(text, encoding="utf-8")
+
+
+def key_table() -> str:
+    """List the keys of a scene, a table for each table of the case file."""
+    tables: dict[str, list[Sequence[str]]] = {}
+    for info in describe_keys():
+        table, _, key = info.key.partition(".")
+        default = "required" if info.required else "" if info.default == () else f"`{info.default}`"
+        unit = "" if info.unit == "1" else info.unit
+        allowed = info.allowed.replace(f"a number in {info.unit} or a text with a unit", "").strip(" ,")
+        tables.setdefault(table if key else "", []).append(
+            (f"`{info.key}`", unit, default, allowed, info.description)
+        )
+    headings = ("key", "unit", "default", "allowed", "meaning")
+    parts = [(f"## `[{name}]`\n\n" if name else "") + _table(headings, rows) for name, rows in tables.items()]
+    return "\n".join(parts)
+
+
+def dataset_tables() -> str:
+    """List the variables of a dataset."""
+    groups: tuple[tuple[str, Iterable[Variable]], ...] = (
+        ("Coordinates", (TIME, SAM_FRACTION)),
+        ("Samples", SAMPLES.values()),
+        ("Events", EVENTS.values()),
+        ("Status and statistics of a run", RUN.values()),
+    )
+    headings = ("name", "dimensions", "unit", "what it is")
+    parts = []
+    for title, variables in groups:
+        rows = [
+            (
+                f"`{each.name}`",
+                ", ".join(each.dims) or "-",
+                each.units,
+                "; ".join(filter(None, (each.long_name, each.comment))),
+            )
+            for each in variables
+        ]
+        parts.append(f"## {title}\n\n{_table(headings, rows)}")
+    for title, flags in (("Kinds of events", EventKind), ("Flanks", Flank)):
+        rows = [(str(flag.value), f"`{flag.name.lower()}`") for flag in flags]
+        parts.append(f"## {title}\n\n{_table(('value', 'meaning'), rows)}")
+    return "\n".join(parts)
+
+
+def command_tables() -> str:
+    """List the commands with their arguments and options."""
+    parts = []
+    common = {name for argument in app.meta.assemble_argument_collection() for name in argument.names}
+    names = sorted(name for name in app if not name.startswith("-"))
+    for name in names:
+        command = app[name]
+        rows = [
+            (_names(argument), argument.parameter.help or "")
+            for argument in command.assemble_argument_collection()
+            if argument.show and not common.intersection(argument.names)
+        ]
+        parts.append(f"## `gearidae {name}`\n\n{command.help.strip()}\n\n{_table(('argument', ''), rows)}")
+    rows = [
+        (_names(argument), argument.parameter.help or "")
+        for argument in app.meta.assemble_argument_collection()
+        if argument.show
+    ]
+    parts.append(f"## With every command\n\n{_table(('option', ''), rows)}")
+    return "\n".join(parts)
+
+
+def _names(argument: Argument) -> str:
+    """Name an argument as it is written: in capitals where it stands by its place."""
+    if argument.index is not None:
+        return f"`{argument.names[0].removeprefix('--').upper()}`"
+    return ", ".join(f"`{name}`" for name in argument.names if not name.startswith(("--no-", "--empty-")))
+
+
+def _table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [headings, ["---"] * len(headings), *rows]
+    return "".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |\n" for line in lines)

@@ -1,0 +1,146 @@
+"""The page: its sections put together, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from importlib.resources import files
+from pathlib import Path
+
+import xarray as xr
+
+from gearidae.archive.select import scene_of
+from gearidae.errors import SceneError
+from gearidae.report import html
+from gearidae.report.pictures import pictures
+from gearidae.report.series import MOST_VALUES, pack
+from gearidae.report.tables import (
+    account_table,
+    event_table,
+    headline,
+    outcome_table,
+    parameter_tables,
+    provenance_list,
+)
+
+__all__ = ["build_report", "write_report"]
+
+_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+"""What the browser may load for the page: nothing from anywhere."""
+
+
+def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
+    """Make one self-contained HTML page about a dataset.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `simulate`, `sweep` or `open_archive`.
+    most_values : int, optional
+        Numbers to embed at most in the viewer of the time series.
+
+    Returns
+    -------
+    str
+        A page that loads nothing: styles, script, pictures and data are in it.
+
+    Raises
+    ------
+    SceneError
+        If the dataset carries no scene.
+    """
+    name = str(scene_of(ds).get("name", "gearidae"))
+    main = "\n".join(
+        part
+        for part in (
+            html.section("outcome", "Outcome", outcome_table(ds), account_table(ds)),
+            html.section("series", "Time series", _viewer(ds, most_values)),
+            html.section("pictures", "Pictures", pictures(ds)),
+            html.section("events", "Events", event_table(ds)),
+            html.section("parameters", "Parameters", parameter_tables(ds)),
+            html.section("provenance", "Provenance", provenance_list(ds)),
+        )
+        if part
+    )
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="Content-Security-Policy" content="{html.text(_POLICY)}">
+<meta name="generator" content="gearidae {html.text(ds.attrs.get("product_version", ""))}">
+<title>{html.text(name)}: report</title>
+<style>
+{_resource("page.css")}
+</style>
+</head>
+<body>
+<header>
+<h1>{html.text(name.replace("_", " "))}</h1>
+<p class="headline">{html.text(headline(ds))}</p>
+{html.paragraph(ds.attrs.get("summary", ""), "summary")}
+</header>
+<main>
+{main}
+</main>
+<script>
+{_resource("viewer.js")}
+</script>
+</body>
+</html>
+"""
+
+
+def write_report(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
+    """Write the report of a dataset to a file.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `simulate`, `sweep` or `open_archive`.
+    path : path-like
+        HTML file to write.
+    overwrite : bool, optional
+        Whether a file that is there may be replaced.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    SceneError
+        If the dataset carries no scene, the file exists and may not be replaced, or it cannot be written.
+    """
+    target = Path(path)
+    if target.is_dir() or (target.exists() and not overwrite):
+        raise SceneError("report", path, "exists already: name another with -o, or allow --overwrite")
+    page = build_report(ds)
+    part = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
+    try:
+        part.write_text(page, encoding="utf-8")
+        part.replace(target)
+    except OSError as error:
+        raise SceneError("report", path, f"cannot be written ({error.strerror})") from error
+    finally:
+        part.unlink(missing_ok=True)
+    return target
+
+
+def _viewer(ds: xr.Dataset, most_values: int) -> str:
+    """Place the viewer and its data; without samples there is nothing to view."""
+    data = pack(ds, most_values)
+    if not data:
+        return ""
+    return (
+        '<div id="viewer"><p class="hint">Drag to move, pinch or Ctrl + wheel to zoom; with a plot focused: '
+        "arrows, + and -, 0 for everything.</p></div>\n"
+        "<noscript><p>The viewer needs JavaScript; the pictures below do not.</p></noscript>\n"
+        + html.json_block("data", data)
+    )
+
+
+def _resource(name: str) -> str:
+    return (files("gearidae.report") / name).read_text(encoding="utf-8")

@@ -1,0 +1,177 @@
+"""The tables of a report: outcome, events, parameters, provenance."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.select import runs, scene_of, swept_dims
+from gearidae.outcome import GearOutcome, RollerOutcome, outcomes
+from gearidae.records import EventKind
+from gearidae.report import html
+from gearidae.scene import describe_keys
+
+__all__ = ["account_table", "event_table", "headline", "outcome_table", "parameter_tables", "provenance_list"]
+
+_GEAR_HEADINGS = ("what it did", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
+_ROLLER_HEADINGS = (
+    "what it did", "peak force (uN)", "pull-off force (uN)", "restitution", "impacts", "status"
+)  # fmt: skip
+_PROVENANCE = (
+    ("title", "title"),
+    ("date_created", "created"),
+    ("source", "software"),
+    ("history", "history"),
+    ("status", "status"),
+    ("message", "message"),
+    ("backend", "driver of the solver"),
+    ("rtol", "relative tolerance"),
+    ("steps", "solver steps"),
+    ("residual_evaluations", "evaluations of the residual"),
+    ("jacobian_evaluations", "evaluations of the Jacobian"),
+    ("restarts", "restarts"),
+    ("wall_time", "time in the solver (s)"),
+    ("tabor_parameter_bare", "Tabor parameter, bare"),
+    ("tabor_parameter_coated", "Tabor parameter, coated"),
+    ("references", "reference"),
+    ("license", "licence"),
+    ("schema_version", "version of the layout"),
+)
+
+_ACCOUNT = (
+    ("top_speed", "highest speed of the gear", "rad/s"),
+    ("time_to_speed", "time until 95 % of it", "s"),
+    ("time_at_rest", "held by dry resistance", "s"),
+    ("time_adhering", "held by adhesion", "s"),
+    ("held_by", "held at the end by", ""),
+    ("largest_force", "largest force", "N"),
+    ("largest_force_time", "time of the largest force", "s"),
+    ("drive_work", "work of the drive", "J"),
+    ("drag_loss", "of this, into drag", "J"),
+    ("dry_loss", "into dry resistance", "J"),
+    ("damping_loss", "into damping", "J"),
+    ("kinetic_change", "into motion", "J"),
+    ("contact_loss", "into the contacts (the rest)", "J"),
+    ("uncertainty", "uncertainty of that rest", "J"),
+)
+_IN_WORDS = {"irregular": "turns irregularly", "unfinished": "was not followed to the end of the run"}
+
+
+def headline(ds: xr.Dataset) -> str:
+    """Say in one sentence what the runs did."""
+    judged = outcomes(ds)
+    if len(judged) == 1:
+        if judged[0].status == "finished" and not ds.sizes["time"]:
+            return "Without samples there is no saying what the run did."
+        subject = "roller" if isinstance(judged[0], RollerOutcome) else "gear"
+        return f"The {subject} {_IN_WORDS.get(judged[0].verdict, judged[0].verdict)}."
+    counts: dict[str, int] = {}
+    for each in judged:
+        counts[each.verdict] = counts.get(each.verdict, 0) + 1
+    return f"{len(judged)} runs: " + ", ".join(f"{count} x {verdict}" for verdict, count in counts.items())
+
+
+def outcome_table(ds: xr.Dataset) -> str:
+    """Tell run by run what it did."""
+    judged = outcomes(ds)
+    dims = swept_dims(ds)
+    headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
+    rows = [[*(_number(value) for value in each.label.values()), *_outcome_cells(each)] for each in judged]
+    last = len(dims) + len(headings) - 1
+    numeric = [place for place in range(last) if place != len(dims)]
+    return html.table((*dims, *headings), rows, caption="Outcome of each run", numeric=numeric)
+
+
+def account_table(ds: xr.Dataset) -> str:
+    """Tell where time and energy of a single run of gears went; nothing of any other dataset."""
+    told = json.loads(ds.attrs.get("account", "{}"))
+    rows = [
+        (words, _number(float(told[name]) if isinstance(told[name], int) else told[name]), unit)
+        for name, words, unit in _ACCOUNT
+        if told.get(name) not in (None, "")
+    ]
+    if not rows:
+        return ""
+    return html.table(("quantity", "value", "unit"), rows, caption="Account of the run", numeric=(1,))
+
+
+def event_table(ds: xr.Dataset) -> str:
+    """Count the events of each run and name the first and the hardest contact."""
+    found = list(runs(ds))
+    kinds = [kind for kind in EventKind if (ds["event_kind"].values == kind).any()]
+    if not kinds:
+        return html.paragraph("No events.")
+    dims = swept_dims(ds)
+    rows = []
+    for label, run in found:
+        kind, time, rate = (run[f"event_{name}"].values for name in ("kind", "time", "gap_rate"))
+        made = kind == EventKind.ONSET
+        first = f"{time[made][0] * 1e3:.6g}" if made.any() else "-"
+        hardest = f"{max(-rate[made].min(), 0.0):.3g}" if made.any() else "-"
+        counts = [str(np.count_nonzero(kind == each)) for each in kinds]
+        rows.append([*(_number(value) for value in label.values()), *counts, first, hardest])
+    names = [each.name.lower().replace("_", " ") for each in kinds]
+    headings = [*dims, *names, "first onset (ms)", "fastest closing at an onset (m/s)"]
+    return html.table(headings, rows, caption="Events of each run", numeric=range(len(headings)))
+
+
+def parameter_tables(ds: xr.Dataset) -> str:
+    """List the scene key by key, in SI units, with what each key means."""
+    scene = scene_of(ds)
+    swept = json.loads(ds.attrs.get("swept", "{}"))
+    known = {info.key: info for info in describe_keys()}
+    rows = []
+    for key, value in _flatten(scene, swept):
+        info = known.get(key)
+        unit, meaning = (info.unit, info.description) if info else ("", "")
+        shown = f"swept: {_values(swept[key])}" if key in swept else _value(value)
+        rows.append((key, shown, "" if unit == "1" else unit, meaning))
+    return html.table(("key", "value", "unit", "meaning"), rows, caption="Parameters of the scene (SI units)")
+
+
+def provenance_list(ds: xr.Dataset) -> str:
+    """List where the archive comes from and what it took to compute."""
+    attributes = ds.attrs
+    return html.definitions(
+        (name, _number(attributes[key])) for key, name in _PROVENANCE if attributes.get(key, "") != ""
+    )
+
+
+def _outcome_cells(outcome: GearOutcome | RollerOutcome) -> list[str]:
+    numbers: tuple[float, ...]
+    if isinstance(outcome, RollerOutcome):
+        numbers = (outcome.peak_force * 1e6, outcome.pull_off_force * 1e6, outcome.restitution)
+    else:
+        numbers = (outcome.min_speed, outcome.max_speed)
+    return [outcome.verdict, *map(_number, numbers), str(outcome.impacts), outcome.status]
+
+
+def _flatten(tables: dict[str, Any], swept: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Go through the keys of a scene; a key that is swept but left out of the base scene comes last."""
+    seen = set()
+    for name, content in tables.items():
+        if isinstance(content, dict):
+            for key, value in content.items():
+                seen.add(f"{name}.{key}")
+                yield f"{name}.{key}", value
+    yield from ((key, None) for key in swept if key not in seen)
+
+
+def _value(value: Any) -> str:
+    return _number(value) if isinstance(value, (int, float, str)) else json.dumps(value)
+
+
+def _values(values: list[Any]) -> str:
+    shown = [_value(value) for value in values]
+    return ", ".join(shown if len(shown) <= 12 else [*shown[:6], "...", *shown[-3:]])
+
+
+def _number(value: Any) -> str:
+    if isinstance(value, (float, np.floating)):
+        return "-" if math.isnan(value) else f"{value:.6g}"
+    return str(value)

@@ -1,0 +1,199 @@
+"""The report: a page that parses, loads nothing, says what is in the archive, and lets nothing in the scene run."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.cli import main
+from gearidae.records import EventKind
+from gearidae.report import build_report, write_report
+from gearidae.report.series import pack
+
+VOID = {"meta", "img", "br", "hr", "link", "input"}
+NASTY = '</script><script>alert(1)</script><b>"&'
+
+
+class Page(HTMLParser):
+    """Checks that elements are closed in order, and collects what a test asks for."""
+
+    def __init__(self, text):
+        super().__init__(convert_charrefs=True)
+        self.open, self.attributes, self.texts, self.scripts = [], [], [], []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.attributes += [(tag, *pair) for pair in attrs]
+        if tag == "script":
+            self.scripts.append("")
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] == "script":
+            self.scripts[-1] += data
+        else:
+            self.texts.append(data)
+
+    @property
+    def text(self):
+        return " ".join(" ".join(self.texts).split())
+
+    @property
+    def data(self):
+        return json.loads(next(script for script in self.scripts if script.startswith("{")))
+
+
+@pytest.fixture(scope="module")
+def single():
+    scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5, "name": NASTY})
+    return gd.simulate(scene, t_end=0.03, samples=3001)
+
+
+@pytest.fixture(scope="module")
+def swept():
+    scene = gd.preset("teodorescu2009_low_speed")
+    return gd.sweep(scene, {"coating.sam_fraction": [1.0, 0.5]}, t_end=0.03, samples=3001)
+
+
+@pytest.fixture(scope="module")
+def roller():
+    return gd.simulate(gd.preset("roller_slow"), samples=501)
+
+
+def decoded(text):
+    return np.frombuffer(base64.b64decode(text), dtype="<f4")
+
+
+@pytest.mark.parametrize("kind", ["single", "swept", "roller"])
+def test_page_is_whole_and_loads_nothing(kind, request):
+    text = build_report(request.getfixturevalue(kind))
+    page = Page(text)
+    for tag, name, value in page.attributes:
+        if name in {"src", "href", "action", "data", "poster", "srcset"}:
+            assert value.startswith("data:"), (tag, name, value[:80])
+    assert {tag for tag, *_ in page.attributes}.isdisjoint({"link", "iframe", "object", "embed", "base"})
+    assert "@import" not in text
+    assert "url(" not in text
+    for needed in ("fetch(", "XMLHttpRequest", "import(", "WebSocket", "sendBeacon"):
+        assert needed not in text
+    assert ("meta", "content", "width=device-width, initial-scale=1") in page.attributes
+    policy = next(value for tag, name, value in page.attributes if value and "default-src" in value)
+    assert "'none'" in policy
+    assert not [value for tag, name, value in page.attributes if name.startswith("on")]
+    for heading in ("Outcome", "Time series", "Pictures", "Events", "Parameters", "Provenance"):
+        assert heading in page.text
+
+
+def test_texts_of_the_scene_are_escaped(single):
+    text = build_report(single)
+    page = Page(text)
+    assert len(page.scripts) == 2  # the data and the viewer
+    assert "<b>" not in text
+    assert "alert(1)</script>" not in text
+    assert "alert(1)" in page.text  # shown as what it is
+
+
+def test_page_says_what_the_archive_holds(swept):
+    page = Page(build_report(swept))
+    assert "2 runs" in page.text
+    assert "swept: 1, 0.5" in page.text
+    assert swept.attrs["source"] in page.text
+    assert "asperity_radius 4.5e-07 m tip radius" in page.text
+    for fraction in (1.0, 0.5):
+        of_run = swept.event_kind[swept.event_sam_fraction == fraction]
+        turning = int((of_run == EventKind.TURNING_POINT).sum())
+        assert f" {turning} " in page.text
+
+
+def test_embedded_series_are_those_of_the_dataset(single):
+    data = Page(build_report(single)).data
+    assert data["end"] == single.time[-1]
+    assert data["reduced"] == 1
+    by_name = {series["name"]: series for series in data["series"]}
+    for name in ("gear_speed", "gear_contact_torque", "pairs_in_contact"):
+        embedded = decoded(by_name[name]["runs"][0])
+        # float32 keeps seven digits
+        np.testing.assert_allclose(embedded, single[name].values, rtol=1e-7, atol=0.0)
+    onsets = single.event_time.values[single.event_kind.values == EventKind.ONSET]
+    np.testing.assert_allclose(data["runs"][0]["onsets"], onsets, rtol=1e-8)
+
+
+def test_long_series_keep_their_extremes(swept):
+    data = pack(swept, most_values=9 * 2 * 200)
+    assert data["reduced"] > 1
+    for series in data["series"]:
+        for run, text in enumerate(series["runs"]):
+            embedded, samples = decoded(text), swept[series["name"]].values[run]
+            assert len(embedded) <= 202
+            assert embedded.min() == np.float32(samples.min())
+            assert embedded.max() == np.float32(samples.max())
+
+
+def test_run_that_ended_early(single):
+    cut = single.copy(deep=True)
+    cut["gear_speed"][2000:] = np.nan
+    data = Page(build_report(cut)).data
+    embedded = decoded(data["series"][0]["runs"][0])
+    assert np.isnan(embedded[2000:]).all()
+    assert np.isfinite(embedded[:2000]).all()
+
+
+def test_account_of_a_run(single, roller):
+    told = json.loads(single.attrs["account"])
+    assert f"work of the drive {told['drive_work']:.6g} J" in Page(build_report(single)).text
+    assert "Account of the run" not in Page(build_report(roller)).text
+
+
+@pytest.mark.parametrize("preset", ["teodorescu2009_low_speed", "roller_slow"])
+def test_run_without_samples(preset):
+    ds = gd.simulate(gd.preset(preset).replace({"run.samples": "off"}), t_end=1e-5)
+    page = Page(build_report(ds))
+    assert "Without samples" in page.text
+    assert "Time series" not in page.text
+    assert "Parameters" in page.text
+
+
+def test_pictures_are_in_the_page(roller):
+    page = Page(build_report(roller))
+    images = [value for tag, name, value in page.attributes if (tag, name) == ("img", "src")]
+    assert images
+    for image in images:
+        assert base64.b64decode(image.partition(",")[2]).startswith(b"\x89PNG")
+    alternatives = [value for tag, name, value in page.attributes if (tag, name) == ("img", "alt")]
+    assert len(alternatives) == len(images)
+    assert all(alternatives)
+
+
+def test_command(roller, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "roller_slow", "--set", "run.samples=101", "-o", "r.nc"]) == 0
+    capfd.readouterr()
+    assert main(["report", "r.nc"]) == 0
+    assert capfd.readouterr().out == "Report: r.html\n"
+    assert main(["report", "r.nc"]) == 2
+    assert re.search(r"gearidae: report = r.html: exists already", capfd.readouterr().err)
+    assert main(["report", "r.nc", "-o", "r.html", "--overwrite"]) == 0
+    assert main(["report", "r.nc", "-o", "nowhere/r.html"]) == 2
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["r.html", "r.nc"]
+
+
+def test_nothing_is_replaced_unasked(roller, tmp_path):
+    target = tmp_path / "page.html"
+    target.write_text("mine")
+    with pytest.raises(gd.SceneError, match="exists already"):
+        write_report(roller, target)
+    assert target.read_text() == "mine"
+    assert write_report(roller, target, overwrite=True) == target
+    assert "rebounds" in target.read_text(encoding="utf-8")
