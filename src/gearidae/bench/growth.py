@@ -66,7 +66,7 @@ class Start:
 def _drain(scene: Scene) -> int:
     tally = Tally()
     backend = choose_backend()
-    for _ in run_blocks(make_problem(scene), scene.run.rtol, scene.run.samples, backend, tally):
+    for _ in run_blocks(make_problem(scene), scene.run.rtol, scene.run.sample_count, backend, tally):
         pass
     return tally.steps
 

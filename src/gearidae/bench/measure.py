@@ -116,7 +116,7 @@ def measure_scene(
     report(f"{bench.title}: reference")
     reference = find_reference(bench)
     problem = make_problem(bench.scene)
-    times = np.linspace(0.0, problem.end, bench.scene.run.samples)
+    times = np.linspace(0.0, problem.end, bench.scene.run.sample_count)
     series: list[_Series] = []
     first_calls: dict[str, float] = {}
     for contender in contenders:

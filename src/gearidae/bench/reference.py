@@ -137,7 +137,7 @@ def physical(problem: Problem, states: Floats) -> tuple[Floats, Floats]:
 
 def _solve(bench: BenchScene, method: str, tolerance: float) -> tuple[Floats, Floats, Floats]:
     problem = make_problem(bench.scene)
-    times = np.linspace(0.0, problem.end, bench.scene.run.samples)
+    times = np.linspace(0.0, problem.end, bench.scene.run.sample_count)
     y, states = problem.start.copy(), np.zeros((times.size, problem.start.size))
     counts = np.zeros(4, np.int64)
     if method == "gauss":

@@ -1,0 +1,123 @@
+"""What came out of a stress run, as a page in Markdown."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from datetime import date
+
+import numpy as np
+
+import gearidae
+from gearidae.bench.stress import STEP_BUDGET, Outcome
+
+__all__ = ["counts", "page", "quantiles", "worst"]
+
+_MEANINGS = {
+    "finished": "reached the end",
+    "budget": f"stopped after about {STEP_BUDGET} steps, everything in order until then",
+    "refused": "a SceneError before the run",
+    "raised": "**a defect**: an error that is not for users",
+    "chatter": "events crowded without bound",
+    "too_accurate": "the tolerance asks for more than double precision can give",
+    "step_underflow": "steps became too small",
+    "no_convergence": "Newton's iteration did not converge",
+}
+_RANGES = (
+    "Roughness 1 to 30 nm, tip radius 20 nm to 5 um, 1e12 to 1e15 asperities per square metre, surface energy 0 to"
+    " 3 J/m2, modulus 50 to 400 GPa, SAM fraction 0 to 1, all three asperity laws, torques over twelve decades or none,"
+    " 12 to 120 teeth, backlash 0 to 1 um, speeds up to 1e4 rad/s either way, tolerances 1e-3 to 1e-10, dry resistance,"
+    " drag, mesh damping, harmonics, schedules and static error in some, rollers in one of seven."
+)
+_CHECKS = (
+    "Of each, 24 samples are checked: finite; gaps as the geometry has them; forces between those of a contact just"
+    " made and of one stretched to its limit, both by quadrature. Events must be in order."
+)
+_ERRORS = (
+    "The motion up to its third turning point (or stick or slip) at the scene's tolerance against that at a tenth of"
+    " it, over what the motion covers; an error in time counts by its share of the time."
+)
+_REASON = (
+    "Large ratios belong to scenes whose adhesion is 1e8 and more times the load: the contact falls into a well that"
+    " deep and comes out by a small difference of large energies, which multiplies every error."
+)
+_SHARES = (0.1, 0.5, 0.9, 0.97, 0.99, 1.0)
+_LISTED = 10
+
+
+def counts(outcomes: Sequence[Outcome]) -> dict[str, int]:
+    """How many ended in which way, the most frequent first."""
+    return dict(Counter(outcome.status for outcome in outcomes).most_common())
+
+
+def quantiles(outcomes: Sequence[Outcome]) -> dict[float, float]:
+    """Quantiles of error over tolerance; empty if nothing could be compared."""
+    ratios = [outcome.ratio for outcome in outcomes if math.isfinite(outcome.ratio)]
+    if not ratios:
+        return {}
+    return {share: float(np.quantile(ratios, share)) for share in _SHARES}
+
+
+def worst(outcomes: Sequence[Outcome]) -> list[Outcome]:
+    """Unsound outcomes first, then those of the largest error over tolerance."""
+    known = [o for o in outcomes if not o.sound or math.isfinite(o.ratio)]
+    return sorted(known, key=lambda o: (o.sound, -o.ratio if math.isfinite(o.ratio) else 0.0))[:_LISTED]
+
+
+def page(outcomes: Sequence[Outcome], seed: int, day: date) -> str:
+    """Write the report.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+    seed : int
+    day : date
+        When they were run.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    unsound = [outcome for outcome in outcomes if not outcome.sound]
+    times = [outcome.wall_time for outcome in outcomes]
+    command = f"gearidae bench --stress --runs {len(outcomes)} --seed {seed}"
+    lines = [
+        "# Stress run",
+        "",
+        f"`{command}` on {day.isoformat()}, gearidae {gearidae.__version__}.",
+        "",
+        _RANGES,
+        "",
+        _CHECKS,
+        "",
+        f"**Unsound: {len(unsound)}.** Longest wall time {max(times, default=0.0):.1f} s, three runs each.",
+        "",
+        "| ending | scenes | meaning |",
+        "|---|---|---|",
+        *(f"| {status} | {n} | {_MEANINGS.get(status, '')} |" for status, n in counts(outcomes).items()),
+        "",
+        "## Error against tolerance",
+        "",
+        _ERRORS,
+        "",
+        "| share of scenes | error below so many tolerances |",
+        "|---|---|",
+        *(f"| {100 * share:g} % | {ratio:.2g} |" for share, ratio in quantiles(outcomes).items()),
+        "",
+        "## The worst",
+        "",
+        _REASON,
+        "",
+        "| scene | ending | tolerance | error | complaint |",
+        "|---|---|---|---|---|",
+        *(
+            f"| {o.number} | {o.status} | {o.rtol:.1e} | {o.error:.1e} | {o.complaint or o.message} |"
+            for o in worst(outcomes)
+        ),
+        "",
+        f"`gearidae.bench.random_scenes.random_scene({seed}, scene)` makes any of them again.",
+        "",
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,150 @@
+"""Mutated case files, archives and signals: a clean error that names the file or key, or a valid scene; never more."""
+
+import sqlite3
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import gearidae as gd
+from gearidae.analysis.measured import read_signal
+from gearidae.archive import open_archive
+from gearidae.errors import SceneError
+from gearidae.scene import Scene
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+PIECES = [
+    "[",
+    "]",
+    "=",
+    '"',
+    "'",
+    "\n",
+    "nan",
+    "-inf",
+    "1e999",
+    "{",
+    "}",
+    ",",
+    "9" * 400,
+    "\x00",
+    "\ufeff",
+    "true",
+    "[[a]]",
+]
+PIECES += ["1_000", "0x10", "2026-01-01", "nm", "..", "[gears]", "samples = 0.5", "é", '"""', "load = 3", "-"]
+FOLDER_IS_SHARED = [
+    HealthCheck.function_scoped_fixture
+]  # every example writes its own content to the one file
+
+
+def attempt(read, file):
+    """What was read, or None and the message of the only error allowed."""
+    try:
+        return read(file), ""
+    except SceneError as error:
+        return None, str(error)
+
+
+edits = st.lists(
+    st.tuples(st.floats(0.0, 1.0), st.integers(0, 12), st.sampled_from(PIECES) | st.text(max_size=4)),
+    min_size=1,
+    max_size=4,
+)
+
+
+@settings(max_examples=150, suppress_health_check=FOLDER_IS_SHARED)
+@given(case=st.sampled_from(CASES), changes=edits)
+def test_a_mutated_case_file_is_a_scene_or_a_clean_error(tmp_path, case, changes):
+    text = case.read_text()
+    for place, removed, put in changes:
+        at = int(place * len(text))
+        text = text[:at] + put + text[at + removed :]
+    file = tmp_path / "case.toml"
+    file.write_bytes(text.encode("utf-8", "surrogatepass"))
+    scene, refusal = attempt(gd.load_case, file)
+    assert "\n" not in refusal
+    assert len(refusal) < 2000
+    assert scene is None or Scene.from_dict(scene.to_dict()) == scene
+    assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory):
+    file = tmp_path_factory.mktemp("archive") / "run.nc"
+    gd.simulate(gd.preset("roller_slow").replace({"run.samples": 51}), archive=file)
+    return file.read_bytes()
+
+
+@settings(max_examples=60, suppress_health_check=FOLDER_IS_SHARED)
+@given(
+    share=st.floats(0.0, 1.0),
+    flips=st.lists(st.tuples(st.floats(0.0, 1.0, exclude_max=True), st.integers(1, 255)), max_size=6),
+)
+def test_a_damaged_archive_is_read_or_refused(tmp_path, archive, share, flips):
+    content = bytearray(archive if share > 0.5 else archive[: int(2 * share * len(archive))])
+    for place, mask in flips:
+        if content:
+            content[int(place * len(content))] ^= mask
+    file = tmp_path / "run.nc"
+    file.write_bytes(bytes(content))
+    ds, refusal = attempt(open_archive, file)
+    assert "run.nc" in refusal if ds is None else {"time", "height", "event_time"} <= set(ds.variables)
+    assert file.read_bytes() == bytes(content)
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+
+
+def _foreign(tmp_path, kind):
+    file = tmp_path / "foreign.nc"
+    if kind == "netcdf":
+        xr.Dataset({"temperature": ("time", np.arange(3.0))}).to_netcdf(file)
+    elif kind == "classic":
+        xr.Dataset({"time": ("time", np.arange(3.0))}).to_netcdf(file, engine="scipy")
+    elif kind == "sqlite":
+        with sqlite3.connect(file) as connection:
+            connection.execute("create table t (a)")
+        connection.close()
+    elif kind == "empty":
+        file.touch()
+    else:
+        file.write_text("time [s], gear_speed [rad/s]\n")
+    return file
+
+
+@pytest.mark.parametrize("kind", ["netcdf", "classic", "sqlite", "empty", "text"])
+def test_a_foreign_file_is_no_archive(tmp_path, kind):
+    with pytest.raises(SceneError, match=r"foreign\.nc"):
+        open_archive(_foreign(tmp_path, kind))
+
+
+@pytest.mark.parametrize("version", [0, -1, 999, "1; import os", 1.5])
+def test_another_schema_version_is_refused(tmp_path, version):
+    file = tmp_path / "run.nc"
+    ds = gd.simulate(gd.preset("roller_slow").replace({"run.samples": 5}))
+    ds.attrs["schema_version"] = version
+    ds.to_netcdf(file)
+    with pytest.raises(SceneError, match="schema_version"):
+        open_archive(file)
+
+
+LINES = ["time [s], gear_speed [rad/s]"] + [f"{i * 1e-4:.6g}, {1.5 + 0.01 * (i % 7)}" for i in range(40)]
+
+
+@settings(max_examples=120, suppress_health_check=FOLDER_IS_SHARED)
+@given(
+    row=st.integers(0, 40),
+    put=st.sampled_from(["", "nan, 1", "1e999, 2", "a, b", "1", "0, 0", "#", ",,,", "1;2", "\t", "-1, 3"])
+    | st.text(max_size=12),
+    keep=st.booleans(),
+)
+def test_a_mutated_signal_is_read_or_refused(tmp_path, row, put, keep):
+    lines = [*LINES[:row], put, *LINES[row if keep else row + 1 :]]
+    file = tmp_path / "signal.csv"
+    file.write_bytes("\n".join(lines).encode("utf-8", "surrogatepass"))
+    ds, refusal = attempt(read_signal, file)
+    assert "\n" not in refusal
+    assert ds is None or (np.isfinite(ds["gear_speed"]).all() and (np.diff(ds["time"]) > 0).all())
+    assert [path.name for path in tmp_path.iterdir()] == ["signal.csv"]

@@ -1,0 +1,137 @@
+"""Symmetries of the mesh, and that its forces do the work that its gaps say."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import gearidae as gd
+from gearidae.engine import layout as at
+from gearidae.engine.events import begin
+from gearidae.engine.mesh import first_pair, last_pair, pair_gap
+from gearidae.engine.problem import make_problem
+from gearidae.engine.residual import jacobian, mesh_forces, residual
+
+# backlash below the range of adhesion: both flanks carry force at once
+PROBLEM = make_problem(
+    gd.preset("teodorescu2009").replace(
+        {"mesh.backlash": 4e-8, "initial.gap": 2e-8, "coating.sam_fraction": 0.5, "mesh.damping": 1e-6}
+    )
+)
+SMOOTH = make_problem(
+    gd.preset("teodorescu2009").replace(
+        {"mesh.backlash": 4e-8, "initial.gap": 2e-8, "contact.asperity": "hertz", "mesh.damping": 1e-6}
+    )
+)
+PATH = float(PROBLEM.data[at.PATH])
+COAST = float(PROBLEM.data[at.COAST_PHASE])
+
+us = st.floats(-6.0, 6.0)
+rates = st.floats(-5.0, 5.0)
+phases = st.floats(-0.3, PATH + 0.3)
+flanks = st.sampled_from([0, 1])
+
+
+def forces(u, v, phase, w):
+    """Forces of a start from there, all contacts fresh."""
+    d = PROBLEM.data.copy()
+    y = np.array([u, v, phase, w])
+    begin(d, 0.0, y)
+    return np.array(mesh_forces(d, 0.0, y)[:2])
+
+
+@given(flank=flanks, u=us, v=rates, phase=phases, w=rates, pitches=st.integers(-50, 50))
+def test_a_pair_on_is_a_pitch_later(flank, u, v, phase, w, pitches):
+    here = pair_gap(PROBLEM.data, flank, 0, u, v, phase, w)
+    there = pair_gap(PROBLEM.data, flank, pitches, u, v, phase + pitches, w)
+    # what adding up to fifty pitches rounds off, times the steepness of tip relief
+    np.testing.assert_allclose(there, here, rtol=1e-10, atol=1e-10)
+
+
+@given(u=us, v=rates, phase=phases, w=rates, pitches=st.integers(-20, 20))
+def test_forces_repeat_every_pitch(u, v, phase, w, pitches):
+    np.testing.assert_allclose(
+        forces(u, v, phase + pitches, w),
+        forces(u, v, phase, w),
+        rtol=1e-9,
+        atol=1e-9 * np.abs(forces(u, v, phase, w)).sum(),
+    )
+
+
+@given(u=us, v=rates, phase=phases, w=rates, pair=st.integers(-2, 2))
+def test_the_coast_flank_is_the_drive_flank_in_a_mirror(u, v, phase, w, pair):
+    drive = pair_gap(PROBLEM.data, 0, -pair, -u, -v, COAST - phase, -w)
+    coast = pair_gap(PROBLEM.data, 1, pair, u, v, phase, w)
+    np.testing.assert_allclose(coast, drive, rtol=1e-12, atol=1e-12)
+
+
+@given(u=us, v=rates, phase=phases, w=rates)
+def test_the_mirrored_mesh_pushes_the_other_way(u, v, phase, w):
+    one, other = forces(u, v, phase, w), forces(-u, -v, COAST - phase, -w)
+    np.testing.assert_allclose(other, -one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
+
+
+@given(flank=flanks, u=us, phase=phases, v=rates, w=rates, pair=st.integers(-1, 1))
+def test_gap_rate_is_how_fast_the_gap_moves(flank, u, phase, v, w, pair):
+    d, dt = PROBLEM.data, 1e-4
+    move = d[at.PHASE_RATE] * w * dt
+    ahead, behind = (
+        pair_gap(d, flank, pair, u + side * v * dt, v, phase + side * move, w)[0] for side in (1.0, -1.0)
+    )
+    rate = pair_gap(d, flank, pair, u, v, phase, w)[1]
+    # tip relief is a parabola with a bend of d''/2 at the ends of the path, over a way of `move`
+    assert (ahead - behind) / (2 * dt) == pytest.approx(
+        rate, rel=1e-7, abs=1e-7 + d[at.RELIEF] * move**2 / dt
+    )
+
+
+@given(flank=flanks, u=us, phase=phases, pair=st.integers(-1, 1))
+def test_the_force_on_the_gear_does_virtual_work(flank, u, phase, pair):
+    """dg/dphi2 at a held pinion is R2 (1 + s') on the drive flank and the opposite on the coast flank."""
+    d = PROBLEM.data
+    radius, sigma, pitch = d[at.GEAR_RADIUS], d[at.SIGMA], d[at.BASE_PITCH]
+    turn = 1e-10  # [rad]: some 1e-6 roughnesses
+    ahead, behind = (
+        pair_gap(
+            d, flank, pair, u - side * radius * turn / sigma, 0.0, phase + side * radius * turn / pitch, 0.0
+        )[0]
+        for side in (1.0, -1.0)
+    )
+    slope = pair_gap(d, flank, pair, u, 0.0, phase, 0.0)[2]
+    sign = -1.0 if flank else 1.0
+    # rounding of the gap (up to 1e3 roughnesses) over a way of 1e-6 of them
+    assert (ahead - behind) * sigma / (2 * turn * radius) == pytest.approx(sign * (1 + slope), rel=1e-5)
+
+
+@given(u=us, phase=phases)
+def test_all_pairs_that_can_touch_are_looked_at(u, phase):
+    d = PROBLEM.data
+    for flank in (0, 1):
+        seen = range(first_pair(d, flank, phase), last_pair(d, flank, phase) + 1)
+        assert len(seen) <= d[at.SLOTS]
+        for pair in range(-12, 13):
+            gap = pair_gap(d, flank, pair, u, 0.0, phase, 0.0)[0]
+            assert pair in seen or gap >= d[at.CUTOFF]
+
+
+@settings(max_examples=60)
+@given(u=us, v=rates, phase=phases, w=rates, cj=st.floats(0.1, 100.0))
+def test_jacobian_is_the_residuals_derivative(u, v, phase, w, cj):
+    """Without adhesion, whose branches part at a start; both flanks carry force."""
+    d = SMOOTH.data.copy()
+    y, yp, size = np.array([u, v, phase, w]), np.zeros(4), np.zeros(4)
+    begin(d, 0.0, y)
+    exact = np.empty(16)
+    jacobian(d, 0.0, cj, y, exact)
+    exact = exact.reshape(4, 4).T
+    for column, step in enumerate((1e-5, 1e-5, 1e-7, 1e-5)):
+        out = np.empty((2, 4))
+        for row, side in zip(out, (1.0, -1.0), strict=True):
+            move = side * step * (np.arange(4) == column)
+            residual(d, 0.0, y + move, yp + cj * move, row)
+            size = np.maximum(size, np.abs(row))
+        # a central difference; the load on a pair at the path's end bends there with the tip relief, and the Jacobian
+        # leaves out that the radii of curvature change along the path
+        slack = 3.0 * (size + np.abs(exact[:, 0]).max()) * (column == 2)
+        slack += 1e-4 * np.abs(exact[:, column]).max() + 1e-9 * size / step + d[at.RELIEF] * 1e-7 * size
+        assert np.all(np.abs((out[0] - out[1]) / (2 * step) - exact[:, column]) < slack)

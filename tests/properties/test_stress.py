@@ -1,0 +1,89 @@
+"""The short form of the stress run: random scenes, every ending accounted for."""
+
+import math
+from datetime import date
+
+import pytest
+
+import gearidae as gd
+from gearidae.bench import stress
+from gearidae.bench.random_scenes import random_scene
+from gearidae.bench.stress import Outcome, run_one, run_stress
+from gearidae.bench.stress_report import counts, page, quantiles, worst
+from gearidae.cli import main
+from gearidae.engine.run import Ending
+
+NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
+
+
+def test_random_scenes_end_soundly():
+    outcomes = run_stress(30, seed=1)
+    assert [o for o in outcomes if not o.sound] == []
+    assert {o.status for o in outcomes} <= NAMED
+    assert sum(o.status in ("finished", "budget") for o in outcomes) >= 25
+    # half of all scenes stay within a hundred tolerances up to their third impact
+    assert quantiles(outcomes)[0.5] < 100.0
+
+
+@pytest.mark.parametrize("number", [115, 257])
+def test_a_coating_and_a_flank_of_very_different_stretch(number):
+    """Found by the stress run: one material's stretched branch tabulated, the other's integrated."""
+    assert run_one(random_scene(1, number)).sound
+
+
+@pytest.mark.parametrize("number", [19, 90, 460, 546, 671, 675])
+def test_no_event_follows_another_without_end(number):
+    """Found by the stress run: resistance through zero, slip of little surplus, a thousand mesh marks in a step."""
+    outcome = run_one(random_scene(1, number))
+    assert outcome.sound
+    assert outcome.status in ("finished", "budget")
+
+
+def test_the_same_numbers_give_the_same_scene():
+    assert random_scene(3, 17) == random_scene(3, 17)
+    assert random_scene(3, 17) != random_scene(3, 18)
+    assert random_scene(3, 17).surface.roughness == random_scene(3, 18).surface.roughness
+
+
+def test_a_wrong_force_would_be_seen(monkeypatch):
+    """The envelope of what a contact can do is narrow enough to catch forces that are off by a part in a thousand."""
+    scene = gd.preset("roller_slow").replace({"contact.model": "asperity", "run.samples": 401})
+    assert run_one(scene).sound
+    honest = stress.line_force
+    monkeypatch.setattr(stress, "line_force", lambda *a: 1.001 * honest(*a))
+    assert "force is" in run_one(scene).complaint
+
+
+def test_a_defect_is_listed_and_does_not_end_the_run(monkeypatch):
+    def broken(scene):
+        raise ZeroDivisionError("by zero")
+
+    monkeypatch.setattr(stress, "make_problem", broken)
+    outcome = run_one(gd.preset("roller_slow"))
+    assert outcome.status == "raised"
+    assert "ZeroDivisionError" in outcome.message
+    assert not outcome.sound
+
+
+def test_the_page_counts_and_lists():
+    outcomes = [
+        Outcome(0, "finished", rtol=1e-6, error=1e-5, steps=10, reached=1.0),
+        Outcome(1, "budget", rtol=1e-6, error=1e-3),
+        Outcome(2, "finished", complaint="force is off", rtol=1e-6),
+        Outcome(3, "refused", "surface.roughness = 0: must be above 0"),
+    ]
+    assert counts(outcomes) == {"finished": 2, "budget": 1, "refused": 1}
+    assert quantiles(outcomes)[1.0] == pytest.approx(1000.0)
+    assert [o.number for o in worst(outcomes)] == [2, 1, 0]
+    text = page(outcomes, 7, date(2026, 1, 2))
+    assert "Unsound: 1" in text
+    assert "2026-01-02" in text
+    assert "force is off" in text
+    assert math.isnan(outcomes[3].ratio)
+
+
+def test_command_line(tmp_path, capsys):
+    assert main(["bench", "--stress", "--runs", "3", "--seed", "1", "-o", str(tmp_path / "out")]) == 0
+    assert "finished" in capsys.readouterr().out
+    assert "seed 1" in (tmp_path / "out" / "stress.md").read_text()
+    assert main(["bench", "--stress", "--runs", "0"]) == 2

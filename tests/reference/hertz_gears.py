@@ -1,0 +1,105 @@
+"""A gear pair without adhesion in its two angles, both flanks, all pairs: another form of the equations, DOP853.
+
+Independent of the engine's states and scaling: Newton's law for each shaft in phi1 and phi2, the gaps from Teodorescu
+et al. 2009, Eqs. 4-6, the flanks' force interpolated from the readable line force. Static error, mesh damping, torque
+and load harmonics; the gear must keep turning forward (dry resistance is not set-valued here).
+"""
+
+import math
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from gearidae.contact.line import line_force
+from gearidae.mesh import curvature_radii, separation
+
+
+class HertzGears:
+    """Equations of motion of a scene whose asperities do not adhere."""
+
+    def __init__(self, scene):
+        assert scene.contact.asperity == "hertz"
+        self.scene, self.geometry = scene, scene.geometry
+        sigma = scene.surface.roughness
+        self.far, self.deepest = 12.0 * sigma, -30.0 * sigma  # trial steps only get deeper
+        gaps = np.linspace(self.deepest, self.far, 6001)
+        force = line_force(gaps, 0.0, 1.0, scene.gears.face_width, scene.surface, "hertz")
+        self.log_force = CubicSpline(gaps, np.log(force))
+        start, pitch, r2 = scene.initial, self.geometry.base_pitch, self.geometry.base_radius_gear
+        r1 = self.geometry.base_radius_pinion
+        angle = start.mesh_phase * pitch / r2
+        relief = float(separation(self.geometry, start.mesh_phase * pitch, scene.mesh.tip_relief_radius)[0])
+        u = 0.5 * scene.mesh.backlash + relief - start.gap
+        pinion = brentq(
+            lambda a: r1 * a - r2 * angle - self.error(a)[0] - u, -10.0, 10.0, xtol=1e-16, rtol=1e-15
+        )
+        speed = r2 * start.gear_speed / (r1 - self.error(pinion)[1])
+        self.start = np.array([pinion, angle, speed, start.gear_speed])
+
+    def error(self, angle):
+        """Static transmission error [m] and its derivative [m/rad]."""
+        e = slope = 0.0
+        for h in self.scene.mesh.static_error:
+            e += h.amplitude * math.cos(h.order * angle + h.phase)
+            slope -= h.order * h.amplitude * math.sin(h.order * angle + h.phase)
+        return e, slope
+
+    def rates(self, t, y):
+        scene, geometry = self.scene, self.geometry
+        pinion, gear, w1, w2 = y
+        r1, r2, pitch = geometry.base_radius_pinion, geometry.base_radius_gear, geometry.base_pitch
+        e, slope = self.error(pinion)
+        u = r1 * pinion - r2 * gear - e
+        along_line = scene.mesh.damping * ((r1 - slope) * w1 - r2 * w2)
+        on_gear = r2 * along_line
+        first = math.floor(r2 * gear / pitch)
+        numbers = np.arange(first - 4, first + 5)
+        drive = r2 * gear - numbers * pitch
+        coast = 2.0 * geometry.approach - (r2 * gear - (numbers + 0.5) * pitch)
+        for sign, xi in ((1.0, drive), (-1.0, coast)):
+            opened, steepness = separation(geometry, xi, scene.mesh.tip_relief_radius)
+            gaps = 0.5 * scene.mesh.backlash - sign * u + opened
+            near = gaps < self.far
+            if near.any():
+                radius = curvature_radii(geometry, xi[near])[2]
+                load = sign * np.sqrt(radius) * np.exp(self.log_force(np.maximum(gaps[near], self.deepest)))
+                along_line += load.sum()
+                on_gear += r2 * (load * (1.0 + steepness[near])).sum()
+        torques = []
+        for shaft in (scene.drive, scene.load):
+            swing = (h.amplitude * math.cos(2 * math.pi * h.frequency * t + h.phase) for h in shaft.harmonic)
+            torques.append(shaft.torque + sum(swing))
+        resistance = np.sign(w2) * max(torques[1], 0.0) + scene.load.drag * w2 * abs(w2)
+        return np.array(
+            [
+                w1,
+                w2,
+                (torques[0] - (r1 - slope) * along_line) / scene.gears.pinion_inertia,
+                (on_gear - resistance) / scene.gears.gear_inertia,
+            ]
+        )
+
+    def run(self, times, rtol=1e-11):
+        """Transmission error and both speeds at the given times, shape (3, n)."""
+        r1 = self.geometry.base_radius_pinion
+        scale = self.scene.surface.roughness / r1
+        # the angles are resolved to 1e-6 of what a roughness makes of them at the least
+        speeds = rtol * (abs(self.start[2]) + scale / times[-1])
+        atol = np.array([1e-3 * rtol * scale, 1e-3 * rtol * scale, speeds, speeds])
+        run = solve_ivp(
+            self.rates,
+            (0.0, times[-1]),
+            self.start,
+            "DOP853",
+            times,
+            rtol=1e-13,
+            atol=atol,
+            first_step=1e-7 * times[-1],
+            max_step=times[-1] / 200,
+        )
+        assert run.success
+        pinion, gear, w1, w2 = run.y
+        e = np.array([self.error(a)[0] for a in pinion])
+        return np.array([r1 * pinion - self.geometry.base_radius_gear * gear - e, w1, w2])
