@@ -21,7 +21,7 @@ def test_kernel_is_the_mean_of_one_over_r(distance):
     mean, _ = integrate.quad(
         lambda y: 2 * (1 - y) / math.hypot(xi, y), 0, 1, points=points, epsabs=0, epsrel=1e-12
     )
-    assert averaged_kernel(distance, L) == pytest.approx(mean, rel=1e-12)
+    assert averaged_kernel(distance, L) == pytest.approx(mean, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(
@@ -32,12 +32,14 @@ def test_strip_is_loves_rectangle_averaged_across_the_width(x, half):
     y = L / 2 * np.sin(math.pi / 2 * X)
     weight = W * math.pi / 4 * np.cos(math.pi / 2 * X)
     mean = weight @ love.deflection(x, y, half, L / 2, E)
-    assert strip_deflection(x, -half, half, L, E) == pytest.approx(mean, rel=1e-7)
+    assert strip_deflection(x, -half, half, L, E) == pytest.approx(mean, rel=1e-7, abs=0)
 
 
 def test_far_away_only_the_load_counts():
     x, half = 1e-3, 1e-7
-    assert strip_deflection(x, -half, half, L, E) == pytest.approx(2 * half * L / x / (math.pi * E), rel=1e-6)
+    assert strip_deflection(x, -half, half, L, E) == pytest.approx(
+        2 * half * L / x / (math.pi * E), rel=1e-6, abs=0
+    )
 
 
 def test_linear_pieces_by_quadrature():
@@ -59,14 +61,14 @@ def test_linear_pieces_by_quadrature():
             t = left + (right - left) * v**4 * (35 - 84 * v + 70 * v**2 - 20 * v**3)
             rate = (right - left) * 140 * v**3 * (1 - v) ** 3
             want += float((0.5 * W * rate) @ integrand(t, x))
-        assert value == pytest.approx(want / (math.pi * E), rel=1e-10)
+        assert value == pytest.approx(want / (math.pi * E), rel=1e-10, abs=0)
 
 
 def test_uniform_pressure_is_a_sum_of_linear_pieces():
     knots = np.linspace(0.0, 5e-7, 11)
     points = np.linspace(0.0, 2e-6, 9)
     strip = strip_deflection(points, -5e-7, 5e-7, L, E)
-    assert bulk_influence(points, knots, L, E) @ np.ones(11) == pytest.approx(strip, rel=1e-12)
+    assert bulk_influence(points, knots, L, E) @ np.ones(11) == pytest.approx(strip, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("knots", [[0.0], [1e-8, 2e-8], [0.0, 2e-8, 2e-8], [0.0, np.nan]])
@@ -80,10 +82,10 @@ def test_twenty_nodes_carry_a_smooth_pressure(breadth):
     # Nodes reach 5 standard deviations of the wider bell, where it has fallen to 4e-6 and its integral lacks 6e-7.
     grid = line_grid(1e-6, L, E, 20)
     bell = np.exp(-0.5 * (grid.x / breadth) ** 2)
-    assert grid.weights @ bell == pytest.approx(breadth * math.sqrt(2 * math.pi), rel=1e-6)
+    assert grid.weights @ bell == pytest.approx(breadth * math.sqrt(2 * math.pi), rel=1e-6, abs=0)
     fine = line_grid(1e-6, L, E, 160)
     middle = fine.compliance[0] @ np.exp(-0.5 * (fine.x / breadth) ** 2)
-    assert grid.compliance[0] @ bell == pytest.approx(middle, rel=3e-6)
+    assert grid.compliance[0] @ bell == pytest.approx(middle, rel=3e-6, abs=0)
 
 
 def test_work_is_reciprocal():
@@ -93,7 +95,7 @@ def test_work_is_reciprocal():
     there = (grid.weights * one) @ grid.compliance @ two
     back = (grid.weights * two) @ grid.compliance @ one
     assert there == pytest.approx(
-        back, rel=1e-4
+        back, rel=1e-4, abs=0
     )  # the second bell is not even, so its cosines end in a corner
 
 
@@ -119,4 +121,4 @@ def test_deflection_agrees_with_tamaas():
     grid = line_grid(1e-6, L, E, 24)
     ours = grid.compliance @ (1e9 * np.exp(-0.5 * (grid.x * 1e6 / 0.2) ** 2)) * 1e6
     # Their pixels of 8 nm limit the agreement to 1e-4; the last node lies beyond their last pixel.
-    assert ours[:-1] == pytest.approx(np.interp(grid.x[:-1] * 1e6, x, theirs), rel=3e-4)
+    assert ours[:-1] == pytest.approx(np.interp(grid.x[:-1] * 1e6, x, theirs), rel=3e-4, abs=0)

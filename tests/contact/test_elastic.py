@@ -31,14 +31,14 @@ def test_smooth_limit_is_hertz(smooth):
     half_width = math.sqrt(4 * load * R / (math.pi * modulus))
     peak = 2 * load / (math.pi * half_width)
     # What is left of the asperities gives way by 0.1 nm: 0.3 % of the approach.
-    assert curve.pressure[0, 0] == pytest.approx(peak, rel=0.01)
+    assert curve.pressure[0, 0] == pytest.approx(peak, rel=0.01, abs=0)
     inside = curve.pressure[0] > 0.3 * peak
     slope, square = np.polyfit(curve.x[inside] ** 2, curve.pressure[0][inside] ** 2, 1)
-    assert math.sqrt(-square / slope) == pytest.approx(half_width, rel=0.01)
+    assert math.sqrt(-square / slope) == pytest.approx(half_width, rel=0.01, abs=0)
     # Approach of a Hertzian strip of finite length: the averaged kernel 2 [log(2L/xi) - 1 + xi/L] under a semi-ellipse,
     # whose mean logarithm is log(a/2) - 1/2 and whose mean distance from the middle is 4a/(3 pi).
     logarithm = math.log(4 * width / half_width) - 0.5 + 4 * half_width / (3 * math.pi * width)
-    assert 2 * load / (math.pi * modulus) * logarithm == pytest.approx(40e-9, rel=0.01)
+    assert 2 * load / (math.pi * modulus) * logarithm == pytest.approx(40e-9, rel=0.01, abs=0)
 
 
 def test_smooth_limit_of_a_short_roller(smooth):
@@ -53,8 +53,8 @@ def test_smooth_limit_of_a_short_roller(smooth):
     pressure, _ = optimize.nnls(factor.T, np.linalg.solve(factor, overlap))
     force = pressure.sum() * 1e9 * np.diff(edges)[0] * L
     curve = elastic_line_curve([-40e-9], R, L, smooth)
-    assert curve.force[0] == pytest.approx(force, rel=0.01)
-    assert curve.pressure[0, 0] == pytest.approx(pressure.max() * 1e9, rel=0.01)
+    assert curve.force[0] == pytest.approx(force, rel=0.01, abs=0)
+    assert curve.pressure[0, 0] == pytest.approx(pressure.max() * 1e9, rel=0.01, abs=0)
 
 
 def test_silicon_roller_pulls_off_at_1_26_micronewton(silicon):
@@ -90,7 +90,7 @@ def test_each_node_carries_its_own_equation(silicon):
     curve = elastic_line_curve(path, R, L, silicon)
     modulus = contact_modulus(silicon.youngs_modulus, silicon.poisson_ratio)
     # On the way in nothing is stretched, whatever the path.
-    assert curve.pressure == pytest.approx(rough_pressure(curve.node_gap, 0.0, silicon), rel=1e-9)
+    assert curve.pressure == pytest.approx(rough_pressure(curve.node_gap, 0.0, silicon), rel=1e-9, abs=0)
     # Deflection in the middle by adaptive quadrature of the pressure through the nodes.
     x, pressure, width = curve.x * 1e6, curve.pressure[1] / 1e9, L * 1e6
     spline = make_interp_spline(
@@ -105,7 +105,7 @@ def test_each_node_carries_its_own_equation(silicon):
     deflection = integrate.quad(integrand, 0, x[-1] ** (1 / 3), epsrel=1e-10, limit=200)[0] / (
         math.pi * modulus / 1e9
     )
-    assert curve.node_gap[1, 0] - path[1] == pytest.approx(deflection * 1e-6, rel=1e-5)
+    assert curve.node_gap[1, 0] - path[1] == pytest.approx(deflection * 1e-6, rel=1e-5, abs=0)
 
 
 def test_stiff_bodies_leave_the_asperity_model(silicon):
@@ -113,7 +113,7 @@ def test_stiff_bodies_leave_the_asperity_model(silicon):
     sparse = replace(silicon, asperity_density=1.69e10)
     path = np.array([30e-9, 10e-9, -5e-9])
     rigid = line_force(path, 0.0, R, L, sparse)
-    assert elastic_line_force(path, R, L, sparse) == pytest.approx(rigid, rel=2e-3)
+    assert elastic_line_force(path, R, L, sparse) == pytest.approx(rigid, rel=2e-3, abs=0)
     assert np.all(elastic_line_force(path, R, L, sparse) < rigid)
 
 
@@ -137,7 +137,7 @@ def test_closed_loop_loses_what_its_asperities_lose(silicon, asperity, loses):
     work = measure @ np.abs(inward)
     if loses:
         # Bodies give all their energy back. Kinks of the force where nodes reach full stretch limit the quadrature.
-        assert loop == pytest.approx(adhesion_loss_per_asperity(silicon) * joined, rel=3e-4)
+        assert loop == pytest.approx(adhesion_loss_per_asperity(silicon) * joined, rel=3e-4, abs=0)
         assert reach < sigma
     else:
         assert loop == pytest.approx(0.0, abs=1e-9 * work)
@@ -148,8 +148,8 @@ def test_path_in_between_does_not_matter(silicon):
     many = elastic_line_force(
         np.concatenate([np.linspace(40e-9, 0.0, 23), np.linspace(0.0, 25e-9, 17)]), R, L, silicon
     )
-    assert one[0] == pytest.approx(many[22], rel=1e-8)
-    assert one[1] == pytest.approx(many[-1], rel=1e-8)
+    assert one[0] == pytest.approx(many[22], rel=1e-8, abs=0)
+    assert one[1] == pytest.approx(many[-1], rel=1e-8, abs=0)
 
 
 def test_interface_of_two_materials(silicon, coated):
@@ -158,7 +158,7 @@ def test_interface_of_two_materials(silicon, coated):
     covered = elastic_line_force(path, R, L, coated)
     assert np.array_equal(elastic_line_force(path, R, L, silicon, coated_surface=coated), bare)
     full = elastic_line_force(path, R, L, silicon, coated_surface=coated, sam_fraction=1.0)
-    assert full == pytest.approx(covered, rel=1e-9)
+    assert full == pytest.approx(covered, rel=1e-9, abs=0)
     half = elastic_line_force(path, R, L, silicon, coated_surface=coated, sam_fraction=0.5)
     assert np.all((bare < half) & (half < covered))
 

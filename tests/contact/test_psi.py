@@ -47,9 +47,9 @@ def test_scaled_kernel_to_full_precision(y):
     want = exact(y, 6)
     got = psi_derivatives(y, 6, scaled=True)
     # The trapezoidal rule adds terms of order 1 up to derivatives of order |y|^-k: that much of 1e-16 goes.
-    tolerance = [1e-14, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9]
+    tolerance = [5e-14, 5e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9]
     for k in range(7):
-        assert got[k] == pytest.approx(want[k], rel=tolerance[k])
+        assert got[k] == pytest.approx(want[k], rel=tolerance[k], abs=0)
 
 
 @pytest.mark.parametrize("y", [-9.0, -1.0, 0.0, 2.5, 6.0])
@@ -62,15 +62,15 @@ def test_kernel_is_the_density_of_a_parabolic_gap(y):
         epsrel=1e-12,
         points=[abs(y) ** 0.5],
     )
-    assert psi(y) == pytest.approx(2 * direct, rel=1e-11)
+    assert psi(y) == pytest.approx(2 * direct, rel=1e-11, abs=0)
 
 
 def test_unscaled_tail_keeps_its_digits():
     for y in (5.0, 20.3, 36.7):
         with mpmath.workdps(40):
             scale = mpmath.exp(-(mpmath.mpf(y) ** 2) / 2)
-            assert psi(y) == pytest.approx(float(scale * mpmath.mpf(exact(y, 0)[0])), rel=1e-14)
-            assert gaussian_tail(y) == pytest.approx(float(scale), rel=1e-15)
+            assert psi(y) == pytest.approx(float(scale * mpmath.mpf(exact(y, 0)[0])), rel=1e-14, abs=0)
+            assert gaussian_tail(y) == pytest.approx(float(scale), rel=1e-15, abs=0)
     assert psi(60.0) == 0.0
 
 

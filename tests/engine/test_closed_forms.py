@@ -49,9 +49,9 @@ def test_steady_running_balances_drive_and_drag():
     scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.06, "run.samples": 6001})
     run = solve(scene)
     late = run.samples["gear_speed"][3000:]
-    assert late.mean() == pytest.approx(1.5, rel=1e-3)  # what is left of the ringing
+    assert late.mean() == pytest.approx(1.5, rel=1e-3, abs=0)  # what is left of the ringing
     torque = run.samples["gear_contact_torque"][3000:]
-    assert torque.mean() == pytest.approx(DRAG * 1.5**2, rel=1e-2)
+    assert torque.mean() == pytest.approx(DRAG * 1.5**2, rel=1e-2, abs=0)
 
 
 def test_contact_exchanges_angular_momentum_along_the_line_of_action():
@@ -103,7 +103,7 @@ def test_an_impact_loses_the_adhesion_energy(fraction):
     tips = [(asperity_of(surface), share) for surface, share in shares]
     cost = sum(share * 0.93550 * tip.pull_off * tip.stretch_limit for tip, share in tips)
     # the constant has five digits; height.min() is a sample's, near a turning point, so that its error enters squared
-    assert lost == pytest.approx(cost * joined, rel=2e-5)
+    assert lost == pytest.approx(cost * joined, rel=2e-5, abs=0)
 
 
 def test_hertz_asperities_lose_nothing():
@@ -111,7 +111,7 @@ def test_hertz_asperities_lose_nothing():
         {"contact.asperity": "hertz", "contact.model": "asperity", "run.rtol": 1e-10}
     )
     run = solve(scene)
-    assert run.samples["speed"][-1] == pytest.approx(-run.samples["speed"][0], rel=1e-7)
+    assert run.samples["speed"][-1] == pytest.approx(-run.samples["speed"][0], rel=1e-7, abs=0)
 
 
 def test_roller_in_flight_keeps_its_speed():

@@ -56,7 +56,7 @@ def test_contact_ratio_of_the_paper(paper: Geometry) -> None:
 
 
 def test_gear_radius_follows_from_the_teeth(paper: Geometry) -> None:
-    assert paper.base_radius_gear == pytest.approx(138.86e-6, rel=ROUNDING)
+    assert paper.base_radius_gear == pytest.approx(138.86e-6, rel=ROUNDING, abs=0)
 
 
 @given(runnable())
@@ -65,8 +65,8 @@ def test_path_ends_where_the_tip_circles_cut_the_line_of_action(geometry: Geomet
         geometry.base_radius_pinion, geometry.pinion_teeth, geometry.gear_teeth, geometry.pressure_angle
     )
     # The quadratic's roots cancel to module over radius, 200 teeth at most: four digits fewer than double.
-    assert geometry.approach == pytest.approx(approach, rel=1e-11)
-    assert geometry.recess == pytest.approx(recess, rel=1e-11)
+    assert geometry.approach == pytest.approx(approach, rel=1e-11, abs=0)
+    assert geometry.recess == pytest.approx(recess, rel=1e-11, abs=0)
 
 
 @given(runnable())
@@ -77,14 +77,14 @@ def test_flanks_reach_from_tip_to_tip(geometry: Geometry) -> None:
     def at_tip(radius: float) -> float:
         return math.sqrt((radius / math.cos(geometry.pressure_angle) + geometry.module) ** 2 - radius**2)
 
-    assert pinion[1] == pytest.approx(at_tip(geometry.base_radius_pinion), rel=ROUNDING)
-    assert gear[0] == pytest.approx(at_tip(geometry.base_radius_gear), rel=ROUNDING)
+    assert pinion[1] == pytest.approx(at_tip(geometry.base_radius_pinion), rel=ROUNDING, abs=0)
+    assert gear[0] == pytest.approx(at_tip(geometry.base_radius_gear), rel=ROUNDING, abs=0)
 
 
 @given(runnable())
 def test_base_pitch_is_common_to_both_gears(geometry: Geometry) -> None:
     assert geometry.base_pitch * geometry.gear_teeth == pytest.approx(
-        2 * math.pi * geometry.base_radius_gear, rel=ROUNDING
+        2 * math.pi * geometry.base_radius_gear, rel=ROUNDING, abs=0
     )
 
 
@@ -95,16 +95,18 @@ def test_radii_add_up_along_the_path_and_stay_beyond_it(geometry: Geometry, wher
     total = geometry.tangent_pinion + geometry.tangent_gear
     assert pinion > 0
     assert gear > 0
-    assert pinion + gear == pytest.approx(total, rel=ROUNDING)
-    assert 1 / reduced == pytest.approx(1 / pinion + 1 / gear, rel=ROUNDING)
+    assert pinion + gear == pytest.approx(total, rel=ROUNDING, abs=0)
+    assert 1 / reduced == pytest.approx(1 / pinion + 1 / gear, rel=ROUNDING, abs=0)
     inside = min(max(xi, 0.0), geometry.path_length)
     assert pinion == curvature_radii(geometry, inside)[0]
 
 
 def test_radii_at_the_pitch_point(paper: Geometry) -> None:
     pinion, gear, _ = curvature_radii(paper, paper.approach)
-    assert pinion == pytest.approx(paper.base_radius_pinion * math.tan(paper.pressure_angle), rel=ROUNDING)
-    assert gear == pytest.approx(4 * pinion, rel=ROUNDING)
+    assert pinion == pytest.approx(
+        paper.base_radius_pinion * math.tan(paper.pressure_angle), rel=ROUNDING, abs=0
+    )
+    assert gear == pytest.approx(4 * pinion, rel=ROUNDING, abs=0)
 
 
 @given(runnable(), st.floats(0.1, 10))
@@ -115,8 +117,10 @@ def test_geometry_scales_with_the_gears(geometry: Geometry, scale: float) -> Non
         geometry.gear_teeth,
         geometry.pressure_angle,
     )
-    assert scaled.path_length == pytest.approx(geometry.path_length * scale, rel=1e-11)  # cancels as above
-    assert scaled.contact_ratio == pytest.approx(geometry.contact_ratio, rel=1e-11)
+    assert scaled.path_length == pytest.approx(
+        geometry.path_length * scale, rel=1e-11, abs=0
+    )  # cancels as above
+    assert scaled.contact_ratio == pytest.approx(geometry.contact_ratio, rel=1e-11, abs=0)
 
 
 @given(runnable(), st.floats(-1, 2), st.floats(1e-6, 1e-4))
@@ -135,7 +139,7 @@ def test_separation_opens_outwards_and_vanishes_on_the_path(paper: Geometry) -> 
     assert s[0, 1] == slope[0, 1] == s[1, 0] == slope[1, 0] == 0
     assert slope[0, 0] < 0 < slope[1, 1]
     # (1 um)^2 / (2 * 10 um); at the far end xi - path_length cancels one digit in twenty.
-    assert s[[0, 1], [0, 1]] == pytest.approx(0.05e-6, rel=1e-12)
+    assert s[[0, 1], [0, 1]] == pytest.approx(0.05e-6, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(("teeth", "runs"), [(17, False), (18, True)])

@@ -233,7 +233,7 @@ def test_global_state_of_matplotlib_is_left_alone(sweep):
 def test_prefixes(largest, unit, factor, expected):
     scale = scale_for(largest, unit)
     assert scale.unit == expected
-    assert scale.factor == pytest.approx(factor, rel=1e-12)
+    assert scale.factor == pytest.approx(factor, rel=1e-12, abs=0)
 
 
 def test_thinning_keeps_every_extreme():

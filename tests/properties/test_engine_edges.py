@@ -162,7 +162,7 @@ def test_a_grazing_contact_is_seen_if_it_is_one(margin, touches):
         assert (onsets > 0) == touches
     assert onsets == np.count_nonzero(drive & (run.events.kind == EventKind.SEPARATION))
     turning = run.events.time[drive & (run.events.kind == EventKind.TURNING_POINT)]
-    assert turning == pytest.approx(np.full(len(turning), 2.5e-5), rel=1e-3)
+    assert turning == pytest.approx(np.full(len(turning), 2.5e-5), rel=1e-3, abs=0)
     assert len(turning) >= 1
 
 

@@ -100,7 +100,9 @@ def test_the_force_on_the_gear_does_virtual_work(flank, u, phase, pair):
     slope = pair_gap(d, flank, pair, u, 0.0, phase, 0.0)[2]
     sign = -1.0 if flank else 1.0
     # rounding of the gap (up to 1e3 roughnesses) over a way of 1e-6 of them
-    assert (ahead - behind) * sigma / (2 * turn * radius) == pytest.approx(sign * (1 + slope), rel=1e-5)
+    assert (ahead - behind) * sigma / (2 * turn * radius) == pytest.approx(
+        sign * (1 + slope), rel=1e-5, abs=0
+    )
 
 
 @given(u=us, phase=phases)
