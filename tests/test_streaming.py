@@ -157,7 +157,8 @@ def kill_again_and_again(path, scene, backend, kills, longest):
 
 @pytest.mark.usefixtures("many_small_blocks")
 def test_killed_at_five_random_instants_and_resumed_is_the_same_run(path):
-    assert kill_again_and_again(path, LOW.replace({"run.duration": 0.03}), "sksundae", 5, 0.25) == 5
+    # on a fast machine the run may reach its end before the fifth
+    assert 2 <= kill_again_and_again(path, LOW.replace({"run.duration": 0.03}), "sksundae", 5, 0.25) <= 5
 
 
 @pytest.mark.slow

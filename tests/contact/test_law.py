@@ -81,8 +81,10 @@ def test_asperities_that_do_not_stretch(kind):
 
 def test_law_ends_at_the_widest_gap():
     table = law.law_table(0.2219)
-    inside, _ = law.law_value(table, law.GAP_HIGH - 1e-9, -math.inf)
-    assert law.law_value(table, law.GAP_HIGH, -math.inf) == (0.0, 0.0)
+    widest = law.GAP_HIGH + 0.2219  # where the last stretched asperity lets go
+    inside, _ = law.law_value(table, widest - 1e-9, -math.inf)
+    assert law.law_value(table, widest, -math.inf) == (0.0, 0.0)
+    assert law.law_value(table, law.GAP_HIGH, law.GAP_HIGH) == (0.0, 0.0)
     assert 0 < abs(inside) < 1e-35  # what is cut off there is no force at all
 
 
@@ -164,3 +166,14 @@ def test_tables_are_shared_and_protected():
     assert law.law_table(0.2219) is law.law_table(0.2219)
     with pytest.raises(ValueError, match="read-only"):
         law.law_table(0.2219)[0] = 1.0
+
+
+def test_asperities_that_stretch_far_hold_beyond_the_widest_gap():
+    """What is joined within the tables pulls until it lets go, however wide the gap is by then."""
+    surface = surface_with(5.0)
+    table = law.law_table(5.0)
+    for gap in (12.9, 13.0, 13.1):
+        exact = line_force(gap * surface.roughness, (gap - 8.5) * surface.roughness, RADIUS, WIDTH, surface)
+        assert law.law_value(table, gap, 8.5)[0] == pytest.approx(
+            float(exact) / unit_force(surface), rel=1e-8, abs=0
+        )

@@ -59,7 +59,7 @@ Kernel: TypeAlias = Literal["line", "plane"]
 GAP_LOW: Final = -40.0
 """Deepest tabulated gap, in roughnesses; the last piece is continued below it."""
 GAP_HIGH: Final = 13.0
-"""Widest tabulated gap, in roughnesses; the force beyond (1e-37 of its scale) is taken as zero."""
+"""Widest tabulated gap or joined height, in roughnesses; forces beyond (1e-37 of their scale) are taken as zero."""
 
 STRETCH_HIGH: Final = 128.0
 """Largest stretch limit a law is made for, in roughnesses."""
@@ -392,6 +392,8 @@ def _septic(table: Floats, offset: int, x: float, low: float, count: int) -> tup
 @compiled
 def loading_value(table: Floats, offset: int, gap: float) -> tuple[float, float]:
     """Loading branch and its slope; `offset` is `HEADER` in a law's own table."""
+    if gap >= GAP_HIGH:
+        return 0.0, 0.0
     return _septic(table, offset, gap, GAP_LOW, N_LOADING)
 
 
@@ -525,7 +527,7 @@ def stretched_value(table: Floats, gap: float, joined: float) -> tuple[float, fl
     """What stretched asperities add to the loading branch, and its slope while the joined height stays."""
     limit = table[H_STRETCH]
     stretch = gap - joined
-    if limit == 0.0 or stretch <= 0.0:
+    if limit == 0.0 or stretch <= 0.0 or max(joined, gap - limit) >= GAP_HIGH:
         return 0.0, 0.0
     if stretch >= limit:
         return _septic(table, int(table[H_END]), gap - limit, table[H_LOW], int(table[H_COUNT]))
@@ -552,8 +554,6 @@ def law_value(table: Floats, gap: float, joined: float) -> tuple[float, float]:
     q, slope : float
         Positive pushes apart. The slope is that of the branch the contact is on.
     """
-    if gap >= GAP_HIGH:
-        return 0.0, 0.0
-    q, slope = _septic(table, HEADER, gap, GAP_LOW, N_LOADING)
+    q, slope = loading_value(table, HEADER, gap)
     more, rate = stretched_value(table, gap, joined)
     return q + more, slope + rate

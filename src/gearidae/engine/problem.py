@@ -366,7 +366,7 @@ def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest:
 
 def _outermost(table: Floats, scale: float, floor: float) -> float:
     """Widest gap at which this surface's force still exceeds `floor`, on a grid of an eighth."""
-    for gap in np.arange(GAP_HIGH, GAP_LOW, -0.125):
+    for gap in np.arange(GAP_HIGH + table[H_STRETCH], GAP_LOW, -0.125):
         largest = max(abs(law_value(table, gap, joined)[0]) for joined in (gap, -math.inf))
         if scale * largest > floor:
             return float(gap)
