@@ -9,8 +9,9 @@ Public names are loaded on first use, so that ``import gearidae`` itself stays c
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gearidae import analysis, contact, plot
@@ -40,31 +41,18 @@ __all__ = [
 
 # Public name -> the module it lives in; a module that is public itself maps to None.
 _HOME: dict[str, str | None] = {
-    "GearidaeError": "gearidae.errors",
-    "Scene": "gearidae.scene",
-    "SceneError": "gearidae.errors",
-    "SolverError": "gearidae.errors",
+    "GearidaeError": "errors",
+    "Scene": "scene",
+    "SceneError": "errors",
+    "SolverError": "errors",
     "analysis": None,
     "contact": None,
-    "load_case": "gearidae.scene",
-    "open_archive": "gearidae.archive",
+    "load_case": "scene",
+    "open_archive": "archive",
     "plot": None,
-    "preset": "gearidae.scene",
-    "simulate": "gearidae.simulation",
-    "sweep": "gearidae.sweeping",
+    "preset": "scene",
+    "simulate": "simulation",
+    "sweep": "sweeping",
 }
 
-
-def __getattr__(name: str) -> Any:
-    """Load a public name on first use (PEP 562)."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'gearidae' has no attribute {name!r}")
-    home = _HOME[name]
-    value = import_module(f"gearidae.{name}") if home is None else getattr(import_module(home), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """List the public names, loaded or not."""
-    return sorted({*globals(), *_HOME})
+__getattr__, __dir__ = lazy_names(globals(), _HOME)

@@ -5,8 +5,9 @@ Names are loaded on first use, so that drawing and reading do not wait for the s
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gearidae.analysis.assessment import Assessment, assess
@@ -52,16 +53,4 @@ _HOME = {
     "static_starting_torque": "starting",
 }
 
-
-def __getattr__(name: str) -> Any:
-    """Load a public name on first use (PEP 562)."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'gearidae.analysis' has no attribute {name!r}")
-    value = getattr(import_module(f"gearidae.analysis.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """List the public names, loaded or not."""
-    return sorted({*globals(), *_HOME})
+__getattr__, __dir__ = lazy_names(globals(), _HOME)

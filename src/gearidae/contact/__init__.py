@@ -9,8 +9,9 @@ Names are loaded on first use, so that a caller of one law does not pay for the 
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gearidae.contact.bulk import bulk_influence
@@ -83,16 +84,4 @@ _HOME = {
     "tabor_regime": "jkr",
 }
 
-
-def __getattr__(name: str) -> Any:
-    """Load a public name on first use (PEP 562)."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'gearidae.contact' has no attribute {name!r}")
-    value = getattr(import_module(f"gearidae.contact.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    """List the public names, loaded or not."""
-    return sorted({*globals(), *_HOME})
+__getattr__, __dir__ = lazy_names(globals(), _HOME)

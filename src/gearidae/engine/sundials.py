@@ -118,7 +118,6 @@ IDASetRootDirection = _declare("IDASetRootDirection", _INT, _PTR, _PTR)
 IDASetNoInactiveRootWarn = _declare("IDASetNoInactiveRootWarn", _INT, _PTR)
 IDASolve = _declare("IDASolve", _INT, _PTR, _REAL, _PTR, _PTR, _PTR, _INT)
 IDAGetDky = _declare("IDAGetDky", _INT, _PTR, _REAL, _INT, _PTR)
-IDAGetRootInfo = _declare("IDAGetRootInfo", _INT, _PTR, _PTR)
 IDAGetNumSteps = _declare("IDAGetNumSteps", _INT, _PTR, _PTR)
 IDAGetNumResEvals = _declare("IDAGetNumResEvals", _INT, _PTR, _PTR)
 IDAGetNumJacEvals = _declare("IDAGetNumJacEvals", _INT, _PTR, _PTR)
@@ -126,5 +125,5 @@ IDAGetNumErrTestFails = _declare("IDAGetNumErrTestFails", _INT, _PTR, _PTR)
 IDAGetNumNonlinSolvConvFails = _declare("IDAGetNumNonlinSolvConvFails", _INT, _PTR, _PTR)
 IDAGetNumGEvals = _declare("IDAGetNumGEvals", _INT, _PTR, _PTR)
 
-IDA_NORMAL, IDA_ONE_STEP = 1, 2
-IDA_SUCCESS, IDA_TSTOP_RETURN, IDA_ROOT_RETURN = 0, 1, 2
+IDA_ONE_STEP = 2
+IDA_TSTOP_RETURN, IDA_ROOT_RETURN = 1, 2
