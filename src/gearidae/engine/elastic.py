@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.compiled import compiled
 from gearidae.contact.bulk import LineGrid, line_grid
 from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve
 from gearidae.contact.jkr import asperity_of, contact_modulus
@@ -172,6 +173,15 @@ def deepest_gap(scene: Scene, footing: Footing) -> float:
         depth = min(2.0 * depth, -GAP_LOW - 1.0)
 
 
+@compiled
+def _loading(table: Floats, gaps: Floats) -> Floats:
+    """Pressures on the way in, one for each gap."""
+    out = np.empty(gaps.size)
+    for i in range(gaps.size):
+        out[i] = law_value(table, gaps[i], gaps[i])[0]
+    return out
+
+
 def rigid_limit(scene: Scene, footing: Footing) -> tuple[float, bool]:
     """Gap down to which the bodies hardly give way, and whether that will do.
 
@@ -200,7 +210,7 @@ def rigid_limit(scene: Scene, footing: Footing) -> tuple[float, bool]:
                 tip = asperity_of(surface)
                 table = law_table(tip.stretch_limit / sigma, scene.contact.asperity, "plane")
                 scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
-                pressure += scale * np.array([law_value(table, gap + s, gap + s)[0] for s in profile])
+                pressure += scale * _loading(table, gap + profile)
         force = float(footing.longest * weights @ pressure)
         work += 0.5 * (force + last) * step * sigma
         last = force
