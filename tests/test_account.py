@@ -108,10 +108,27 @@ def test_pieces_do_not_matter(braking, monkeypatch):
 
 def test_without_samples_and_of_rollers():
     told = account(gd.simulate(LOW.replace({"run.samples": "off"})))
-    assert math.isnan(told.drive_work)
-    assert told.as_plain()["contact_loss"] is None
+    assert math.isnan(told.top_speed)
+    assert told.as_plain()["largest_force"] is None
+    assert told.drive_work > 0.0  # the ledger needs no samples
     assert told.impacts > 0
     assert account(gd.simulate(gd.preset("roller_slow"))) is None
+
+
+def test_an_archive_without_a_ledger_has_its_work_from_the_samples(braking):
+    """The sums over samples and the ledger are two ways to the same energies."""
+    kept = account(braking)
+    older = braking.copy()
+    del older.attrs["ledger"]
+    told = account(older)
+    for name in ("drive_work", "drag_loss", "dry_loss", "kinetic_change"):
+        # samples every microsecond: trapezoids over speeds that tremble some thousandths
+        assert getattr(told, name) == pytest.approx(getattr(kept, name), rel=1e-3, abs=0.0)
+    assert told.contact_loss == pytest.approx(kept.contact_loss, abs=3.0 * told.uncertainty)
+    assert kept.uncertainty < 1e-3 * told.uncertainty
+    assert math.isnan(told.adhesion_loss)
+    bare = older.isel(time=slice(0, 0))
+    assert math.isnan(account(bare).drive_work)
 
 
 def test_the_account_is_in_the_dataset(tmp_path):

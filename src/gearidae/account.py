@@ -1,17 +1,18 @@
 """The account of a run: how long it took to speed, stood still and adhered, what forces it met, where energy went.
 
 Read from a dataset of any length in pieces. Times at rest come from the stick and slip events and are as exact as
-these. Work is a sum over the samples, ``sum of mean(M) times the angle turned`` rather than of power times time: of
-a constant torque it is exact however the gear trembles between two samples, and of a torque that changes it errs
-with the second power of the sampling only. What the account cannot explain by torques and speeds is what the
-contacts took: adhesion torn apart, and what is stored in contacts at the end.
+these. Energies are those of the ledger that the engine kept at its own steps (`gearidae.engine.ledger`).
+
+Archives without a ledger have their work summed over the samples, ``sum of mean(M) times the angle turned``: of
+a constant torque that is exact however the gear trembles between two samples, and of a torque that changes it errs
+with the second power of the sampling only. What torques and speeds do not explain is then what the contacts took.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -19,6 +20,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.energy import ledger_of
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.records import EventKind
 from gearidae.scene import Drive, Load, Scene
@@ -75,9 +77,14 @@ class Account:
     kinetic_change : float
         Kinetic energy of both gears at the end less that at the start.
     contact_loss : float
-        What is left of the work: lost to adhesion, or stored in contacts.
+        What is left of the work: lost to adhesion or stored in contacts, less the work of the changing radius.
     uncertainty : float
-        How much `contact_loss` changes when only every second sample is looked at.
+        How far that can be trusted: the ledger's residual; without a ledger, how much `contact_loss` changes when only
+        every second sample is looked at.
+    adhesion_loss, stored_change, radius_work, model_change : float
+        What it is made of, from the ledger; see `gearidae.records.Ledger`.
+    residual_bound : float
+        What the ledger's residual stays below in a sound run.
     """
 
     top_speed: float
@@ -97,6 +104,11 @@ class Account:
     kinetic_change: float
     contact_loss: float
     uncertainty: float
+    adhesion_loss: float = math.nan
+    stored_change: float = math.nan
+    radius_work: float = math.nan
+    model_change: float = math.nan
+    residual_bound: float = math.nan
 
     def as_plain(self) -> dict[str, Any]:
         """Return the account as data fit for JSON, which has no NaN."""
@@ -130,10 +142,19 @@ def account(ds: xr.Dataset) -> Account | None:
         return None
     end = float(ds.attrs["t_end"]) if ds.attrs["status"] == "finished" else 0.0
     scene = Scene.from_dict(scene_of(ds))
-    return account_of(scene, lambda name, cut: ds[name][cut].values, ds.sizes["time"], ds.sizes["event"], end)
+    return account_of(
+        scene, lambda name, cut: ds[name][cut].values, ds.sizes["time"], ds.sizes["event"], end, ledger_of(ds)
+    )
 
 
-def account_of(scene: Scene, read: Read, samples: int, events: int, end: float) -> Account:
+def account_of(
+    scene: Scene,
+    read: Read,
+    samples: int,
+    events: int,
+    end: float,
+    ledger: Mapping[str, float] | None = None,
+) -> Account:
     """Give an account of a run that is kept anywhere.
 
     Parameters
@@ -146,6 +167,8 @@ def account_of(scene: Scene, read: Read, samples: int, events: int, end: float) 
         How many there are.
     end : float
         Time that the run is known to have reached [s], besides that of samples and events.
+    ledger : mapping, optional
+        The run's energy ledger, from `gearidae.archive.energy.ledger_of`.
 
     Returns
     -------
@@ -154,10 +177,11 @@ def account_of(scene: Scene, read: Read, samples: int, events: int, end: float) 
     incidents = _Events(scene)
     for piece in _pieces(read, events, ("event_time", "event_kind")):
         incidents.add(piece["event_time"], piece["event_kind"])
-    fine, coarse = _Samples(scene), _Work(scene)
+    fine, work = _Samples(scene), _SampledWork(scene)
     for piece in _pieces(read, samples, _COLUMNS, overlap=2):
         fine.add(piece)
-        coarse.add({name: values[::2] for name, values in piece.items()})
+        if ledger is None:
+            work.add(piece)
     end = max(end, incidents.time, np.nan_to_num(fine.time))
     at_rest, resting = incidents.rest(end, moved=fine.top_speed > 0.0)
     adhering, clinging = fine.adhering()
@@ -172,9 +196,18 @@ def account_of(scene: Scene, read: Read, samples: int, events: int, end: float) 
         impacts=incidents.counts[EventKind.ONSET],
         largest_force=fine.largest_force,
         largest_force_time=fine.largest_force_time,
-        **fine.work.done(),
-        uncertainty=abs(fine.work.balance() - coarse.balance()),
+        **(work.done() if ledger is None else _from_ledger(ledger)),
     )
+
+
+def _from_ledger(ledger: Mapping[str, float]) -> dict[str, float]:
+    """Energies of the account from those of a ledger."""
+    own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
+    parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
+    energies = {name: ledger[name] for name in (*own, *parts)}
+    contact = ledger["adhesion_loss"] + ledger["stored_change"]
+    contact -= ledger["radius_work"] + ledger["model_change"]
+    return energies | {"contact_loss": contact, "uncertainty": abs(ledger["residual"])}
 
 
 def with_account(ds: xr.Dataset) -> xr.Dataset:
@@ -234,6 +267,22 @@ class _Events:
         if self._may_rest and not moved and not self.counts[EventKind.SLIP]:
             return end, True
         return self._total, False
+
+
+class _SampledWork:
+    """Work of the torques, summed over all samples and over every second one."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._fine, self._coarse = _Work(scene), _Work(scene)
+
+    def add(self, piece: dict[str, Floats]) -> None:
+        """Add a piece that overlaps with the one before by two samples."""
+        self._fine.add(piece)
+        self._coarse.add({name: values[::2] for name, values in piece.items()})
+
+    def done(self) -> dict[str, float]:
+        """Fields of the account; NaN without samples."""
+        return self._fine.done() | {"uncertainty": abs(self._fine.balance() - self._coarse.balance())}
 
 
 class _Work:
@@ -299,11 +348,10 @@ class _Work:
 
 
 class _Samples:
-    """Extremes of the samples, the times the gear is turned back by adhesion, and the work."""
+    """Extremes of the samples, and the times the gear is turned back by adhesion."""
 
     def __init__(self, scene: Scene) -> None:
         assert scene.gears is not None
-        self.work = _Work(scene)
         self.time = self.top_speed = self.largest_force = self.largest_force_time = math.nan
         self._angle = math.nan
         self._pitch = 2.0 * math.pi / scene.gears.gear_teeth
@@ -311,7 +359,6 @@ class _Samples:
         self._total = 0.0
 
     def add(self, piece: dict[str, Floats]) -> None:
-        self.work.add(piece)
         new = piece["time"] > (-math.inf if math.isnan(self.time) else self.time)
         force, speed = np.abs(piece["mesh_force"]), piece["gear_speed"]
         self.top_speed = float(np.fmax(self.top_speed, speed.max()))

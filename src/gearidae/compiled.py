@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -46,16 +47,20 @@ def cache_folder() -> Path:
     return folder / digest.hexdigest()[:16]
 
 
+_declaring = threading.RLock()
+
+
 @contextmanager
 def _own_cache() -> Iterator[None]:
-    """Let numba choose gearidae's cache folder while a function is being declared."""
+    """Let numba choose gearidae's cache folder while a function is being declared, by one thread at a time."""
     config: Any = numba.config
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder())
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = before
+    with _declaring:
+        before = config.CACHE_DIR
+        config.CACHE_DIR = str(cache_folder())
+        try:
+            yield
+        finally:
+            config.CACHE_DIR = before
 
 
 def compiled(function: F) -> F:

@@ -17,14 +17,14 @@ import netCDF4
 import numpy as np
 
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
-from gearidae.records import Events, Solution, Statistics
+from gearidae.records import Events, Ledger, Solution, Statistics
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["KeptRuns", "folder_beside"]
 
-_LAYOUT = 1
+_LAYOUT = 2
 """Version of the files' layout."""
 _OURS = re.compile(r"\.?[0-9a-f]{64}(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
 """Names of our files, finished or cut off while they were written."""
@@ -146,6 +146,7 @@ def _write(path: Path, key: str, solution: Solution) -> None:
             "status": solution.status,
             "message": solution.message,
             "reached": solution.reached,
+            "ledger": None if solution.ledger is None else asdict(solution.ledger),
         },
         default=int,  # numpy's integers
     )
@@ -191,6 +192,7 @@ def _read(path: Path, key: str) -> Solution:
         header["status"],
         header["message"],
         header["reached"],
+        None if header["ledger"] is None else Ledger(**header["ledger"]),
     )
 
 

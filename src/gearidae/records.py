@@ -8,7 +8,18 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GEAR_COLUMNS", "ROLLER_COLUMNS", "EventKind", "Events", "Flank", "Solution", "Statistics"]
+__all__ = [
+    "GEAR_BOUND",
+    "GEAR_COLUMNS",
+    "ROLLER_BOUND",
+    "ROLLER_COLUMNS",
+    "EventKind",
+    "Events",
+    "Flank",
+    "Ledger",
+    "Solution",
+    "Statistics",
+]
 
 GEAR_COLUMNS = (
     "gear_speed",
@@ -22,6 +33,12 @@ GEAR_COLUMNS = (
     "pairs_in_contact",
 )
 ROLLER_COLUMNS = ("height", "speed", "force")
+
+
+GEAR_BOUND = 10.0
+"""Residual of a gear pair's energy ledger over rtol and throughput, at most: three times the largest measured."""
+ROLLER_BOUND = 100.0
+"""The same of a roller, all of whose energy goes through one impact: three times the largest measured."""
 
 
 class EventKind(IntEnum):
@@ -106,6 +123,74 @@ class Statistics:
 
 
 @dataclass(frozen=True, slots=True)
+class Ledger:
+    """Where the energy of a run came from and went, kept by the engine at every step [J].
+
+    Attributes
+    ----------
+    time : float
+        Simulated time up to which it is kept [s].
+    drive_work : float
+        Done by the torque on the pinion.
+    radius_work : float
+        Work of the changing radius: what pairs in contact store more because the radii of curvature change along the
+        path of contact. The model has no force for that, so that nothing else pays for it.
+    model_change : float
+        By how much the stored energy jumped when the elastic contact model took over from the asperity model.
+    drag_loss, dry_loss, damping_loss : float
+        Taken by the drag and the dry resistance at the gear, and by the mesh's viscous damping.
+    adhesion_loss : float
+        Lost to adhesion: 0.93550 times pull-off load times stretch limit for each asperity that joined.
+    stored_change, kinetic_change : float
+        Energy stored in contacts and energy of motion at the end, less those at the start.
+    throughput : float
+        What the residual is measured by: the kinetic energy at the start, and all works, losses and changes of the
+        kinetic energy, step by step and without regard to sign.
+    """
+
+    time: float
+    drive_work: float
+    radius_work: float
+    model_change: float
+    drag_loss: float
+    dry_loss: float
+    damping_loss: float
+    adhesion_loss: float
+    stored_change: float
+    kinetic_change: float
+    throughput: float
+
+    @property
+    def residual(self) -> float:
+        """What does not add up [J]."""
+        given = self.drive_work + self.radius_work + self.model_change
+        lost = self.drag_loss + self.dry_loss + self.damping_loss + self.adhesion_loss
+        return given - lost - self.stored_change - self.kinetic_change
+
+    @property
+    def imbalance(self) -> float:
+        """Size of the residual over the throughput [1]; 0 of a run in which no energy has moved."""
+        return abs(self.residual) / self.throughput if self.throughput > 0.0 else 0.0
+
+    def bound(self, rtol: float, *, roller: bool) -> float:
+        """What the residual stays below in a sound run [J].
+
+        Parameters
+        ----------
+        rtol : float
+            Relative tolerance of the run.
+        roller : bool
+            Whether it was a roller's.
+
+        Returns
+        -------
+        float
+            `ROLLER_BOUND` or `GEAR_BOUND`, times rtol, times the throughput.
+        """
+        return (ROLLER_BOUND if roller else GEAR_BOUND) * rtol * self.throughput
+
+
+@dataclass(frozen=True, slots=True)
 class Solution:
     """One run as the engine leaves it.
 
@@ -123,6 +208,8 @@ class Solution:
         The status in a sentence; empty when finished.
     reached : float, optional
         Simulated time reached [s]; by default that of the last sample.
+    ledger : Ledger, optional
+        The energy ledger; None if the run produced nothing.
     """
 
     time: NDArray[np.float64]
@@ -132,3 +219,4 @@ class Solution:
     status: str
     message: str
     reached: float | None = None
+    ledger: Ledger | None = None

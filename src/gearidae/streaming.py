@@ -12,6 +12,7 @@ from gearidae import __version__, engine
 from gearidae.account import account_of
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
 from gearidae.archive.disk import DiskError
+from gearidae.archive.energy import ledger_of
 from gearidae.archive.journal import Checkpoint
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
@@ -148,7 +149,9 @@ class _Run:
         template = self._template(ended)
         if self._scene.roller is None:
             end = self._scene.run.duration if ended.status == "finished" else 0.0
-            told = account_of(self._scene, archive.read, archive.samples, archive.events, end)
+            told = account_of(
+                self._scene, archive.read, archive.samples, archive.events, end, ledger_of(template)
+            )
             template.attrs["account"] = told.as_json()
         return template
 
@@ -163,7 +166,8 @@ class _Run:
         """How a run ended of which only the archive's final form was missing."""
         _, skipped = engine.outlook(self._scene, self._backend, point.state)
         statistics = statistics_of(point.tally, point.wall_time, self._backend, skipped)
-        return engine.Ended(statistics, "finished", "", point.time)
+        ledger = engine.ledger_at(self._scene, point.state, self._backend)
+        return engine.Ended(statistics, "finished", "", point.time, ledger)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
         """Make the run's dataset, without samples and events."""
@@ -177,6 +181,7 @@ class _Run:
             status=ended.status,
             message=ended.message,
             reached=ended.reached,
+            ledger=ended.ledger,
         )
         return to_dataset(self._scene, solution)
 

@@ -104,6 +104,7 @@ def test_provenance(make_solution):
     # The bare preset lies at the edge of JKR, the coated one far below it.
     assert attributes["tabor_parameter_bare"] == pytest.approx(5.0, rel=1e-2, abs=0)
     assert attributes["tabor_parameter_coated"] == pytest.approx(0.82, rel=1e-2, abs=0)
+    assert attributes["tabor_regime_bare"] == "jkr"
     assert attributes["tabor_regime_coated"] == "transition"
 
 

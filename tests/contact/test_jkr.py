@@ -123,14 +123,23 @@ def test_unknown_law_is_named(silicon):
         jkr.asperity_load(0.0, jkr.asperity_of(silicon), "maugis")
 
 
-def test_tabor_parameter_and_regime(silicon, coated):
+def test_tabor_parameter(silicon, coated):
     # Preset's asperity radius was chosen for mu = 5 at 0.165 nm; mu goes with energy to the power 2/3.
     assert jkr.tabor_parameter(silicon) == pytest.approx(5.0, abs=0.005)
     assert jkr.tabor_parameter(coated) == pytest.approx(5.0 / 15 ** (2 / 3), rel=1e-3, abs=0)
     assert jkr.tabor_parameter(silicon, eps=0.33e-9) == pytest.approx(jkr.tabor_parameter(silicon) / 2)
-    assert [jkr.tabor_regime(mu) for mu in (5.0, 4.99, 0.11, 0.1)] == [
-        "jkr",
-        "transition",
-        "transition",
-        "dmt",
-    ]
+
+
+@pytest.mark.parametrize(
+    ("mu", "regime"),
+    [(50.0, "jkr"), (4.5, "jkr"), (4.49, "transition"), (0.15, "transition"), (0.149, "dmt"), (0.0, "dmt")],
+)
+def test_tabor_regime(mu, regime):
+    """Bounds of one digit, 5 and 0.1 (Johnson and Greenwood 1997), told from the numbers that round to them."""
+    assert jkr.tabor_regime(mu) == regime
+
+
+def test_regimes_of_the_paper(silicon, coated):
+    """Bare silicon is where JKR holds, to the digit that the bound has; the monolayer is not."""
+    assert jkr.tabor_regime(jkr.tabor_parameter(silicon)) == "jkr"
+    assert jkr.tabor_regime(jkr.tabor_parameter(coated)) == "transition"

@@ -11,8 +11,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.energy import ledger_attribute, ledger_numbers
 from gearidae.archive.provenance import provenance, surface_regimes
-from gearidae.archive.variables import EVENTS, RUN, SAM_FRACTION, SAMPLES, TIME, by_name, columns
+from gearidae.archive.variables import EVENTS, LEDGER, RUN, SAM_FRACTION, SAMPLES, TIME, by_name, columns
 from gearidae.errors import SceneError
 from gearidae.records import Solution
 from gearidae.scene import Scene, describe_key
@@ -37,7 +38,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     -------
     xarray.Dataset
         Samples along ``time``, events along ``event``, scalar coordinate ``sam_fraction``; provenance, scene,
-        solver statistics and status as attributes. Everything in SI units.
+        solver statistics, status and energy ledger (as JSON) as attributes. Everything in SI units.
     """
     fraction = scene.coating.sam_fraction
     variables: dict[Hashable, Any] = {
@@ -55,6 +56,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             "status": solution.status,
             "message": solution.message,
             **_totals([solution]),
+            **ledger_attribute(scene, solution),
             **surface_regimes(scene),
         },
     )
@@ -90,8 +92,8 @@ def combine(
     xarray.Dataset
         As `to_dataset`, with one dimension per swept key in front of ``time``. Samples that a run did not
         reach are NaN. Events are ragged and therefore lie on one flat ``event`` dimension, labelled by
-        ``event_<dimension>``. Status and solver statistics are variables along the swept dimensions, their
-        totals attributes.
+        ``event_<dimension>``. Status, solver statistics and energy ledger are variables along the swept dimensions,
+        the statistics' totals attributes.
     """
     names = dimension_names(swept)
     dims = tuple(names.values())
@@ -123,6 +125,10 @@ def combine(
     for name, variable in RUN.items():
         source = [s if name in ("status", "message") else s.statistics for s in solutions]
         values = np.array([getattr(each, name) for each in source], dtype=variable.dtype)
+        variables[name] = (dims, values.reshape(shape), variable.attributes)
+    kept = [ledger_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
+    for name, variable in LEDGER.items():
+        values = np.array([numbers.get(name, math.nan) for numbers in kept])
         variables[name] = (dims, values.reshape(shape), variable.attributes)
 
     coords: dict[Hashable, Any] = {"time": ("time", time, TIME.attributes)}

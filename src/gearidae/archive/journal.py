@@ -16,7 +16,7 @@ __all__ = ["COUNTERS", "HEADER", "Checkpoint", "newest"]
 
 Floats = NDArray[np.float64]
 
-COUNTERS = tuple(field.name for field in fields(Tally) if field.name != "ending")
+COUNTERS = tuple(field.name for field in fields(Tally) if field.type == "int")
 _FIXED = ("checksum", "sequence", "samples", "events", "time", "wall_time", "words")
 HEADER = len(_FIXED) + len(COUNTERS)
 """Numbers in front of the state."""

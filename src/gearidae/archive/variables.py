@@ -17,7 +17,7 @@ from numpy.typing import DTypeLike
 
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Flank
 
-__all__ = ["EVENTS", "RUN", "SAMPLES", "SAM_FRACTION", "TIME", "Variable", "by_name", "columns"]
+__all__ = ["EVENTS", "LEDGER", "RUN", "SAMPLES", "SAM_FRACTION", "TIME", "Variable", "by_name", "columns"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +137,21 @@ _RUN = (
     Variable("guard_evaluations", (), "1", "evaluations of the event functions", np.int64),
     Variable("wall_time", (), "s", "wall time in the solver"),
 )
+_LEDGER = (
+    Variable("drive_work", (), "J", "work of the drive"),
+    Variable("radius_work", (), "J", "work of the changing radius of curvature"),
+    Variable("model_change", (), "J", "jump of the stored energy where the contact model changed"),
+    Variable("drag_loss", (), "J", "energy lost to drag"),
+    Variable("dry_loss", (), "J", "energy lost to dry resistance"),
+    Variable("damping_loss", (), "J", "energy lost to the mesh's viscous damping"),
+    Variable("adhesion_loss", (), "J", "energy lost to adhesion"),
+    Variable("stored_change", (), "J", "energy stored in contacts, at the end less at the start"),
+    Variable("kinetic_change", (), "J", "kinetic energy, at the end less at the start"),
+    Variable("throughput", (), "J", "all works and changes of kinetic energy without regard to sign"),
+    Variable("residual", (), "J", "what does not add up in the energy ledger"),
+    Variable("residual_bound", (), "J", "what the residual stays below in a sound run"),
+)
+LEDGER: Mapping[str, Variable] = {variable.name: variable for variable in _LEDGER}
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
 
 
@@ -147,4 +162,4 @@ def columns(is_roller: bool) -> tuple[str, ...]:
 
 def by_name() -> dict[str, Variable]:
     """Every variable of the catalogue by its name."""
-    return {"time": TIME, "sam_fraction": SAM_FRACTION, **SAMPLES, **EVENTS, **RUN}
+    return {"time": TIME, "sam_fraction": SAM_FRACTION, **SAMPLES, **EVENTS, **RUN, **LEDGER}

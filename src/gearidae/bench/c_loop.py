@@ -115,17 +115,19 @@ def _pointer(array: NDArray[Any]) -> ctypes.c_void_p:
 
 def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     from gearidae.engine import native
+    from gearidae.engine.sundials import places
 
     d, y = problem.data, problem.start
     yp, dky = np.zeros_like(y), np.zeros_like(y)
-    atol = tolerance * problem.tolerance_scale
+    problem.set_tolerance(tolerance)
+    known = native.callbacks(y.size, False)
     rows = np.zeros((times.size, max(len(problem.columns), 9)))
     events, counts = np.empty((BLOCK_EVENTS, 5)), np.zeros(2, np.int64)
     handles = np.zeros(native.HANDLES, np.int64)
     calls = np.array([f.address for f in (_accept, _handle, _observe, _start)], dtype=np.int64)
     observe(d, 0.0, y, rows[0])
     try:
-        if native.open_solver(handles, native.callbacks(), d, y, yp, dky, atol) != 0:
+        if native.open_solver(handles, known.model, known.steps, places(), d, y, yp, dky) != 0:
             return BROKEN
         flag = _library().gearidae_loop(
             _pointer(calls),

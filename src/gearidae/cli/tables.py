@@ -22,6 +22,19 @@ _GEAR_HEADINGS = ("what it did", "min rad/s", "max rad/s", "impacts", "wall s")
 _ROLLER_HEADINGS = ("what it did", "peak uN", "pull-off uN", "restitution", "impacts", "wall s")
 
 
+_LEDGER_ROWS = (
+    ("drive_work", "comes in"),
+    ("radius_work", "comes in as the radii of curvature change along the path of contact"),
+    ("model_change", "came in as the elastic contact model took over"),
+    ("drag_loss", "is lost"),
+    ("dry_loss", "is lost"),
+    ("damping_loss", "is lost"),
+    ("adhesion_loss", "is lost"),
+    ("stored_change", "is stored in contacts"),
+    ("kinetic_change", "is stored in motion"),
+)
+
+
 def show_outcomes(ds: xr.Dataset) -> None:
     """Print what each run of a dataset did.
 
@@ -48,13 +61,23 @@ def show_account(ds: xr.Dataset) -> None:
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run of gears; nothing is printed of any other.
+        A single run; of a roller, only where the energy went. Nothing is printed of a sweep.
     """
     if "account" in ds.attrs:
-        show_rows(_account_rows(json.loads(ds.attrs["account"])))
+        show_rows(_account_rows(json.loads(ds.attrs["account"]), with_energy="ledger" not in ds.attrs))
+    if "ledger" in ds.attrs:
+        show_rows(_ledger_rows(json.loads(ds.attrs["ledger"])))
 
 
-def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
+def _ledger_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
+    yield "Energy ledger", "", ""
+    for name, remark in _LEDGER_ROWS:
+        if kept[name] != 0.0:
+            yield name.replace("_", " "), f"{kept[name]:.5g} J", remark
+    yield "residual", f"{kept['residual']:.2g} J", f"bound {kept['residual_bound']:.2g} J"
+
+
+def _account_rows(told: dict[str, Any], *, with_energy: bool) -> Iterable[tuple[str, str, str]]:
     def number(name: str, scale: float = 1.0) -> str:
         return "-" if told[name] is None else f"{told[name] * scale:.4g}"
 
@@ -67,7 +90,7 @@ def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
     if told["largest_force"] is not None:
         when = f"at {number('largest_force_time', 1e3)} ms"
         yield "largest force", f"{number('largest_force', 1e6)} uN", when
-    if told["drive_work"] is not None:
+    if with_energy and told["drive_work"] is not None:
         yield "work of the drive", f"{told['drive_work']:.5g} J", "of which went into"
         for name in ("drag_loss", "dry_loss", "damping_loss", "kinetic_change"):
             yield name.replace("_", " "), f"{told[name]:.5g} J", ""

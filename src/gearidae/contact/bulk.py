@@ -21,18 +21,31 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearidae.errors import SceneError
 
-__all__ = ["LineGrid", "averaged_kernel", "bulk_influence", "line_grid", "strip_deflection"]
+__all__ = [
+    "STENCIL",
+    "LineGrid",
+    "averaged_kernel",
+    "between_nodes",
+    "bulk_influence",
+    "line_grid",
+    "place_nodes",
+    "strip_deflection",
+]
 
 Array = NDArray[np.float64]
 
 _FINE = 64
 """Straight pieces between two nodes that stand for the smooth pressure there."""
+_GRADING = 1.2
+STENCIL: Final = 8
+"""Nodes that a value between them is made of."""
 
 
 def averaged_kernel(distance: ArrayLike, width: float) -> Array:
@@ -159,7 +172,7 @@ class LineGrid:
     compliance: Array
 
 
-def line_grid(reach: float, width: float, modulus: float, nodes: int, grading: float = 1.2) -> LineGrid:
+def line_grid(reach: float, width: float, modulus: float, nodes: int, grading: float = _GRADING) -> LineGrid:
     """Nodes, weights and deflection coefficients for a smooth symmetric pressure.
 
     Nodes lie at ``x = reach sinh(c u)/sinh(c)``, u uniform over 0..1, and the pressure between them is the cosine
@@ -209,3 +222,52 @@ def line_grid(reach: float, width: float, modulus: float, nodes: int, grading: f
     simpson[[0, -1]] = 1.0
     weights = 2.0 / (3.0 * (fine.size - 1)) * (simpson * slope) @ cardinals
     return LineGrid(x, weights, bulk_influence(x, knots, width, modulus) @ cardinals)
+
+
+def place_nodes(reach: float, nodes: int) -> tuple[Array, Array]:
+    """Where `line_grid` has its nodes, and weights by the trapezoidal rule in u.
+
+    For a pressure that has died away at the end they are as good as those of the grid, and those of nodes and of points
+    between them go together.
+
+    Parameters
+    ----------
+    reach : float
+        Distance beyond which there is no pressure to speak of.
+    nodes : int
+        Nodes on one side, the middle included.
+
+    Returns
+    -------
+    x, weights : ndarray, shape (n,)
+    """
+    u = np.linspace(0.0, 1.0, nodes)
+    x = reach * np.sinh(_GRADING * u) / math.sinh(_GRADING)
+    weights = 2.0 * np.hypot(_GRADING * x, _GRADING * reach / math.sinh(_GRADING)) / (nodes - 1)
+    weights[[0, -1]] *= 0.5
+    return x, weights
+
+
+def between_nodes(nodes: int, finer: int) -> Array:
+    """Interpolation of an even function of u from nodes to points between them, by polynomials of degree seven.
+
+    Parameters
+    ----------
+    nodes : int
+        Nodes on one side, the middle included; at least `STENCIL`.
+    finer : int
+        Steps from point to point in one from node to node.
+
+    Returns
+    -------
+    ndarray, shape (finer * (nodes - 1) + 1, STENCIL)
+        Point m's shares of the nodes from ``min(max(m // finer - STENCIL // 2 + 1, 0), nodes - STENCIL)`` on.
+    """
+    matrix = np.zeros((finer * (nodes - 1) + 1, STENCIL))
+    for m in range(matrix.shape[0]):
+        first = min(m // finer - STENCIL // 2 + 1, nodes - STENCIL)
+        stencil = np.arange(first, first + STENCIL)
+        for k in stencil:  # left of the middle lie the same values as right of it
+            others = stencil[stencil != k]
+            matrix[m, abs(k) - max(first, 0)] += np.prod((m / finer - others) / (k - others))
+    return matrix

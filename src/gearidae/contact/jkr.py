@@ -181,10 +181,26 @@ def tabor_parameter(surface: Surface, eps: float = 0.165e-9) -> float:
 
 
 def tabor_regime(mu: float) -> Literal["jkr", "transition", "dmt"]:
-    """Name the adhesion regime of a Tabor parameter: JKR from 5 up, DMT up to 0.1, transition between."""
-    if mu >= 5.0:
+    """Name the adhesion regime of a Tabor parameter.
+
+    Parameters
+    ----------
+    mu : float
+        Tabor's parameter [1], see `tabor_parameter`.
+
+    Returns
+    -------
+    {"jkr", "transition", "dmt"}
+        JKR from 5 up and DMT up to 0.1, as in Johnson and Greenwood's adhesion map; the transition between. The map's
+        bounds have one digit, and `mu` is held against them at that: JKR begins at 4.5, DMT ends below 0.15.
+
+    References
+    ----------
+    K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326-333, doi:10.1006/jcis.1997.4984.
+    """
+    if mu >= 4.5:
         return "jkr"
-    return "dmt" if mu <= 0.1 else "transition"
+    return "dmt" if mu < 0.15 else "transition"
 
 
 def displacement(s: ArrayLike) -> NDArray[np.float64]:

@@ -36,16 +36,29 @@ from gearidae.contact.jkr import AsperityLaw, displacement, jkr_load, jkr_root, 
 from gearidae.contact.psi import psi_derivatives
 
 __all__ = [
+    "DEGREE",
     "GAP_HIGH",
     "GAP_LOW",
     "HEADER",
+    "H_COUNT",
+    "H_END",
+    "H_LOW",
+    "H_MODE",
+    "H_PARTIAL",
+    "H_PIECES",
     "H_STRETCH",
+    "KNOTS_PER_SIGMA",
+    "MODE_INTEGRATED",
+    "MODE_TABLE",
     "N_LOADING",
     "STRETCH_HIGH",
     "Kernel",
     "branch_length",
     "branch_value",
     "force_scale",
+    "hermite_matrix",
+    "integrated_value",
+    "kernel_table",
     "law_table",
     "law_value",
     "loading_value",
@@ -153,7 +166,7 @@ def law_table(stretch_limit: float, asperity: AsperityLaw = "jkr", kernel: Kerne
             parts.append(_partial_pieces(joined, end, stretch_limit, pieces, kernel).ravel())
         else:
             header[[H_MODE, H_PSI]] = MODE_INTEGRATED, following
-            parts.append(_kernel_pieces(kernel))
+            parts.append(kernel_table(kernel))
     table = np.concatenate(parts)
     table.setflags(write=False)
     return table
@@ -244,7 +257,7 @@ def _scaled(x: Floats, derivatives: Floats, positive: bool) -> Floats:
 
 
 @lru_cache(maxsize=1)
-def _hermite() -> Floats:
+def hermite_matrix() -> Floats:
     """Matrix from (f, h f', h^2 f'', h^3 f''') at both ends of a piece to its powers of u in 0..1."""
     rows = [
         [math.perm(p, k) * (u ** (p - k) if p >= k else 0.0) for p in range(8)]
@@ -276,7 +289,7 @@ def _pieces(knots: Floats, derivatives: Floats) -> Floats:
         for span in (slice(None, -1), slice(1, None))
         for k in range(4)
     ]
-    return np.moveaxis(np.tensordot(_hermite(), np.stack(ends), axes=1), 0, 1)
+    return np.moveaxis(np.tensordot(hermite_matrix(), np.stack(ends), axes=1), 0, 1)
 
 
 def _partial_pieces(joined: Floats, end: Floats, stretch_limit: float, pieces: int, kernel: Kernel) -> Floats:
@@ -298,7 +311,7 @@ def _partial_pieces(joined: Floats, end: Floats, stretch_limit: float, pieces: i
 
 
 @lru_cache(maxsize=2)
-def _kernel_pieces(kernel: Kernel) -> Floats:
+def kernel_table(kernel: Kernel) -> Floats:
     """Pieces of the kernel itself, for the branch that is integrated when asked for."""
     low = GAP_LOW - STRETCH_HIGH - 1.0
     knots = low + np.arange(round((GAP_HIGH - low) * KNOTS_PER_SIGMA) + 1) / KNOTS_PER_SIGMA
@@ -479,8 +492,18 @@ def _partial(table: Floats, joined: float, stretch: float) -> tuple[float, float
 
 
 @compiled
-def _integrated(table: Floats, joined: float, stretch: float) -> tuple[float, float]:
-    """t(Z, S) and its slope in S by composite Gauss quadrature over the asperity's root: any stretch limit."""
+def integrated_value(table: Floats, joined: float, stretch: float, energy: bool) -> tuple[float, float]:
+    """t(Z, S) and its slope in S by composite Gauss quadrature over the asperity's root: any stretch limit.
+
+    Parameters
+    ----------
+    table : ndarray
+        From `law_table`, of a surface whose partly stretched branch is not tabulated.
+    joined, stretch : float
+        Z and S over roughness [1], 0 < S < D.
+    energy : bool
+        Return the integral of t from no stretch to S, and t, instead.
+    """
     limit = table[H_STRETCH]
     offset = int(table[H_PSI])
     low = table[offset]
@@ -504,9 +527,19 @@ def _integrated(table: Floats, joined: float, stretch: float) -> tuple[float, fl
             cube = (1.0 + u) ** 3
             y = joined + stretch + limit * (e * e - 1.0)
             value, rate = _septic(table, offset + 1, y, low, count)
-            weight = 0.5 * (b - a) * _GAUSS_W[i] * scale * cube * (cube - 6.0) / 9.0 * 2.0 * limit * e
-            total += weight * value
-            slope += weight * rate
+            weight = 0.5 * (b - a) * _GAUSS_W[i] * scale * 2.0 * limit * e
+            pull = weight * cube * (cube - 6.0) / 9.0
+            if energy:
+                # what it took to stretch this asperity: the integral of its load, a polynomial in t = 1 + u
+                fourth = cube * (1.0 + u)
+                lifted = fourth * ((0.1 * cube - 1.0) * cube + 1.5) + 3.6 * _TOUCH
+                total -= weight * limit * (4.0 / 27.0) * lifted * value
+                slope += pull * value
+            else:
+                total += pull * value
+                slope += pull * rate
+    if energy:
+        return total, slope
     # S moves both the heights and the lower end, where the load is that of stretch S
     q = math.sqrt(3.0) * e_low
     u = min(q / math.sqrt(6.0), math.sqrt(q))
@@ -520,6 +553,7 @@ def _integrated(table: Floats, joined: float, stretch: float) -> tuple[float, fl
 
 
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
+_TOUCH: Final = 4.0 ** (1.0 / 3.0)  # t of an asperity that is not stretched
 
 
 @compiled
@@ -533,7 +567,7 @@ def stretched_value(table: Floats, gap: float, joined: float) -> tuple[float, fl
         return _septic(table, int(table[H_END]), gap - limit, table[H_LOW], int(table[H_COUNT]))
     if table[H_MODE] == MODE_TABLE:
         return _partial(table, joined, stretch)
-    return _integrated(table, joined, stretch)
+    return integrated_value(table, joined, stretch, False)
 
 
 @compiled

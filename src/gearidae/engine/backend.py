@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import cache_folder
-from gearidae.engine.changeover import change_over
+from gearidae.engine.changeover import change_over, deepen
 from gearidae.engine.problem import Problem, make_problem
 from gearidae.engine.run import Block, Ending, Tally
 from gearidae.engine.sundials import unavailable
 from gearidae.errors import SceneError
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Solution, Statistics
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Ledger, Solution, Statistics
 from gearidae.scene import Scene, preset
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "Start",
     "choose_backend",
     "follow",
+    "ledger_at",
     "outlook",
     "ready_driver",
     "run_blocks",
@@ -105,7 +106,7 @@ def run_blocks(
     """
     driver = ready_driver(backend)
     if problem.elastic is None:
-        yield from driver.run(problem, rtol, samples, tally, resume)
+        yield from _run_bodies(problem, rtol, samples, driver, tally, resume)
         return
     rigid = resume is None or problem.fits(resume, driver.COUNTERS)
     if rigid and not (resume is not None and problem.outgrown(resume)):
@@ -122,7 +123,31 @@ def run_blocks(
             "the bodies give way more than the asperity model allows for: going on with the elastic model"
         )
         resume = change_over(problem, bodies, resume)
-    yield from driver.run(bodies, rtol, samples, tally, resume)
+    yield from _run_bodies(bodies, rtol, samples, driver, tally, resume)
+
+
+def _run_bodies(
+    problem: Problem,
+    rtol: float,
+    samples: int,
+    driver: ModuleType,
+    tally: Tally,
+    resume: NDArray[np.float64] | None,
+) -> Iterator[Block]:
+    """Run a problem that stays with its contact model; nodes that are pressed too deep are laid out anew."""
+    if resume is not None:
+        problem = problem.at_depth(resume, driver.COUNTERS)
+    while True:
+        if resume is not None and problem.deeper is not None and problem.outgrown(resume):
+            deeper = problem.deeper()
+            resume = deepen(problem, deeper, resume)
+            problem = deeper
+        for block in driver.run(problem, rtol, samples, tally, resume):
+            resume = block.checkpoint
+            yield block
+        if tally.ending is not Ending.TOO_DEEP or problem.deeper is None or resume is None:
+            return
+        tally.ending = Ending.FINISHED
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,12 +186,15 @@ class Ended:
         The status in a sentence; empty when finished.
     reached : float
         Simulated time reached [s].
+    ledger : Ledger, optional
+        The newest energy ledger; None if the run did not begin.
     """
 
     statistics: Statistics
     status: str
     message: str
     reached: float
+    ledger: Ledger | None = None
 
 
 def follow(
@@ -204,6 +232,7 @@ def follow(
     begin = begin or Start()
     tally, reached, seen = replace(begin.tally), begin.time, begin.events
     status = message = ""
+    ledger: Ledger | None = None
     skipped: dict[str, int] = {}
     started = time.perf_counter()
     try:
@@ -216,14 +245,15 @@ def follow(
         ):
             take(block, tally, begin.wall_time + time.perf_counter() - started)
             reached = block.time
+            ledger = block.ledger or ledger
             seen += len(block.events)
             if on_progress is not None:
                 on_progress(reached, seen)
-        status, message = tally.ending.status, tally.ending.message
+        status, message = tally.ending.status, tally.message
     except KeyboardInterrupt:
         status, message = "interrupted", "interrupted by the user"
     wall_time = begin.wall_time + time.perf_counter() - started
-    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached)
+    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached, ledger)
 
 
 def statistics_of(tally: Tally, wall_time: float, backend: str, skipped: dict[str, int]) -> Statistics:
@@ -292,6 +322,7 @@ def solve(
         status=ended.status,
         message=ended.message,
         reached=ended.reached,
+        ledger=ended.ledger,
     )
 
 
@@ -325,6 +356,32 @@ def outlook(
         problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
     size = problem.checkpoint(0.0, problem.start, np.zeros(counters, np.int64)).size
     return size, problem.skipped
+
+
+def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Ledger:
+    """Return the energy ledger at a checkpoint of a run.
+
+    Parameters
+    ----------
+    scene : Scene
+    checkpoint : ndarray
+        From a `Block` of a run of this scene.
+    backend : {"native", "sksundae"}
+        The driver that ran.
+
+    Raises
+    ------
+    SceneError
+        If the checkpoint is not of this scene.
+    """
+    counters = np.zeros(ready_driver(backend).COUNTERS, np.int64)
+    problem = make_problem(scene)
+    if problem.elastic is not None and not problem.fits(checkpoint, counters.size):
+        problem = problem.elastic()
+    problem = problem.at_depth(checkpoint, counters.size)
+    state = np.empty(problem.start.size)
+    time = problem.restore(checkpoint, state, counters)
+    return problem.ledger(time, state, np.zeros_like(state))
 
 
 def _events(table: NDArray[np.float64]) -> Events:

@@ -6,8 +6,9 @@ z of each pair, g its gap and W its force, Newton's equations read
     A x + sum over pairs of beta (rho . z) = b,        D z - c (gamma . x) = b_z        (for each pair)
 
 with beta what the motion's equations take of the force, rho its slopes in the deflections, gamma the slopes of the gap
-in the motion, ``D = 1 - kappa dp/dh`` and ``c = kappa dp/dh 1``. Each pair's z is eliminated by its own inverse of D,
-and what is left is the small system of the motion. A pair out of reach costs nothing.
+in the motion, ``D = 1 - kappa dp/dh`` and ``c = kappa dp/dh 1``, dp/dh a matrix. Each
+pair's z is eliminated by its own inverse of D, and what is left is the small system of the motion. A pair out of reach
+costs nothing.
 
 All of it lies in one flat array, which SUNDIALS keeps as the data of a matrix: sizes, A (or its inverse), and a
 block for each pair's history.
@@ -23,7 +24,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine.mesh import first_pair, history_slot, last_pair, pair_gap
-from gearidae.engine.nodes import influence, row
+from gearidae.engine.nodes import influence, stiffness_matrix
 from gearidae.engine.residual import jacobian
 
 __all__ = [
@@ -114,20 +115,24 @@ def _assemble_pair(d: Floats, slot: int, store: Floats) -> int:
     start = _FIRST + size * ((slot - int(d[at.HISTORIES])) // int(d[at.HISTORY]))
     store[start : start + _RHO] = 0.0
     store[start] = 1.0
-    first = row(d, slot, at.ROW_SLOPE)
-    slope = d[first : first + n]
     weights = int(d[at.GRID_AT]) + n
     rho = store[start + _RHO : start + _RHO + n]
     c = store[start + _RHO + n : start + _RHO + 2 * n]
     block = store[start + _RHO + 2 * n : start + size].reshape(n, n)  # column by column
-    influence(d, d[slot + at.LENGTH], slope, block)
-    c[:] = 0.0
-    for k in range(n):
-        rho[k] = d[slot + at.LENGTH] * d[weights + k] * slope[k]
+    slopes, kappa = np.empty((n, n)), np.empty((n, n))
+    stiffness_matrix(d, slot, slopes)
+    influence(d, d[slot + at.LENGTH], kappa)
+    rho[:] = c[:] = block[:] = 0.0
+    for j in range(n):
+        for k in range(n):
+            slope = slopes[k, j]
+            if slope != 0.0:
+                rho[j] += d[slot + at.LENGTH] * d[weights + k] * slope
+                for i in range(n):
+                    block[j, i] -= kappa[k, i] * slope
         for i in range(n):
-            c[i] += block[k, i]
-            block[k, i] = -block[k, i]
-        block[k, k] += 1.0
+            c[i] -= block[j, i]
+        block[j, j] += 1.0
     return start
 
 

@@ -1,7 +1,9 @@
-"""What SUNDIALS calls: residual, Jacobian, guard and, for an elastic contact, its linear solver, as C functions."""
+"""What SUNDIALS calls, as C functions: residual, Jacobian, guard, weights and linear solver."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,12 +11,14 @@ from numba import carray, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled_callback
+from gearidae.engine import layout as at
+from gearidae.engine import small
 from gearidae.engine import sundials as sun
 from gearidae.engine.blocks import assemble, factorise, solve_blocks
 from gearidae.engine.events import guard
 from gearidae.engine.residual import jacobian, residual
 
-__all__ = ["callbacks", "linear_steps"]
+__all__ = ["Callbacks", "callbacks"]
 
 # This loads the library as well, without which the functions below would abort the process.
 if _reason := sun.unavailable():
@@ -22,7 +26,26 @@ if _reason := sun.unavailable():
 
 Ints = NDArray[np.int64]
 
+_PTR, _INT, _REAL = types.intp, types.int32, types.float64
 _REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+
+
+@dataclass(frozen=True, slots=True)
+class Callbacks:
+    """Addresses of what SUNDIALS calls.
+
+    Attributes
+    ----------
+    model : ndarray of int64, shape (4,)
+        Residual, Jacobian, guard, error weights.
+    steps : ndarray of int64, shape (2,)
+        The linear solver's set-up and solution.
+    """
+
+    model: Ints
+    steps: Ints
+
+
 _JACOBIAN = types.int32(
     types.float64,
     types.float64,
@@ -35,67 +58,98 @@ _JACOBIAN = types.int32(
     types.intp,
     types.intp,
 )
-_HUGE = 1 << 40  # carray wants a length; the callbacks never look at it
 
 
 @compiled_callback(types.int32(types.float64, types.intp, types.intp, types.intp, _REALS))
 def _residual(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
-    d = carray(data, (_HUGE,))
+    d = carray(data, (sun.MANY,))
     residual(
         d,
         t,
-        carray(sun.N_VGetArrayPointer(yy), (_HUGE,)),
-        carray(sun.N_VGetArrayPointer(yp), (_HUGE,)),
-        carray(sun.N_VGetArrayPointer(rr), (_HUGE,)),
+        sun.numbers(yy),
+        sun.numbers(yp),
+        sun.numbers(rr),
     )
     return 0
 
 
 @compiled_callback(_JACOBIAN)
 def _jacobian(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-    d = carray(data, (_HUGE,))
-    jacobian(
-        d, t, cj, carray(sun.N_VGetArrayPointer(yy), (_HUGE,)), carray(sun.SUNDenseMatrix_Data(matrix), (16,))
-    )
+    d = carray(data, (sun.MANY,))
+    jacobian(d, t, cj, sun.numbers(yy), carray(sun.SUNDenseMatrix_Data(matrix), (16,)))
     return 0
 
 
 @compiled_callback(_JACOBIAN)
 def _blocks(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-    d = carray(data, (_HUGE,))
-    store = carray(sun.SUNDenseMatrix_Data(matrix), (_HUGE,))
-    assemble(d, t, cj, carray(sun.N_VGetArrayPointer(yy), (_HUGE,)), store)
+    d = carray(data, (sun.MANY,))
+    store = carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
+    assemble(d, t, cj, sun.numbers(yy), store)
     return 0
 
 
 @compiled_callback(types.int32(types.intp, types.intp))
 def _setup(linear, matrix):  # type: ignore[no-untyped-def]
-    return factorise(carray(sun.SUNDenseMatrix_Data(matrix), (_HUGE,)))
+    return factorise(carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)))
 
 
 @compiled_callback(types.int32(types.intp, types.intp, types.intp, types.intp, types.float64))
 def _solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
     solve_blocks(
-        carray(sun.SUNDenseMatrix_Data(matrix), (_HUGE,)),
-        carray(sun.N_VGetArrayPointer(b), (_HUGE,)),
-        carray(sun.N_VGetArrayPointer(x), (_HUGE,)),
+        carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)),
+        sun.numbers(b),
+        sun.numbers(x),
     )
     return 0
 
 
 @compiled_callback(types.int32(types.float64, types.intp, types.intp, _REALS, _REALS))
 def _guard(t, yy, yp, out, data):  # type: ignore[no-untyped-def]
-    d = carray(data, (_HUGE,))
-    carray(out, (1,))[0] = guard(d, t, carray(sun.N_VGetArrayPointer(yy), (_HUGE,)))
+    d = carray(data, (sun.MANY,))
+    carray(out, (1,))[0] = guard(d, t, sun.numbers(yy))
     return 0
 
 
-def callbacks(elastic: bool = False) -> Ints:
-    """Addresses of residual, Jacobian and guard."""
-    slopes = _blocks if elastic else _jacobian
-    return np.array([_residual.address, slopes.address, _guard.address], dtype=np.int64)
+@compiled_callback(_INT(_PTR, _PTR, _REALS))
+def _weights(yy, weights, data):  # type: ignore[no-untyped-def]
+    d, out = carray(data, (sun.MANY,)), sun.numbers(weights)
+    first = int(d[at.WEIGHTS_AT])
+    for i in range(int(d[at.STATES])):
+        out[i] = d[first + i]
+    return 0
 
 
-def linear_steps() -> tuple[int, int]:
-    """Addresses of set-up and solution by blocks."""
-    return _setup.address, _solve.address
+def _few_steps(n: int) -> tuple[Any, ...]:
+    """Make the set-up and solution of n linear equations."""
+
+    @compiled_callback(_INT(_PTR, _PTR))
+    def set_up(linear, matrix):  # type: ignore[no-untyped-def]
+        return small.factorise(n, carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)))
+
+    @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL))
+    def solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
+        store = carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
+        small.solve(n, store, sun.numbers(b), sun.numbers(x))
+        return 0
+
+    return set_up, solve
+
+
+@cache
+def callbacks(n: int, elastic: bool) -> Callbacks:
+    """Return the functions for n states; they are made once.
+
+    Parameters
+    ----------
+    n : int
+        States, those of the nodes included.
+    elastic : bool
+        Whether the contact is elastic, and the equations solved by blocks.
+    """
+    steps = (_setup, _solve) if elastic else _few_steps(n)
+    model = (_residual, _blocks if elastic else _jacobian, _guard, _weights)
+    _kept.append(steps)
+    return Callbacks(*(np.array([f.address for f in part], dtype=np.int64) for part in (model, steps)))
+
+
+_kept: list[tuple[Any, ...]] = []  # an address alone would not keep its function alive

@@ -1,4 +1,4 @@
-"""From the asperity model to the elastic one in the middle of a run."""
+"""From one contact model, or one layout of nodes, to another in the middle of a run."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from gearidae.engine import layout as at
+from gearidae.engine.ledger import carry_ledger
 from gearidae.engine.mesh import history_slot
-from gearidae.engine.nodes import meet_nodes, row
+from gearidae.engine.nodes import book_points, first_unknown, meet_nodes, point_count, point_weights, row
 from gearidae.engine.problem import Problem
 from gearidae.engine.settle import settle_nodes
 
-__all__ = ["change_over"]
+__all__ = ["change_over", "deepen"]
 
 Floats = NDArray[np.float64]
 
@@ -55,12 +57,67 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     settle_nodes(d, time, y)
     _join(d, y)
     d[at.LAST_TIME] = time
+    carry_ledger(source, state, d, y)
     return new.checkpoint(time, y, counters)
 
 
+def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
+    """Checkpoint from which nodes that reach further go on where those of a contact have been pressed too deep.
+
+    Everything is kept but for the nodes' places: joined heights are carried to the new ones by interpolation along the
+    contact, and deflections are solved for.
+
+    Parameters
+    ----------
+    old : Problem
+        The elastic problem so far.
+    new : Problem
+        The same, laid out for deeper contacts, with as many nodes.
+    checkpoint : ndarray
+        Where the old one stands.
+    """
+    d, source = new.data, old.data
+    changing = int(source[at.LOADING_AT])
+    state = np.empty(old.start.size)
+    counters = np.empty(checkpoint.size - changing - state.size - 1, np.int64)
+    time = old.restore(checkpoint, state, counters)
+    lowest = d[at.LOWEST_GAP]
+    d[:changing] = source[:changing]
+    d[[at.LOWEST_GAP, at.PASSED]] = lowest, 0.0
+    nodes = int(d[at.NODES])
+    points, grid, weights = point_count(nodes), int(d[at.GRID_AT]), point_weights(d)
+    kinds = [(at.ROW_SHARE, nodes, grid, 0.0)]
+    kinds += [(at.ROW_JOINED + material, points, weights - points, 1.0) for material in range(2)]
+    y = state.copy()
+    for k in range(int(d[at.TOTAL_SLOTS])):
+        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * k
+        first = first_unknown(d, slot)
+        y[first : first + nodes] = _along(source, d, grid, state[first : first + nodes])
+        for kind, count, profile, curved in kinds:
+            own = row(d, slot, kind)
+            before = source[own : own + count] - curved * source[profile : profile + count]
+            d[own : own + count] = _along(source, d, profile, before) + curved * d[profile : profile + count]
+    settle_nodes(d, time, y)
+    for k in range(int(d[at.TOTAL_SLOTS])):
+        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * k
+        first, gaps = first_unknown(d, slot), row(d, slot, at.ROW_GAP)
+        d[gaps : gaps + nodes] = d[slot + at.LAST_GAP] + d[grid : grid + nodes] + y[first : first + nodes]
+        for material in range(2):
+            book_points(d, slot, material)
+    carry_ledger(source, state, d, y)
+    return new.checkpoint(time, y, counters)
+
+
+def _along(source: Floats, d: Floats, profile: int, values: Floats) -> Floats:
+    """Carry values from places along the old contact to those along the new one, flat beyond the last."""
+    span = slice(profile, profile + values.size)
+    here, there = np.sqrt(source[span]), np.sqrt(d[span])
+    return np.asarray(PchipInterpolator(here, values)(np.minimum(there, here[-1])))
+
+
 def _join(d: Floats, y: Floats) -> None:
-    """Stretch every node as its pair is stretched."""
-    n = int(d[at.NODES])
+    """Stretch every point as its pair is stretched."""
+    points = point_count(int(d[at.NODES]))
     for k in range(int(d[at.TOTAL_SLOTS])):
         slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * k
         if math.isnan(d[slot + at.PAIR]):
@@ -69,4 +126,7 @@ def _join(d: Floats, y: Floats) -> None:
         meet_nodes(d, slot, y, gap)
         for material in range(2):
             first = row(d, slot, at.ROW_JOINED + material)
-            d[first : first + n] += d[slot + at.JOINED + material] - gap
+            d[first : first + points] += d[slot + at.JOINED + material] - gap
+            if d[slot + at.JOINED + material] < gap:
+                d[slot + at.STRETCHED] = 1.0
+            book_points(d, slot, material)

@@ -14,23 +14,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
-from gearidae.contact.bulk import LineGrid, line_grid
-from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve
+from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_nodes
 from gearidae.contact.jkr import asperity_of, contact_modulus
 from gearidae.contact.law import GAP_HIGH, GAP_LOW, law_table, law_value
+from gearidae.engine.layout import FINER
+from gearidae.engine.nodes import point_count
 from gearidae.scene import Scene
 
-__all__ = ["NODES", "RIGID_DEFLECTION", "Footing", "NodeGrid", "deepest_gap", "node_grid", "rigid_limit"]
+__all__ = [
+    "DEPTH_HIGH",
+    "NODES",
+    "RIGID_DEFLECTION",
+    "Footing",
+    "NodeGrid",
+    "deepest_gap",
+    "node_grid",
+    "rigid_limit",
+]
 
 Floats = NDArray[np.float64]
 
-NODES = 16
+NODES = 12
 """Nodes on one side of a contact, the middle included.
 
-Measured on the rollers of Figs. 2 and 3 against 40 nodes, as shares of the largest force: 12 nodes hold the force to
-3e-8 while teeth close, 16 to 2e-8. On the way back, while the place where asperities let go travels across the nodes,
-12 are off by 8e-5 at most, 16 by 4e-5, 24 by 2e-5, 32 by 1e-5; the energy lost is right to 4e-7 with 12.
+As shares of the largest force, on the rollers of Figs. 2 and 3 against 48 nodes: 12 hold the force to 4e-8 while teeth
+close and to 4e-6 while asperities let go, 16 to 2e-8 and 2e-6.
 """
+NODES_BY_DEPTH = ((-4.0, 12), (-13.0, 16), (-math.inf, 24))
+"""Nodes of a contact that is pressed to a gap, in roughnesses: the deeper, the sharper its edge."""
+DEPTH_HIGH = -GAP_LOW - 1.0
+"""Depth of the deepest layout, in roughnesses."""
 TAIL = 5.5
 """Roughnesses of gap at the outermost node, beyond the reach of stretched asperities, in a contact pressed to zero."""
 ORDERS = 6
@@ -38,6 +51,10 @@ ORDERS = 6
 RIGID_DEFLECTION = 0.02
 """Deflection in the middle, in roughnesses, below which the asperity model is taken to be enough: the asperities'
 force at the same gap is then at most about 5 % too large."""
+_FAR = 10.0  # roughnesses from which a static curve is followed, and how
+_STEP = 0.25
+_TRIES = 25
+_SETTLED = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +75,8 @@ class Footing:
         That part of it which is certain to be taken up by the contact [J].
     load : float
         Force that is to be carried in any case [N].
+    start : float
+        Gap at which the closest teeth begin, in roughnesses.
     """
 
     width: float
@@ -67,6 +86,7 @@ class Footing:
     energy: float
     impact: float
     load: float
+    start: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +100,8 @@ class NodeGrid:
     middle, half : float
         Of the range of lengths.
     body : ndarray
-        Profile ``s^2``, weights, and influence coefficients column by column for each power.
+        Of the nodes: profile ``s^2``, weights, influence coefficients column by column for each power. Of the points
+        between them: profile, weights, and each point's shares of the nodes around it.
     """
 
     nodes: int
@@ -97,7 +118,7 @@ def _line_grid(reach: float, width: float, modulus: float, nodes: int) -> LineGr
 
 
 def node_grid(
-    scene: Scene, footing: Footing, force_unit: float, deepest: float, nodes: int = NODES
+    scene: Scene, footing: Footing, force_unit: float, deepest: float, nodes: int | None = None
 ) -> NodeGrid:
     """Lay out the nodes of every pair.
 
@@ -110,8 +131,9 @@ def node_grid(
     deepest : float
         Lowest gap that will occur, in roughnesses.
     nodes : int, optional
-        Nodes on one side, the middle included.
+        Nodes on one side, the middle included; by depth if not given.
     """
+    nodes = nodes or next(count for gap, count in NODES_BY_DEPTH if deepest >= gap)
     sigma = scene.surface.roughness
     modulus = contact_modulus(scene.surface.youngs_modulus, scene.surface.poisson_ratio)
     unit = math.sqrt(2.0 * footing.radius * sigma)
@@ -125,9 +147,11 @@ def node_grid(
     pressure = force_unit / (footing.width * unit)
     values = np.stack([grid.compliance.T for grid in grids]) * (pressure / sigma)
     powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
-    start = _line_grid(reach, footing.width, modulus, nodes)
-    body = np.concatenate([(start.x / unit) ** 2, start.weights / unit, powers.ravel()])
-    return NodeGrid(nodes, orders, middle, half, body)
+    x, weights = place_nodes(reach / unit, nodes)
+    finer, finer_weights = place_nodes(reach / unit, point_count(nodes))
+    between = between_nodes(nodes, FINER)
+    body = [x**2, weights, powers.ravel(), finer**2, finer_weights, between.ravel()]
+    return NodeGrid(nodes, orders, middle, half, np.concatenate(body))
 
 
 def _stretch(scene: Scene) -> float:
@@ -142,43 +166,76 @@ def _stretch(scene: Scene) -> float:
 def deepest_gap(scene: Scene, footing: Footing) -> float:
     """Lowest gap to which energy and load press an elastic contact, in roughnesses, with a little to spare.
 
-    The static curve is followed until its work has taken up the energy, or to its fold, or to the deepest
-    tabulated gap.
+    The static curve of a closing contact is followed until its work has taken up the energy, or to its fold, or to the
+    deepest tabulated gap; and no less deep than a scene begins.
     """
-    sigma = scene.surface.roughness
-    radius = footing.radius * footing.longest**2
     depth = 4.0
     while True:
-        gap = np.linspace(10.0, -depth, 4 * round(10.0 + depth) + 1)
-        try:
-            force = elastic_line_curve(
-                gap * sigma,
-                radius,
-                footing.width,
-                scene.surface,
-                asperity=scene.contact.asperity,
-                coated_surface=scene.coated_surface,
-                sam_fraction=scene.coating.sam_fraction,
-                nodes=12,
-            ).force
-        except ElasticFoldError as fold:
-            return fold.gap / sigma - 0.5
-        step = (gap[0] - gap[1]) * sigma
-        work = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * step)])
-        enough = np.flatnonzero((work > footing.energy) & (force > footing.load))
-        if enough.size:
-            return float(gap[enough[0]]) - 0.5
-        if depth >= -GAP_LOW - 1.0:
-            return GAP_LOW + 1.0
-        depth = min(2.0 * depth, -GAP_LOW - 1.0)
+        lowest = _followed(scene, footing, depth)
+        if not math.isnan(lowest) or depth >= DEPTH_HIGH:
+            lowest = -DEPTH_HIGH if math.isnan(lowest) else lowest
+            return max(min(lowest, footing.start) - 0.5, -DEPTH_HIGH)
+        depth = min(2.0 * depth, DEPTH_HIGH)
+
+
+def _followed(scene: Scene, footing: Footing, depth: float) -> float:
+    """Gap at which a closing contact has taken up its energy or folds; NaN if it does neither down to a depth."""
+    grid, middle, surfaces = _static(scene, footing, -depth)
+    n = grid.nodes
+    profile, weights = grid.body[:n], grid.body[n : 2 * n]
+    deflection = np.zeros(n)
+    work = last = 0.0
+    for gap in np.arange(_FAR, -depth - 0.5 * _STEP, -_STEP):
+        change = math.inf
+        for _ in range(_TRIES):
+            pressure, slope = np.zeros(n), np.zeros(n)
+            for table, scale in surfaces:
+                q = _loading(table, gap + profile + deflection)
+                pressure += scale * q[0]
+                slope += scale * q[1]
+            matrix = np.eye(n) - middle * slope
+            step = np.linalg.solve(matrix, deflection - middle @ pressure)
+            deflection = deflection - step
+            change = float(np.max(np.abs(step)))
+            if change < _SETTLED:
+                break
+        if not change < _SETTLED or np.linalg.det(matrix) <= 0.0:
+            return float(gap) + _STEP
+        force = float(footing.longest * weights @ pressure)
+        work += 0.5 * (force + last) * _STEP * scene.surface.roughness
+        last = force
+        if work > footing.energy and force > footing.load:
+            return float(gap)
+    return math.nan
+
+
+def _static(
+    scene: Scene, footing: Footing, deepest: float
+) -> tuple[NodeGrid, Floats, list[tuple[Floats, float]]]:
+    """Nodes of the widest contact in newtons, its influence coefficients, and its surfaces' laws with their scales."""
+    sigma, fraction = scene.surface.roughness, scene.coating.sam_fraction
+    grid = node_grid(scene, footing, 1.0, deepest, NODES)
+    n = grid.nodes
+    powers = grid.body[2 * n : (2 + grid.orders * n) * n].reshape(grid.orders, n, n)
+    x = (footing.longest - grid.middle) / grid.half
+    kappa = np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
+    unit = footing.width * math.sqrt(2.0 * footing.radius * sigma)
+    surfaces = []
+    for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
+        if share > 0.0:
+            tip = asperity_of(surface)
+            table = law_table(tip.stretch_limit / sigma, scene.contact.asperity, "plane")
+            scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
+            surfaces.append((table, scale))
+    return grid, kappa, surfaces
 
 
 @compiled
 def _loading(table: Floats, gaps: Floats) -> Floats:
-    """Pressures on the way in, one for each gap."""
-    out = np.empty(gaps.size)
+    """Pressures on the way in and their slopes, one for each gap."""
+    out = np.empty((2, gaps.size))
     for i in range(gaps.size):
-        out[i] = law_value(table, gaps[i], gaps[i])[0]
+        out[0, i], out[1, i] = law_value(table, gaps[i], gaps[i])
     return out
 
 
@@ -191,29 +248,20 @@ def rigid_limit(scene: Scene, footing: Footing) -> tuple[float, bool]:
         Last gap, an eighth of a roughness apart, at which the asperities' pressure deflects the middle of the
         widest contact by no more than `RIGID_DEFLECTION`; in roughnesses.
     enough : bool
-        Whether neither an impact nor the load is certain to press the teeth closer than that.
+        Whether neither an impact nor the load is certain to press the teeth closer than that, nor do they begin there.
     """
-    sigma, fraction = scene.surface.roughness, scene.coating.sam_fraction
-    grid = node_grid(scene, footing, 1.0, -4.0)
-    n = grid.nodes
-    profile, weights = grid.body[:n], grid.body[n : 2 * n]
-    powers = grid.body[2 * n :].reshape(grid.orders, n, n)
-    x = (footing.longest - grid.middle) / grid.half
-    middle = (powers[:, :, 0] * x ** np.arange(grid.orders)[:, None]).sum(axis=0)
-    unit = footing.width * math.sqrt(2.0 * footing.radius * sigma)
+    grid, kappa, surfaces = _static(scene, footing, -4.0)
+    profile, weights = grid.body[: grid.nodes], grid.body[grid.nodes : 2 * grid.nodes]
     work, last = 0.0, 0.0
     step = 0.125
     for gap in np.arange(GAP_HIGH, -4.0, -step):
-        pressure = np.zeros(n)
-        for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
-            if share > 0.0:
-                tip = asperity_of(surface)
-                table = law_table(tip.stretch_limit / sigma, scene.contact.asperity, "plane")
-                scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
-                pressure += scale * _loading(table, gap + profile)
+        pressure = np.zeros(grid.nodes)
+        for table, scale in surfaces:
+            pressure += scale * _loading(table, gap + profile)[0]
         force = float(footing.longest * weights @ pressure)
-        work += 0.5 * (force + last) * step * sigma
+        work += 0.5 * (force + last) * step * scene.surface.roughness
         last = force
-        if abs(middle @ pressure) > RIGID_DEFLECTION:
-            return float(gap) + step, bool(work > footing.impact and force > footing.load)
-    return -4.0, True
+        if abs(kappa[0] @ pressure) > RIGID_DEFLECTION:
+            deep_enough = work > footing.impact and force > footing.load
+            return float(gap) + step, bool(deep_enough and footing.start > gap + step)
+    return -4.0, footing.start > -4.0

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.engine import layout as at
+from gearidae.engine.ledger import book_joining, kinetic_energy, see_radius
 from gearidae.engine.mesh import (
     first_pair,
     history_slot,
@@ -190,6 +191,8 @@ def _meet(d: Floats, slot: int, pair: int, gap: float, middle: float) -> None:
                 set_joined(d, slot, material, middle)
     for material in range(2):
         d[slot + at.JOINED + material] = middle  # beyond the cut-off its branch does not matter
+        if gap >= d[at.CUTOFF]:
+            d[slot + at.BOOKED + material] = 0.0
         d[slot + at.TORN + material] = 0.0
     d[slot + at.WAY] = 0.0
 
@@ -232,9 +235,11 @@ def handle(d: Floats, t: float, y: Floats, events: Floats, count: int) -> tuple[
         New number of events, and `CONTINUE`, `RESTART` (the equations have jumped) or `CROWDED`.
     """
     action = CONTINUE
+    lost, crossed = d[at.ADHESION_LOSS], False
     if d[at.KIND] == at.GEARS:
         forward = y[at.PHASE] >= d[at.MARK_HIGH]
         if forward or y[at.PHASE] < d[at.MARK_LOW]:
+            crossed = True
             count = _cross_mark(d, t, y, forward, events, count)
         if d[at.DRY] != 0.0 and _dry_guard(d, t, y) <= 0.0:
             action = RESTART
@@ -247,6 +252,8 @@ def handle(d: Floats, t: float, y: Floats, events: Floats, count: int) -> tuple[
             slot = history_slot(d, coast, pair)
             if d[slot + at.PAIR] == pair:
                 count = _handle_pair(d, t, y, coast, pair, slot, events, count)
+    if d[at.KIND] == at.GEARS and (crossed or d[at.ADHESION_LOSS] != lost):
+        see_radius(d, t, y)
     if t - d[at.LAST_ROOT] > d[at.ROOT_SPACING] * (1.0 + t):
         d[at.ROOTS] = 0.0
     d[at.LAST_ROOT] = t
@@ -294,6 +301,8 @@ def _handle_pair(
             d[slot + at.TORN + material] = 1.0
             count = _record(events, count, d, t, _FULL_STRETCH, pair, coast, rate)
     if way != 0.0 and way * rate <= 0.0:
+        if way < 0.0:
+            book_joining(d, y, coast, pair, slot, gap)
         for material in range(2):
             limit = material_stretch(d, material)
             if limit > 0.0:
@@ -310,7 +319,9 @@ def _handle_pair(
 @compiled
 def _stick_or_slip(d: Floats, t: float, y: Floats, events: Floats, count: int) -> int:
     """Set-valued dry resistance: it holds the gear as long as it can, and gives way as the load pushes."""
+    before = kinetic_energy(d, y)
     y[at.W] = d[at.MOVING] = 0.0
+    d[at.DRY_LOSS] += before - kinetic_energy(d, y)
     force, relief, _, _, _, _ = mesh_forces(d, t, y)
     push = force + d[at.DAMPING] * y[at.V] + relief
     slipping = d[at.SLIP] != 0.0

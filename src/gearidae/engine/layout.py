@@ -58,7 +58,9 @@ GRID_AT: Final = 44  # where their profile, weights and influence coefficients l
 ORDERS: Final = 45  # powers of the footprint's length in the influence coefficients
 LENGTH_MIDDLE: Final = 46  # that length, counted from the middle of its range and over half of it
 LENGTH_HALF: Final = 47
+WEIGHTS_AT: Final = 61  # one over the absolute tolerance of every state
 LOWEST_GAP: Final = 62  # the model holds above this gap of a pair
+STATES: Final = 63  # number of states
 
 # -- what changes during a run ---------------------------------------------------------------------------------------
 TURNS: Final = 48  # whole pitches taken out of the phase
@@ -73,7 +75,48 @@ NEXT_KNOT: Final = 56  # index of the coming schedule knot among all knots
 NEAR: Final = 57  # two flags: drive and coast flank close enough for any pair to touch
 MOVING: Final = 60  # 1 once a slip has become faster than REST_SPEED
 PASSED: Final = 59  # 1 once a pair has been below LOWEST_GAP
-CONSTANTS: Final = 64
+
+# -- the energy ledger -----------------------------------------------------------------------------------------------
+POTENTIAL_AT: Final = 64  # potential of the loading branch of both materials together
+NUMBER_AT: Final = 65  # number of asperities above a height
+ENERGIES: Final = 66  # per material: offset of its energy table, and what its asperities lose when they join
+ENERGY: Final = 2
+E_TABLE: Final = 0
+E_JOINING: Final = 1  # in the unit of M_FORCE
+# Sums over the run, energies in the unit of force times sigma.
+SUMS: Final = 70
+DRIVE_WORK: Final = 70
+DRAG_LOSS: Final = 71
+DRY_LOSS: Final = 72
+DAMPING_LOSS: Final = 73
+ADHESION_LOSS: Final = 74
+RADIUS_WORK: Final = 75
+MODEL_CHANGE: Final = 76
+THROUGHPUT: Final = 77
+START_STORED: Final = 78
+START_KINETIC: Final = 79
+SUMS_END: Final = 80
+LEDGER_TIME: Final = 80  # up to which they are kept, and accepted steps since
+LEDGER_STEPS: Final = 81
+# What the powers are made of there, each with its rate.
+WAS_KINETIC: Final = 82
+WAS_PINION: Final = 83  # travel of the pinion's base circle, its speed and the rate of that
+WAS_SPEED: Final = 84
+WAS_GAIN: Final = 85
+WAS_GEAR: Final = 86  # the gear's
+WAS_W: Final = 87
+WAS_W_RATE: Final = 88
+WAS_V: Final = 89
+WAS_V_RATE: Final = 90
+WAS_DRIVE: Final = 91  # torques over base radius
+WAS_DRIVE_RATE: Final = 92
+WAS_LOAD: Final = 93
+WAS_LOAD_RATE: Final = 94
+WAS_RADIUS: Final = 95  # power of the changing radius
+WAS_RADIUS_RATE: Final = 96
+LEDGER_END: Final = 97
+LEDGER_SPAN: Final = 97  # time over which steps may be gathered
+CONSTANTS: Final = 100
 
 # -- the history of a tooth pair, in the slot `pair mod SLOTS` of its flank ------------------------------------------
 PAIR: Final = 0  # number of the pair, counted without TURNS; what the slot is about
@@ -83,17 +126,23 @@ LAST_RATE: Final = 3
 TOUCHING: Final = 4  # 1 between onset and separation
 JOINED: Final = 5  # per material, height above which asperities are joined at the last turning point
 TORN: Final = 7  # per material, 1 once full stretch has been reached on the way apart
-BRANCHES: Final = 9  # per material, the force law's branch at JOINED (asperity model)
-# An elastic contact has these in place of the branches, then rows of one number per node:
-LOADED: Final = 9  # 1 if the last evaluation found the pair within reach
-LENGTH: Final = 10  # length of its footprint, sqrt(radius / pitch)
-NODE_ROWS: Final = 11
-ROW_JOINED: Final = 0  # two rows, one per material: joined height
-ROW_GAP: Final = 2  # gap at the last accepted time
-ROW_SHARE: Final = 3  # how far the node's gap moves with the pair's
-ROW_PRESSURE: Final = 4  # of the last evaluation, and its slope in the node's gap
-ROW_SLOPE: Final = 5
-ROWS: Final = 6
+BOOKED: Final = 9  # per material, energy of the asperities above JOINED that joining takes (asperity model)
+BRANCHES: Final = 11  # per material, the force law's branch at JOINED
+# An elastic contact has these in place of the branches, then rows of one number per node, and per point between nodes:
+LOADED: Final = 11  # 1 if the last evaluation found the pair within reach
+LENGTH: Final = 12  # length of its footprint, sqrt(radius / pitch)
+STRETCHED: Final = 13  # 1 if asperities were stretched at the last turning point
+NODE_ROWS: Final = 14
+ROW_GAP: Final = 0  # gap at the last accepted time
+ROW_SHARE: Final = 1  # how far the node's gap moves with the pair's
+ROW_PRESSURE: Final = 2  # of the last evaluation
+ROW_SLOPE: Final = 3  # slope of the loading branch in the node's gap
+ROWS: Final = 4
+ROW_JOINED: Final = 4  # two rows of points, one per material: joined height
+ROW_STIFFNESS: Final = 6  # of points: slope of what stretched asperities add, in the point's gap
+ROW_BOOKED: Final = 7  # two rows of points: energy of what is joined, when nothing is stretched
+POINT_ROWS: Final = 5
+FINER: Final = 4  # steps from point to point in one from node to node
 
 GEARS: Final = 0.0
 ROLLER: Final = 1.0

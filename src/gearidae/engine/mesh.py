@@ -147,7 +147,9 @@ def material_stretch(d: Floats, material: int) -> float:
 @compiled
 def set_joined(d: Floats, slot: int, material: int, joined: float) -> None:
     """Store the joined height of a turning point, and work out the branch that starts from it."""
+    joining = d[at.ENERGIES + at.ENERGY * material + at.E_JOINING]
     d[slot + at.JOINED + material] = joined
+    d[slot + at.BOOKED + material] = -joining * loading_value(d, int(d[at.NUMBER_AT]), joined)[0]
     table = d[int(d[at.MATERIALS + at.MATERIAL * material + at.M_TABLE]) :]
     # a law that is integrated when asked for keeps no branches, nor does an elastic contact
     if d[at.BRANCH] > 0.0 and branch_length(table) > 0:

@@ -15,8 +15,9 @@ from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine import sundials as sun
 from gearidae.engine.blocks import store_size
-from gearidae.engine.callbacks import callbacks, linear_steps
+from gearidae.engine.callbacks import callbacks
 from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, handle, pass_knot
+from gearidae.engine.ledger import enter, follow
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import (
@@ -26,14 +27,13 @@ from gearidae.engine.run import (
     CHECKPOINT_STEPS,
     CODES,
     CONVERGENCE_FAILURES_HIGH,
-    FOLD_SHARE,
     Block,
     Ending,
     Tally,
     ending_of_flag,
     sample_time,
 )
-from gearidae.engine.settle import fastest_node
+from gearidae.engine.settle import fold_gap
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
 __all__ = ["callbacks", "run"]
@@ -42,7 +42,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 # Handles: addresses of what SUNDIALS has made.
-CONTEXT, SOLVER, Y, YP, DKY, TOLERANCES, MATRIX, LINEAR, HANDLES = range(9)
+CONTEXT, SOLVER, Y, YP, DKY, MATRIX, LINEAR, HANDLES = range(8)
 
 # Progress of a run, kept between calls of `advance`.
 (
@@ -70,18 +70,27 @@ CHATTER, BEYOND = CODES
 
 @compiled
 def open_solver(
-    handles: Ints, calls: Ints, d: Floats, y: Floats, yp: Floats, dky: Floats, atol: Floats
+    handles: Ints,
+    model: Ints,
+    steps: Ints,
+    where: Ints,
+    d: Floats,
+    y: Floats,
+    yp: Floats,
+    dky: Floats,
 ) -> int:
-    """Create IDA with a dense linear solver over the caller's arrays; 0 if all went well.
+    """Create IDA with a linear solver of our own over the caller's arrays; 0 if all went well.
 
     Parameters
     ----------
     handles : ndarray of int64, shape (HANDLES,)
         Filled in.
-    calls : ndarray of int64, shape (3,)
-        From `callbacks`.
-    d, y, yp, dky, atol : ndarray
-        User data, state, rates, work space and absolute tolerances: must outlive the solver.
+    model, steps : ndarray of int64
+        See `gearidae.engine.callbacks.Callbacks`.
+    where : ndarray of int64
+        From `gearidae.engine.sundials.places`.
+    d, y, yp, dky : ndarray
+        User data, state, rates and work space: must outlive the solver.
     """
     n = y.size
     flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
@@ -92,29 +101,26 @@ def open_solver(
     handles[Y] = sun.N_VMake_Serial(n, y.ctypes.data, context)
     handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
     handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
-    handles[TOLERANCES] = sun.N_VMake_Serial(n, atol.ctypes.data, context)
     sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
-    if d[at.NODES] == 0.0:
-        handles[MATRIX] = sun.SUNDenseMatrix(n, n, context)
-        handles[LINEAR] = sun.SUNLinSol_Dense(handles[Y], handles[MATRIX], context)
-    else:  # a column to keep the blocks in, and a solver whose steps are replaced before use
-        handles[MATRIX] = sun.SUNDenseMatrix(1, 1, context)
-        single = sun.N_VMake_Serial(1, y.ctypes.data, context)
-        handles[LINEAR] = sun.SUNLinSol_Dense(single, handles[MATRIX], context)
-        sun.N_VDestroy(single)
-        sun.SUNMatDestroy(handles[MATRIX])
-        handles[MATRIX] = sun.SUNDenseMatrix(store_size(d), 1, context)
+    # the matrix is a column to keep numbers in, so the dense solver is made for another and its steps replaced
+    handles[MATRIX] = sun.SUNDenseMatrix(1, 1, context)
+    single = sun.N_VMake_Serial(1, y.ctypes.data, context)
+    handles[LINEAR] = sun.SUNLinSol_Dense(single, handles[MATRIX], context)
+    sun.N_VDestroy(single)
+    sun.SUNMatDestroy(handles[MATRIX])
+    handles[MATRIX] = sun.SUNDenseMatrix(store_size(d) if d[at.NODES] > 0.0 else n * (n + 1), 1, context)
+    sun.replace(handles[LINEAR], where, steps)
     solver = sun.IDACreate(context)
     handles[SOLVER] = solver
-    flag |= sun.IDAInit(solver, calls[0], d[at.LAST_TIME], handles[Y], handles[YP])
-    flag |= sun.IDASVtolerances(solver, 0.0, handles[TOLERANCES])
+    flag |= sun.IDAInit(solver, model[0], d[at.LAST_TIME], handles[Y], handles[YP])
+    flag |= sun.IDAWFtolerances(solver, model[3])
     flag |= sun.IDASetUserData(solver, d.ctypes.data)
     flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
-    flag |= sun.IDASetJacFn(solver, calls[1])
+    flag |= sun.IDASetJacFn(solver, model[1])
     flag |= sun.IDASetMaxNumSteps(solver, -1)
     flag |= sun.IDASetMaxConvFails(solver, CONVERGENCE_FAILURES_HIGH)
     falling = np.full(1, -1, np.int32)
-    flag |= sun.IDARootInit(solver, 1, calls[2])
+    flag |= sun.IDARootInit(solver, 1, model[2])
     flag |= sun.IDASetRootDirection(solver, falling.ctypes.data)
     flag |= sun.IDASetNoInactiveRootWarn(solver)
     return flag
@@ -131,7 +137,7 @@ def close(handles: Ints) -> None:
         sun.SUNLinSolFree(handles[LINEAR])
     if handles[MATRIX] != 0:
         sun.SUNMatDestroy(handles[MATRIX])
-    for k in (Y, YP, DKY, TOLERANCES):
+    for k in (Y, YP, DKY):
         if handles[k] != 0:
             sun.N_VDestroy(handles[k])
     if handles[CONTEXT] != 0:
@@ -172,6 +178,7 @@ def _start(
 ) -> int:
     """Set consistent rates and the first step, and (re-)initialise IDA at t."""
     set_rates(d, t, y, yp)
+    enter(d, t, y, yp)
     flag = sun.IDAReInit(solver, t, handles[Y], handles[YP])
     flag |= sun.IDASetInitStep(solver, first_step(d, t, y, yp, scale, rtol, stop - t))
     flag |= sun.IDASetStopTime(solver, stop)
@@ -253,6 +260,7 @@ def advance(
             break
         progress[PENDING] = 0
         accept(d, t, y)
+        follow(d, t, y, yp, flag != 0 or d[at.PASSED] != 0.0)
         if d[at.PASSED] != 0.0:
             progress[ERROR] = BEYOND
         if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:
@@ -274,6 +282,7 @@ def advance(
         checkpoint = progress[SINCE] >= CHECKPOINT_STEPS
         if (restart or checkpoint) and progress[DONE] == 0 and progress[ERROR] == 0:
             _count(solver, progress)
+            follow(d, t, y, yp, True)
             rebase(d, y)
             progress[RESTARTS] += 1
             if checkpoint:
@@ -320,11 +329,10 @@ def run(
         observe(d, 0.0, y, rows[0])
         progress[[ROWS, NEXT_SAMPLE]] = 1
     try:
-        atol = rtol * problem.tolerance_scale
+        problem.set_tolerance(rtol)
         elastic = d[at.NODES] > 0.0
-        flag = open_solver(handles, callbacks(elastic), d, y, yp, dky, atol)
-        if flag == 0 and elastic:
-            sun.replace_steps(int(handles[LINEAR]), int(handles[CONTEXT]), *linear_steps())
+        calls = callbacks(y.size, bool(elastic))
+        flag = open_solver(handles, calls.model, calls.steps, sun.places(), d, y, yp, dky)
         if flag != 0:
             tally.ending = Ending.SOLVER_FAILURE
             return
@@ -348,8 +356,8 @@ def run(
                 BLOCK_STEPS,
             )
             _fill_tally(tally, progress, elastic)
-            if progress[ERROR] < 0 and elastic and fastest_node(d, time, y) > FOLD_SHARE:
-                tally.ending = Ending.FOLD
+            if progress[ERROR] < 0 and elastic:
+                tally.note_fold(fold_gap(d, d[at.LAST_TIME]) * d[at.SIGMA])
             if progress[ERROR] == BEYOND:  # whoever goes on from here starts afresh
                 progress[[ERROR, PENDING]] = 0, -1
                 progress[RESTARTS] += 1
@@ -360,6 +368,7 @@ def run(
                 events[: progress[EVENTS]].copy(),
                 time * problem.time_unit,
                 problem.checkpoint(time, y, progress) if ready else None,
+                problem.ledger(time, y, yp) if progress[PENDING] <= 0 else None,
             )
             progress[[ROWS, EVENTS]] = 0
     finally:

@@ -18,6 +18,7 @@ from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine.blocks import dense_jacobian, store_size
 from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, guard, handle, pass_knot
+from gearidae.engine.ledger import enter, follow
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.residual import jacobian, residual
@@ -27,15 +28,15 @@ from gearidae.engine.run import (
     CHECKPOINT_STEPS,
     CODES,
     CONVERGENCE_FAILURES_HIGH,
-    FOLD_SHARE,
     Block,
     Ending,
     Tally,
     ending_of_flag,
     sample_time,
 )
-from gearidae.engine.settle import fastest_node
+from gearidae.engine.settle import fold_gap
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
+from gearidae.records import Ledger
 
 __all__ = ["run"]
 
@@ -56,6 +57,7 @@ def run(
 ) -> Iterator[Block]:
     """Run a problem, block by block; see `gearidae.engine.native.run`."""
     d, y, t = problem.data, problem.start.copy(), 0.0
+    yp = np.zeros_like(y)
     counters = np.zeros(COUNTERS, np.int64)
     output = _Output(problem, total)
     if resume is not None:
@@ -75,14 +77,15 @@ def run(
         flag = result.status
         if flag < 0 or not np.isfinite(result.y).all():
             tally.ending = ending_of_flag(flag) if flag < 0 else Ending.NOT_FINITE
-            if elastic and fastest_node(d, t, y) > FOLD_SHARE:
-                tally.ending = Ending.FOLD
+            if elastic:
+                tally.note_fold(fold_gap(d, t) * d[at.SIGMA])
             break
-        t, y = result.t, result.y
-        trail.add(t, y, result.yp)
+        t, y, yp = result.t, result.y, result.yp
+        trail.add(t, y, yp)
         tally.steps += flag != _ROOT
         yield from output.sample(t, y, trail)
         accept(d, t, y)
+        follow(d, t, y, yp, flag != 0 or d[at.PASSED] != 0.0)
         tally.flight_steps += d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
         restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
         if flag == _ROOT:
@@ -101,21 +104,24 @@ def run(
             tally.ending = ending_of_flag(CODES[1], elastic)
             tally.restarts += 1
             solver.count(tally)
-            yield output.flush(t, _checkpoint(problem, t, y, output, tally))
+            yield output.flush(t, problem.ledger(t, y, yp), _checkpoint(problem, t, y, output, tally))
             return
         checkpoint = since >= CHECKPOINT_STEPS
         if (restart or checkpoint) and knots:
+            follow(d, t, y, yp, True)
             rebase(d, y)
             tally.restarts += 1
             solver.count(tally)
             if checkpoint:
                 since = 0
-                yield output.flush(t, _checkpoint(problem, t, y, output, tally))
+                yield output.flush(t, problem.ledger(t, y, yp), _checkpoint(problem, t, y, output, tally))
             solver, trail = _start(problem, rtol, t, y, knots[0])
         elif since % _BLOCK_STEPS == 0 or output.event_count > BLOCK_EVENTS - EVENTS_AT_ONCE:
-            yield output.flush(t)
+            yield output.flush(t, problem.ledger(t, y, yp))
     solver.count(tally)
-    yield output.flush(t, None if knots else _checkpoint(problem, t, y, output, tally))
+    yield output.flush(
+        t, problem.ledger(t, y, yp), None if knots else _checkpoint(problem, t, y, output, tally)
+    )
 
 
 def _checkpoint(problem: Problem, t: float, y: Floats, output: _Output, tally: Tally) -> Floats:
@@ -193,6 +199,7 @@ def _start(problem: Problem, rtol: float, t: float, y: Floats, stop: float) -> t
     """Set consistent rates and the first step, and start a fresh IDA at t."""
     d, yp = problem.data, np.zeros_like(y)
     set_rates(d, t, y, yp)
+    enter(d, t, y, yp)
     step = first_step(d, t, y, yp, problem.tolerance_scale, rtol, stop - t)
     solver = _Solver(problem, rtol * problem.tolerance_scale, step)
     solver.begin(t, y, yp)
@@ -225,13 +232,14 @@ class _Output:
                 blocks.append(self.flush(at_time))
         return iter(blocks)
 
-    def flush(self, t: float, checkpoint: Floats | None = None) -> Block:
+    def flush(self, t: float, ledger: Ledger | None = None, checkpoint: Floats | None = None) -> Block:
         """Hand out what has been collected."""
         block = Block(
             self._rows[: self._row_count].copy(),
             self.events[: self.event_count].copy(),
             t * self._problem.time_unit,
             checkpoint,
+            ledger,
         )
         self._row_count = self.event_count = 0
         return block

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.contact.energy import energy_table, joining_energy, number_table
 from gearidae.contact.jkr import asperity_of
 from gearidae.contact.law import (
     GAP_HIGH,
@@ -24,19 +26,22 @@ from gearidae.contact.law import (
     law_value,
 )
 from gearidae.engine import layout as at
-from gearidae.engine.elastic import Footing, deepest_gap, node_grid, rigid_limit
+from gearidae.engine.elastic import DEPTH_HIGH, Footing, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.events import begin
+from gearidae.engine.ledger import follow, kinetic_energy, open_ledger, stored_energy
 from gearidae.engine.mesh import footprint, material_stretch
+from gearidae.engine.nodes import history_size
 from gearidae.engine.settle import settle_nodes
 from gearidae.engine.torque import pack_torque
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Ledger
 from gearidae.scene import Drive, Load, Scene
 
 __all__ = ["Problem", "make_problem"]
 
 Floats = NDArray[np.float64]
+Layout: TypeAlias = tuple[float, int | None]
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
@@ -66,6 +71,8 @@ class Problem:
         What this scene does not need.
     elastic : callable, optional
         Makes the elastic problem that takes over when the asperity model, chosen automatically, no longer will do.
+    deeper : callable, optional
+        Makes the same elastic problem with nodes laid out for deeper contacts, if there can be any.
     """
 
     data: Floats
@@ -76,11 +83,52 @@ class Problem:
     columns: tuple[str, ...]
     skipped: dict[str, int]
     elastic: Callable[[], Problem] | None = None
+    deeper: Callable[[], Problem] | None = None
 
     @property
     def time_unit(self) -> float:
         """The scene's tau [s]."""
         return float(self.data[at.TAU])
+
+    def set_tolerance(self, rtol: float) -> None:
+        """Let every state's error count in absolute tolerances, `rtol` times its scale."""
+        first = int(self.data[at.WEIGHTS_AT])
+        self.data[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
+
+    def ledger(self, time: float, state: Floats, rates: Floats) -> Ledger:
+        """The energy ledger at an accepted time.
+
+        Parameters
+        ----------
+        time : float
+            Over tau.
+        state, rates : ndarray, shape (n,)
+            Scaled state there, and its rate.
+        """
+        d = self.data
+        kept = d[at.SUMS : at.LEDGER_END].copy()  # steps still to be gathered are not to be split by a look
+        follow(d, time, state, rates, True)
+        ledger = self._in_joules(time, state)
+        d[at.SUMS : at.LEDGER_END] = kept
+        return ledger
+
+    def _in_joules(self, time: float, state: Floats) -> Ledger:
+        d = self.data
+        unit = float(d[at.FORCE] * d[at.SIGMA])
+        stored, pending = stored_energy(d, state)
+        return Ledger(
+            time=time * self.time_unit,
+            drive_work=unit * float(d[at.DRIVE_WORK]),
+            radius_work=unit * float(d[at.RADIUS_WORK]),
+            model_change=unit * float(d[at.MODEL_CHANGE]),
+            drag_loss=unit * float(d[at.DRAG_LOSS]),
+            dry_loss=unit * float(d[at.DRY_LOSS]),
+            damping_loss=unit * float(d[at.DAMPING_LOSS]),
+            adhesion_loss=unit * float(d[at.ADHESION_LOSS] + pending),
+            stored_change=unit * float(stored - pending - d[at.START_STORED]),
+            kinetic_change=unit * float(kinetic_energy(d, state) - d[at.START_KINETIC]),
+            throughput=unit * float(d[at.THROUGHPUT]),
+        )
 
     def checkpoint(self, time: float, state: Floats, counters: NDArray[np.int64]) -> Floats:
         """Everything that changes in a run, as one array of fixed length.
@@ -101,9 +149,20 @@ class Problem:
         """Whether a checkpoint with so many counters has this problem's size."""
         return checkpoint.size == 1 + self.start.size + counters + int(self.data[at.LOADING_AT])
 
+    def at_depth(self, checkpoint: Floats, counters: int) -> Problem:
+        """Lay this elastic problem's nodes out as they were for a checkpoint with so many counters."""
+        problem = self
+        while problem.deeper is not None and problem.fits(checkpoint, counters):
+            lowest = checkpoint[checkpoint.size - int(problem.data[at.LOADING_AT]) + at.LOWEST_GAP]
+            if lowest >= problem.data[at.LOWEST_GAP]:
+                break
+            problem = problem.deeper()
+        return problem
+
     def outgrown(self, checkpoint: Floats) -> bool:
         """Whether a checkpoint of this problem stands where the model's bound has been passed."""
-        return bool(checkpoint[checkpoint.size - int(self.data[at.LOADING_AT]) + at.PASSED] != 0.0)
+        changing = checkpoint[-int(self.data[at.LOADING_AT]) :]
+        return changing.size > at.PASSED and bool(changing[at.PASSED] != 0.0)
 
     def restore(self, checkpoint: Floats, state: Floats, counters: NDArray[np.int64]) -> float:
         """Take a checkpoint back, in place, and return its time over tau.
@@ -123,21 +182,31 @@ class Problem:
         return float(checkpoint[0])
 
 
-def make_problem(scene: Scene) -> Problem:
+def make_problem(scene: Scene, layout: Layout | None = None) -> Problem:
     """Scale a scene and tabulate its force laws.
+
+    Parameters
+    ----------
+    scene : Scene
+    layout : tuple of float and int, optional
+        Lowest gap and number of nodes of an elastic contact, in place of those that are estimated.
 
     Raises
     ------
     SceneError
         If the scene is beyond what the engine can do.
     """
-    problem = _gear_problem(scene) if scene.roller is None else _roller_problem(scene)
-    if scene.contact.model == "auto" and problem.data[at.NODES] == 0.0:
+    problem = _gear_problem(scene, layout) if scene.roller is None else _roller_problem(scene, layout)
+    nodes, lowest = int(problem.data[at.NODES]), float(problem.data[at.LOWEST_GAP])
+    if nodes > 0 and lowest > -DEPTH_HIGH:
+        deeper = max(2.0 * lowest - 4.0, -DEPTH_HIGH)
+        problem.deeper = lambda: make_problem(scene, (deeper, nodes))
+    elif nodes == 0 and scene.contact.model == "auto":
         problem.elastic = lambda: make_problem(scene.replace({"contact.model": "elastic"}))
     return problem
 
 
-def _gear_problem(scene: Scene) -> Problem:
+def _gear_problem(scene: Scene, layout: Layout | None) -> Problem:
     gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
     assert gears
     assert mesh
@@ -164,9 +233,12 @@ def _gear_problem(scene: Scene) -> Problem:
     lengths = [footprint(head, inside) for inside in places]
     # the load pushing through the whole backlash, twice for good measure
     energy = 2.0 * force * mesh.backlash
-    footing = Footing(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force)
-    grid = _bodies(head, scene, footing)
+    nearest = min(start.gap, mesh.backlash - start.gap) / sigma
+    footing = Footing(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force, nearest)
+    grid = _bodies(head, scene, footing, layout)
     head[at.DRY] = float(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
+    fastest = max((h.frequency for shaft in (drive, load) for h in shaft.harmonic), default=0.0)
+    head[at.LEDGER_SPAN] = 1.0 / (1.0 + 2.0 * math.pi * fastest * tau)
     head[at.SLIP] = np.sign(start.gear_speed) if head[at.DRY] else 1.0
     head[at.REST_SPEED] = 10.0 * scene.run.rtol
     contact = _contact(
@@ -189,6 +261,7 @@ def _gear_problem(scene: Scene) -> Problem:
     u = head[at.HALF_BACKLASH] + relief - start.gap / sigma
     y0 = _with_nodes(data, [u, 0.0, start.mesh_phase, start.gear_speed * r2 / speed])
     begin(data, 0.0, y0)
+    open_ledger(data, y0)
     # an error in the phase matters by the gap it opens where tip relief is steepest
     scale = _scale(data, [1.0, 1.0, 1.0 / (head[at.RELIEF] * head[at.REACH]), 1.0])
     skipped = _skipped(data, scene) | {
@@ -219,7 +292,7 @@ def _geometry_constants(geometry: Geometry, tip_relief_radius: float, sigma: flo
     return head
 
 
-def _roller_problem(scene: Scene) -> Problem:
+def _roller_problem(scene: Scene, layout: Layout | None) -> Problem:
     roller = scene.roller
     assert roller is not None
     sigma = scene.surface.roughness
@@ -232,13 +305,15 @@ def _roller_problem(scene: Scene) -> Problem:
     head[at.GEAR_SHARE] = 1.0
     head[at.LAST_FLANK] = -1.0
     energy = 0.5 * roller.mass * roller.speed**2
-    footing = Footing(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0)
-    grid = _bodies(head, scene, footing)
+    nearest = roller.height / sigma
+    footing = Footing(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, nearest)
+    grid = _bodies(head, scene, footing, layout)
     contact = _contact(head, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
     none = np.zeros(at.LAW_BODY)
     data = _assemble(head, 1, 1, contact, np.zeros(0), none, none, grid)
     y0 = _with_nodes(data, [roller.height / sigma, -roller.speed * tau / sigma])
     begin(data, 0.0, y0)
+    open_ledger(data, y0)
     end = scene.run.duration / tau
     return Problem(
         data, y0, _scale(data, [1.0, 1.0]), end, np.zeros(0), ROLLER_COLUMNS, _skipped(data, scene)
@@ -284,7 +359,7 @@ def _reference_force(scene: Scene, mass: float) -> float:
     return force if force > 0.0 else mass * scene.surface.roughness * (1e3 / scene.run.duration) ** 2
 
 
-def _bodies(head: Floats, scene: Scene, footing: Footing) -> Floats:
+def _bodies(head: Floats, scene: Scene, footing: Footing, layout: Layout | None) -> Floats:
     """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
     model = scene.contact.model
     head[at.LOWEST_GAP] = GAP_LOW  # where the tables of the force law end
@@ -294,11 +369,11 @@ def _bodies(head: Floats, scene: Scene, footing: Footing) -> Floats:
         head[at.LOWEST_GAP] = lowest
     if model == "asperity":
         return np.zeros(0)
-    deepest = deepest_gap(scene, footing)
-    grid = node_grid(scene, footing, head[at.FORCE], deepest)
+    deepest, nodes = layout or (min(deepest_gap(scene, footing), 0.0), None)
+    grid = node_grid(scene, footing, head[at.FORCE], deepest, nodes)
     head[[at.NODES, at.ORDERS]] = grid.nodes, grid.orders
     head[[at.LENGTH_MIDDLE, at.LENGTH_HALF]] = grid.middle, grid.half
-    head[at.LOWEST_GAP] = min(deepest, 0.0)
+    head[at.LOWEST_GAP] = deepest
     return grid.body
 
 
@@ -331,12 +406,14 @@ def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest:
     Returns
     -------
     list of ndarray
-        The loading branch of both materials together, and the force law of each.
+        The loading branch of both materials together, and the force law of each; the stored energy likewise, and
+        the number of asperities above a height.
     """
     fraction = scene.coating.sam_fraction
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
-    loading = np.zeros(8 * N_LOADING)
-    tables = []
+    kernel: Kernel = "plane" if head[at.NODES] > 0.0 else "line"
+    loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
+    tables, energies = [], []
     for material, (surface, share) in enumerate(
         ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
     ):
@@ -348,7 +425,6 @@ def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest:
                 surface.roughness,
                 f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
             )
-        kernel: Kernel = "plane" if head[at.NODES] > 0.0 else "line"
         table = law_table(limit, scene.contact.asperity, kernel) if share > 0.0 else np.zeros(HEADER)
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * footprint / head[at.FORCE]
@@ -356,12 +432,16 @@ def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest:
         head[record + at.M_FORCE] = force
         head[record + at.M_STRETCH] = table[H_STRETCH]
         tables.append(table)
+        energy = energy_table(limit, scene.contact.asperity, kernel) if share > 0.0 else table
+        energies.append(energy)
+        head[at.ENERGIES + at.ENERGY * material + at.E_JOINING] = joining_energy(table[H_STRETCH])
         if share > 0.0:
             loading += force * table[HEADER : HEADER + loading.size]
+            potential += force * energy[HEADER : HEADER + potential.size]
             for floor, gap in reach.items():
                 reach[floor] = max(gap, _outermost(table, force * widest, floor))
     head[at.CUTOFF], head[at.ENGAGE] = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
-    return [loading, *tables]
+    return [loading, *tables, potential, *energies, number_table(kernel)]
 
 
 def _outermost(table: Floats, scale: float, floor: float) -> float:
@@ -387,17 +467,20 @@ def _assemble(
     head[at.SLOTS], head[at.TOTAL_SLOTS] = slots, flanks * slots
     head[at.ROOT_LIMIT], head[at.ROOT_SPACING] = ROOT_LIMIT, ROOT_SPACING
     if head[at.NODES] > 0.0:
-        head[at.HISTORY] = at.NODE_ROWS + at.ROWS * head[at.NODES]
+        head[at.HISTORY] = history_size(int(head[at.NODES]))
     else:
-        head[at.BRANCH] = max(branch_length(table) for table in contact[1:])
+        head[at.BRANCH] = max(branch_length(table) for table in contact[1:3])
         head[at.HISTORY] = at.BRANCHES + 2 * head[at.BRANCH]
     histories = np.zeros(int(head[at.HISTORY]) * flanks * slots)
-    parts = [head, histories, errors, drive, load, *contact, grid]
+    head[at.STATES] = (2 if head[at.KIND] == at.ROLLER else 4) + head[at.NODES] * head[at.TOTAL_SLOTS]
+    parts = [head, histories, errors, drive, load, *contact, grid, np.zeros(int(head[at.STATES]))]
     starts = np.cumsum([0] + [part.size for part in parts])
     head[[at.HISTORIES, at.ERROR_AT, at.DRIVE_AT, at.LOAD_AT, at.LOADING_AT]] = starts[1:6]
     for material in range(2):
         head[at.MATERIALS + at.MATERIAL * material + at.M_TABLE] = starts[6 + material]
-    head[at.GRID_AT] = starts[8]
+        head[at.ENERGIES + at.ENERGY * material + at.E_TABLE] = starts[9 + material]
+    head[[at.POTENTIAL_AT, at.NUMBER_AT]] = starts[[8, 11]]
+    head[[at.GRID_AT, at.WEIGHTS_AT]] = starts[12:14]
     return np.concatenate(parts)
 
 

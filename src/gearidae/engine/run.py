@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.records import Ledger
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -17,7 +18,6 @@ __all__ = [
     "BLOCK_STEPS",
     "CODES",
     "CONVERGENCE_FAILURES_HIGH",
-    "FOLD_SHARE",
     "Block",
     "Ending",
     "Tally",
@@ -56,7 +56,7 @@ class Ending(Enum):
     )
     TOO_DEEP = (
         "too_deep",
-        "the teeth were pressed together more than the elastic contact's nodes were laid out for",
+        "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
     )
     NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
 
@@ -75,8 +75,6 @@ CONVERGENCE_FAILURES_HIGH = 40
 """Failures of Newton's iteration in one step, each of which quarters it: a step out of long flight lands in a tooth."""
 CODES = (1, 2)
 """What a driver may end a run with of its own: crowded events, a gap beyond the model's bound."""
-FOLD_SHARE = 30.0
-"""A node that moves so many times as fast as the bodies is about to jump: the static curve folds."""
 
 _FLAGS = {
     0: Ending.FINISHED,
@@ -108,12 +106,15 @@ class Block:
         Simulated time reached [s].
     checkpoint : ndarray, optional
         All that it takes to go on from the end of this block; present at checkpoints and at the end.
+    ledger : Ledger, optional
+        The energy ledger at the end of this block; missing where a block ends in the middle of a step.
     """
 
     rows: Floats
     events: Floats
     time: float
     checkpoint: Floats | None = None
+    ledger: Ledger | None = None
 
 
 @dataclass(slots=True)
@@ -129,6 +130,19 @@ class Tally:
     guard_evaluations: int = 0
     flight_steps: int = 0
     ending: Ending = field(default=Ending.FINISHED)
+    fold_gap: float | None = None
+
+    def note_fold(self, gap: float) -> None:
+        """Call the ending a fold if it was one; NaN if not, else the gap at which the contact folds [m]."""
+        if not math.isnan(gap):
+            self.ending, self.fold_gap = Ending.FOLD, float(gap)
+
+    @property
+    def message(self) -> str:
+        """The ending in a sentence; empty when finished."""
+        if self.fold_gap is not None:
+            return f"{self.ending.message}, at a gap of {self.fold_gap:.6g} m"
+        return self.ending.message
 
 
 @compiled

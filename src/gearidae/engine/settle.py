@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine import layout as at
+from gearidae.engine.nodes import first_unknown, influence, node_force, row, stiffness_matrix
 from gearidae.engine.residual import residual
 
-__all__ = ["fastest_node", "settle_nodes"]
+__all__ = ["fold_gap", "settle_nodes"]
 
 Floats = NDArray[np.float64]
 
@@ -18,7 +19,10 @@ _SETTLED = 1e-12  # roughnesses
 _TRIES = 60
 _STRIDE = 0.25  # longest step of Newton's, in roughnesses
 _NUDGE = 1e-6  # of a deflection, for differences
-_AHEAD = 1e-3  # and for those that look beyond a bend
+_AHEAD = (1e-4, 1e-3)  # roughnesses to look on for a fold
+_FOLLOWED = 1e-9
+_FOLD_SHARE = 30.0
+"""A node that moves so many times as fast as the bodies is about to jump: the static curve folds."""
 
 
 def _deviation(d: Floats, t: float, y: Floats) -> Floats:
@@ -64,20 +68,53 @@ def settle_nodes(d: Floats, t: float, y: Floats) -> bool:
     return False
 
 
-def fastest_node(d: Floats, t: float, y: Floats) -> float:
-    """How many times as fast as the bodies the gap of a node moves at most: without bound at a fold.
+def fold_gap(d: Floats, t: float) -> float:
+    """Gap of a pair whose static contact does not go on the way it was going, at the last accepted time; NaN if none.
 
-    Infinite beyond a fold, where the equations of a pair's nodes have a determinant that is not positive. Pressures
-    bend where asperities begin to stretch and to let go, and a fold may lie in a bend: so it is looked for a little
-    ahead to either side as well.
+    A pair is moved on a little with the bodies' deflections following. Where these no longer do, or move many times as
+    fast as the pair, or the equations of its nodes have a determinant that is not positive, the static curve folds.
+
+    Parameters
+    ----------
+    d : ndarray
+        The scene, see `layout`.
+    t : float
+        Time over tau.
+
+    Returns
+    -------
+    float
+        In roughnesses.
     """
-    largest = 0.0
-    for ahead in (0.0, _AHEAD, -_AHEAD):
-        there = y.copy()
-        there[-int(d[at.NODES] * d[at.TOTAL_SLOTS]) :] += ahead
-        slopes = _slopes(d, t, there)
-        if not np.all(np.linalg.det(slopes) > 0.0):
-            return math.inf
-        shares = np.linalg.solve(slopes, np.ones((*slopes.shape[:2], 1)))
-        largest = max(largest, float(np.max(np.abs(shares))))
-    return largest
+    n, grid = int(d[at.NODES]), int(d[at.GRID_AT])
+    for k in range(int(d[at.TOTAL_SLOTS])):
+        slot = int(d[at.HISTORIES] + d[at.HISTORY] * k)
+        gap, way, before = float(d[slot + at.LAST_GAP]), float(d[slot + at.WAY]), row(d, slot, at.ROW_GAP)
+        if math.isnan(d[slot + at.PAIR]) or gap >= d[at.CUTOFF] or d[slot + at.LENGTH] == 0.0:
+            continue
+        here = _follow(d, t, slot, d[before : before + n] - gap - d[grid : grid + n], gap)
+        for ahead in _AHEAD:
+            there = None if here is None else _follow(d, t, slot, here, gap + way * ahead)
+            if here is None or there is None or np.max(np.abs(there - here)) > _FOLD_SHARE * ahead:
+                return gap
+    return math.nan
+
+
+def _follow(d: Floats, t: float, slot: int, deflection: Floats, gap: float) -> Floats | None:
+    """Deflections of one pair at a gap, on the stable branch next to given ones; None if there are none."""
+    n, length = int(d[at.NODES]), float(d[slot + at.LENGTH])
+    first, pressure = first_unknown(d, slot), row(d, slot, at.ROW_PRESSURE)
+    y, slopes, kappa = np.zeros(int(d[at.STATES])), np.empty((n, n)), np.empty((n, n))
+    influence(d, length, kappa)
+    for _ in range(_TRIES):
+        y[first : first + n] = deflection
+        node_force(d, slot, True, t, y, gap, float(d[slot + at.WAY]), length)
+        stiffness_matrix(d, slot, slopes)
+        matrix = np.eye(n) - kappa.T @ slopes
+        if not np.all(np.isfinite(matrix)) or np.linalg.det(matrix) <= 0.0:
+            return None
+        change = np.linalg.solve(matrix, deflection - d[pressure : pressure + n] @ kappa)
+        deflection = deflection - change
+        if np.max(np.abs(change)) <= _FOLLOWED:
+            return deflection
+    return None

@@ -10,12 +10,19 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
+import numpy as np
 from llvmlite import binding
-from numba import types
+from numba import carray, types  # type: ignore[attr-defined]
+from numba.extending import intrinsic
+from numpy.typing import NDArray
 
-__all__ = ["replace_steps", "unavailable"]
+from gearidae.compiled import compiled
+
+__all__ = ["MANY", "numbers", "places", "replace", "unavailable", "words"]
+
+MANY: Final = 1 << 40  # a view of memory wants a length; nobody looks at it
 
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
@@ -39,41 +46,118 @@ def unavailable() -> str:
         binding.load_library_permanently(_cy_ida.__file__)
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
-    missing = [name for name in _NAMES if binding.address_of_symbol(name) is None]
-    return f"the SUNDIALS library lacks {', '.join(missing)}" if missing else ""
+    wanted = (*_NAMES, *OF_SOLVERS)
+    if missing := [name for name in wanted if binding.address_of_symbol(name) is None]:
+        return f"the SUNDIALS library lacks {', '.join(missing)}"
+    try:
+        places()
+    except RuntimeError as error:
+        return str(error)
+    return ""
 
 
-def replace_steps(linear: int, context: int, setup: int, solve: int) -> None:
-    """Give a dense linear solver another set-up and solve.
+OF_SOLVERS: Final = ("SUNLinSolSetup_Dense", "SUNLinSolSolve_Dense")
+"""Operations of the dense linear solver, which the driver replaces."""
 
-    A linear solver is a record of pointers: content, a table of functions, its context. Where the table and the two
-    functions lie in it depends on SUNDIALS' version, so they are looked for by what they hold.
 
-    Parameters
-    ----------
-    linear, context : int
-        Addresses of the solver and of its context.
-    setup, solve : int
-        Addresses of functions ``int(linear, matrix)`` and ``int(linear, matrix, x, b, tolerance)``.
+@cache
+def places() -> NDArray[np.int64]:
+    """Where SUNDIALS keeps a linear solver's functions, found by what lies there.
+
+    A linear solver is a record of pointers: its content, a table of functions, its context. Where the table lies in
+    it, and a function in the table, depends on SUNDIALS' version. That a vector's numbers lie where `numbers` looks
+    for them is checked on the way.
+
+    Returns
+    -------
+    ndarray of int64, shape (3,)
+        Place of the table in a linear solver's record, those of `OF_SOLVERS` in the table.
 
     Raises
     ------
     RuntimeError
-        If the functions are not where they could be.
+        If anything is not where it could be.
     """
-    fields = [ctypes.c_int64.from_address(linear + 8 * i) for i in range(6)]
-    after = next((i for i, field in enumerate(fields) if field.value == context), 0)
-    wanted = {
-        binding.address_of_symbol("SUNLinSolSetup_Dense"): setup,
-        binding.address_of_symbol("SUNLinSolSolve_Dense"): solve,
-    }
-    table = fields[after - 1].value if after else 0
-    functions = [ctypes.c_int64.from_address(table + 8 * i) for i in range(12)] if table else []
-    found = [function for function in functions if function.value in wanted]
-    if len(found) != len(wanted):
-        raise RuntimeError("SUNDIALS lays out its linear solvers in an unknown way")
-    for function in found:
-        function.value = wanted[function.value]
+    one = np.zeros(1)
+    context, address = ctypes.c_int64(), ctypes.c_int64
+    _call("SUNContext_Create", ctypes.c_int(0), ctypes.byref(context))
+    try:
+        vector = _call("N_VMake_Serial", ctypes.c_int32(1), address(one.ctypes.data), context)
+        matrix = _call("SUNDenseMatrix", ctypes.c_int32(1), ctypes.c_int32(1), context)
+        linear = _call("SUNLinSol_Dense", address(vector), address(matrix), context)
+        fields = _words(linear, 4)
+        table = fields.index(context.value) - 1 if context.value in fields[1:] else 0
+        functions = _words(fields[table], 12) if table else []
+        wanted = [binding.address_of_symbol(name) for name in OF_SOLVERS]
+        if any(function not in functions for function in wanted):
+            raise RuntimeError("SUNDIALS lays out its linear solvers in an unknown way")
+        if _words(_words(vector, 1)[0], 2)[1] != one.ctypes.data:
+            raise RuntimeError("SUNDIALS lays out its vectors in an unknown way")
+        _call("SUNLinSolFree", address(linear))
+        _call("SUNMatDestroy", address(matrix))
+        _call("N_VDestroy", address(vector))
+    finally:
+        _call("SUNContext_Free", ctypes.byref(context))
+    return np.array([table, *(functions.index(function) for function in wanted)], dtype=np.int64)
+
+
+def _call(name: str, *arguments: Any) -> int:
+    """Call a function of SUNDIALS from Python."""
+    kinds = [type(a) if isinstance(a, (ctypes.c_int, ctypes.c_int64)) else ctypes.c_void_p for a in arguments]
+    function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(binding.address_of_symbol(name))
+    return int(function(*arguments))
+
+
+def _words(address: int, count: int) -> list[int]:
+    return list((ctypes.c_int64 * count).from_address(address))
+
+
+def _to_integers(typing: Any, address: Any) -> Any:
+    """Type of an address taken as a pointer to integers."""
+    return types.CPointer(types.int64)(address), _cast  # type: ignore[no-untyped-call]
+
+
+def _to_reals(typing: Any, address: Any) -> Any:
+    """Type of an address taken as a pointer to real numbers."""
+    return types.CPointer(types.float64)(address), _cast  # type: ignore[no-untyped-call]
+
+
+def _cast(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    return builder.inttoptr(values[0], context.get_value_type(signature.return_type))
+
+
+_integers_at: Any = intrinsic(_to_integers)
+_reals_at: Any = intrinsic(_to_reals)
+
+
+@compiled
+def words(address: int) -> NDArray[np.int64]:
+    """Look at what lies at an address as pointers."""
+    return carray(_integers_at(address), (MANY,))
+
+
+@compiled
+def numbers(vector: int) -> NDArray[np.float64]:
+    """Look at the numbers of a serial vector, given by its address, without a call."""
+    return carray(_reals_at(words(words(vector)[0])[1]), (MANY,))
+
+
+@compiled
+def replace(record: int, where: NDArray[np.int64], functions: NDArray[np.int64]) -> None:
+    """Give a linear solver other functions.
+
+    Parameters
+    ----------
+    record : int
+        Its address.
+    where : ndarray of int64, shape (n + 1,)
+        From `places`.
+    functions : ndarray of int64, shape (n,)
+        Addresses.
+    """
+    table = words(words(record)[where[0]])
+    for k in range(functions.size):
+        table[where[k + 1]] = functions[k]
 
 
 _PTR = types.intp
@@ -94,7 +178,6 @@ SUNContext_Free = _declare("SUNContext_Free", _INT, _PTR)
 SUNContext_ClearErrHandlers = _declare("SUNContext_ClearErrHandlers", _INT, _PTR)
 N_VMake_Serial = _declare("N_VMake_Serial", _PTR, types.int32, _PTR, _PTR)
 N_VDestroy = _declare("N_VDestroy", types.void, _PTR)
-N_VGetArrayPointer = _declare("N_VGetArrayPointer", _REALS, _PTR)
 N_VEnableFusedOps_Serial = _declare("N_VEnableFusedOps_Serial", _INT, _PTR, _INT)
 SUNDenseMatrix = _declare("SUNDenseMatrix", _PTR, types.int32, types.int32, _PTR)
 SUNDenseMatrix_Data = _declare("SUNDenseMatrix_Data", _REALS, _PTR)
@@ -105,7 +188,7 @@ IDACreate = _declare("IDACreate", _PTR, _PTR)
 IDAInit = _declare("IDAInit", _INT, _PTR, _PTR, _REAL, _PTR, _PTR)
 IDAReInit = _declare("IDAReInit", _INT, _PTR, _REAL, _PTR, _PTR)
 IDAFree = _declare("IDAFree", types.void, _PTR)
-IDASVtolerances = _declare("IDASVtolerances", _INT, _PTR, _REAL, _PTR)
+IDAWFtolerances = _declare("IDAWFtolerances", _INT, _PTR, _PTR)
 IDASetUserData = _declare("IDASetUserData", _INT, _PTR, _PTR)
 IDASetLinearSolver = _declare("IDASetLinearSolver", _INT, _PTR, _PTR, _PTR)
 IDASetJacFn = _declare("IDASetJacFn", _INT, _PTR, _PTR)

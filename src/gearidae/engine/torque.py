@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 
-__all__ = ["pack_torque", "torque_force"]
+__all__ = ["pack_torque", "torque_force", "torque_rate"]
 
 Floats = NDArray[np.float64]
 
@@ -65,3 +65,18 @@ def torque_force(d: Floats, law: int, t: float) -> float:
             share = (t - d[k - 2]) / (d[k] - d[k - 2])
             value += d[k - 1] + share * (d[k + 1] - d[k - 1])
     return value
+
+
+@compiled
+def torque_rate(d: Floats, law: int, t: float) -> float:
+    """Rate of change of `torque_force`."""
+    k = law + at.LAW_BODY
+    rate = 0.0
+    for _ in range(int(d[law + at.LAW_HARMONICS])):
+        rate -= d[k] * d[k + 1] * math.sin(d[k + 1] * t + d[k + 2])
+        k += 3
+    points, j = int(d[law + at.LAW_POINTS]), int(d[law + at.LAW_SEGMENT])
+    if 0 < j < points:
+        k += 2 * j
+        rate += (d[k + 1] - d[k - 1]) / (d[k] - d[k - 2])
+    return rate

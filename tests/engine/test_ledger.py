@@ -1,0 +1,355 @@
+"""The energy ledger against formulas, against an independent quadrature, and against itself."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae import engine
+from gearidae.contact import asperity_of
+from gearidae.contact.energy import JOINING
+from gearidae.contact.jkr import S_FOLD, jkr_root
+from gearidae.contact.psi import psi
+from gearidae.engine import Start, solve
+from gearidae.engine.problem import make_problem
+from gearidae.mesh import curvature_radii
+
+CASES = Path(__file__).parents[2] / "cases"
+HIGH, LOW = gd.preset("teodorescu2009"), gd.preset("teodorescu2009_low_speed")
+I1, I2 = 1.5263e-20, 6.1052e-20
+
+
+def check(scene, solution):
+    """The residual lies within the stated bound."""
+    ledger = solution.ledger
+    assert ledger.throughput > 0.0
+    assert abs(ledger.residual) <= ledger.bound(scene.run.rtol, roller=scene.roller is not None)
+    return ledger
+
+
+def tail(y):
+    """int_y^inf psi, by Gauss quadrature."""
+    x, w = np.polynomial.legendre.leggauss(40)
+    edges = np.concatenate([[y], np.arange(math.floor(y) + 1, 16.0)])
+    half = 0.5 * np.diff(edges)[:, None]
+    return np.sum(half * w * psi(edges[:-1, None] + half * (1 + x)))
+
+
+def numbers(surface, width, radius):
+    """Asperities per psi, and the energy that one of them loses in joining [J]."""
+    tip = asperity_of(surface)
+    count = surface.asperity_density * width * np.sqrt(2 * radius * surface.roughness)
+    return count, JOINING * tip.pull_off * tip.stretch_limit
+
+
+# -- formulas --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("fraction", [0.0, 0.5])
+def test_an_impact_loses_what_its_asperities_cost(fraction):
+    scene = gd.preset("roller_slow").replace(
+        {"coating.sam_fraction": fraction, "contact.model": "asperity", "run.rtol": 1e-9}
+    )
+    scene = scene.replace({"run.duration": 3e-5, "run.samples": 80_001})
+    run = solve(scene)
+    ledger = check(scene, run)
+    deepest = run.samples["height"].min() / scene.surface.roughness
+    lost = 0.0
+    for surface, share in ((scene.surface, 1 - fraction), (scene.coated_surface, fraction)):
+        count, cost = numbers(surface, scene.roller.width, scene.roller.radius)
+        lost += share * count * cost * tail(deepest)
+    # the lowest sample lies near a turning point, so that its error enters squared
+    assert ledger.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
+    speed = run.samples["speed"]
+    kinetic = 0.5 * scene.roller.mass * (speed[-1] ** 2 - speed[0] ** 2)
+    assert ledger.kinetic_change == pytest.approx(kinetic, rel=1e-9, abs=0)
+    assert -kinetic == pytest.approx(lost, rel=1e-6, abs=0)
+    assert abs(ledger.stored_change) < 1e-8 * lost  # it has come free
+
+
+def test_free_flight_under_torque_and_quadratic_drag():
+    """Two bodies on their own: the pinion's work and the gear's loss are changes of kinetic energy with a formula."""
+    scene = LOW.replace(
+        {
+            "mesh.backlash": 4e-6,
+            "initial.gap": 2e-6,
+            "run.duration": 0.008,
+            "run.rtol": 1e-9,
+            "run.samples": "off",
+        }
+    )
+    ledger = check(scene, solve(scene))
+    gear = 1.5 / (1 + 8e-18 * 1.5 * 0.008 / I2)
+    pinion = 6.0 + scene.drive.torque * 0.008 / I1
+    # a hundred times the tolerance of 1e-9 per step
+    assert ledger.drive_work == pytest.approx(0.5 * I1 * (pinion**2 - 36.0), rel=1e-7, abs=0)
+    assert ledger.drag_loss == pytest.approx(0.5 * I2 * (2.25 - gear**2), rel=1e-7, abs=0)
+    assert (ledger.dry_loss, ledger.damping_loss, ledger.adhesion_loss) == (0.0, 0.0, 0.0)
+    assert (ledger.radius_work, ledger.stored_change, ledger.model_change) == (0.0, 0.0, 0.0)
+
+
+def test_a_gear_that_dry_resistance_stops():
+    """The whole kinetic energy goes into M20 times the angle turned, and nothing more while it is held."""
+    scene = HIGH.replace(
+        {
+            "mesh.backlash": 4e-6,
+            "initial.gap": 2e-6,
+            "drive.torque": 0.0,
+            "drive.harmonic": [],
+            "load.drag": 0.0,
+            "load.torque": 3e-17,
+            "initial.gear_speed": 1.5,
+            "run.duration": 4e-3,
+            "run.samples": 2,
+        }
+    )
+    run = solve(scene)
+    ledger = check(scene, run)
+    assert ledger.dry_loss == pytest.approx(0.5 * I2 * 2.25, rel=1e-6, abs=0)
+    assert ledger.dry_loss == pytest.approx(3e-17 * np.ptp(run.samples["gear_angle"]), rel=1e-6, abs=0)
+    assert ledger.drive_work == 0.0
+
+
+def test_work_of_torques_that_change():
+    """A harmonic on a pinion at constant speed to first order: work int M dphi with phi from its own equation."""
+    amplitude, frequency, duration = 1e-16, 1e3, 2.2e-3
+    scene = LOW.replace(
+        {
+            "mesh.backlash": 4e-6,
+            "initial.gap": 2e-6,
+            "drive.torque": 0.0,
+            "drive.harmonic": [{"amplitude": amplitude, "frequency": frequency, "phase": 0.4}],
+            "drive.schedule": [[0.0, 0.0], [1e-3, 3e-17]],
+            "load.drag": 0.0,
+            "run.duration": duration,
+            "run.rtol": 1e-9,
+            "run.samples": "off",
+        }
+    )
+    ledger = check(scene, solve(scene))
+    turns = 2 * math.pi * frequency
+    impulse = amplitude * (math.sin(turns * duration + 0.4) - math.sin(0.4)) / turns
+    impulse += 0.5 * 3e-17 * 1e-3 + 3e-17 * (duration - 1e-3)
+    pinion = 6.0 + impulse / I1
+    assert ledger.drive_work == pytest.approx(0.5 * I1 * (pinion**2 - 36.0), rel=1e-6, abs=0)
+
+
+def test_gears_without_adhesion_lose_nothing():
+    scene = HIGH.replace({"contact.asperity": "hertz", "contact.model": "asperity", "run.duration": 1e-4})
+    ledger = check(scene, solve(scene.replace({"run.samples": "off"})))
+    assert ledger.adhesion_loss == 0.0
+    # without the work of the changing radius the books would not balance by far
+    assert abs(ledger.radius_work) > 100 * abs(ledger.residual)
+
+
+# -- an independent quadrature ---------------------------------------------------------------------------------------
+
+
+def test_energies_of_the_sampled_motion():
+    """Joined heights by their definition and energies by quadrature over the asperities: no tables, no scaling."""
+    scene = LOW.replace(
+        {
+            "coating.sam_fraction": 0.5,
+            "contact.model": "asperity",
+            "initial.mesh_phase": 0.8,  # one pair on the path of contact, no other within reach
+            "initial.gap": 5.5 * 6e-9,
+            "run.duration": 3e-3,
+            "run.samples": 6001,
+            "run.rtol": 1e-9,
+        }
+    )
+    run = solve(scene)
+    ledger, times = check(scene, run), run.time
+    geometry, sigma = scene.geometry, scene.surface.roughness
+    u, angle, speed, pinion = (
+        run.samples[name] for name in ("transmission_error", "gear_angle", "gear_speed", "pinion_speed")
+    )
+    gap = (0.5 * scene.mesh.backlash - u) / sigma
+    radius = curvature_radii(geometry, geometry.base_radius_gear * angle)[2]
+    adhesion_loss = 0.0
+    stored = np.zeros(times.size)
+    for surface, share in ((scene.surface, 0.5), (scene.coated_surface, 0.5)):
+        tip = asperity_of(surface)
+        limit = tip.stretch_limit / sigma
+        count, cost = numbers(surface, scene.gears.face_width, radius)
+        energy, lost = walk(gap, limit, lambda e, lim=limit: energies(e, lim))
+        unit = share * count * tip.pull_off * tip.stretch_limit
+        stored += unit * energy
+        adhesion_loss += share * cost * np.sum(count * lost)
+    log_length = 0.5 * np.log(radius)
+    radius_work = np.sum(0.5 * (stored[1:] + stored[:-1]) * np.diff(log_length))
+    kinetic = 0.5 * I2 * speed**2 + 0.5 * I1 * pinion**2
+    drag = np.sum(0.5 * (speed[1:] ** 3 + speed[:-1] ** 3)) * 8e-18 * (times[1] - times[0])
+    # six thousand trapezoids over some tens of oscillations, turning points met to half a sample
+    assert ledger.adhesion_loss == pytest.approx(adhesion_loss, rel=1e-3, abs=0)
+    assert ledger.radius_work == pytest.approx(radius_work, rel=1e-3, abs=0)
+    assert ledger.drag_loss == pytest.approx(drag, rel=1e-6, abs=0)
+    assert ledger.kinetic_change == pytest.approx(kinetic[-1] - kinetic[0], rel=1e-4, abs=0)
+
+
+def energies(delta, limit):
+    """Energy of one asperity over Pc dc, from letting go."""
+    t = jkr_root(delta / limit) / S_FOLD
+    return 4 / 27 * ((t**10 - 1) / 10 - (t**7 - 1) + 1.5 * (t**4 - 1))
+
+
+def walk(gap, limit, energy):
+    """Stored energy and booked losses along a path of gaps, per asperity and psi."""
+    x, w = np.polynomial.legendre.leggauss(160)
+    joined, opening = gap[0], False
+    stored, lost = np.zeros(gap.size), np.zeros(gap.size)
+    for k, g in enumerate(gap):
+        further = k > 0 and g > gap[k - 1]
+        if further and not opening:
+            before, joined = joined, min(joined, gap[k - 1])
+            lost[k] = tail(joined) - tail(before)
+        elif opening and not further:
+            joined = max(joined, gap[k - 1] - limit)
+        opening = further
+        stretch = min(max(g - joined, 0.0), limit)
+        low = math.sqrt(1 - stretch / limit)
+        high = math.sqrt(1 + 10.0 / limit)
+        e = 0.5 * (high - low) * x + 0.5 * (high + low)
+        delta = limit * (e**2 - 1)
+        stored[k] = np.sum(0.5 * (high - low) * w * 2 * limit * e * energy(delta) * psi(g + delta))
+        # what a closing contact joins is booked at its turning point
+        stored[k] += JOINING * (tail(g) - tail(joined)) if g < joined else 0.0
+    return stored, lost
+
+
+# -- the bound -------------------------------------------------------------------------------------------------------
+
+
+def start_up():
+    return gd.load_case(CASES / "start_up.toml").replace({"run.duration": "5 ms", "run.samples": "off"})
+
+
+def braking():
+    changes = {"drive.schedule": [[0.0, 2.43e-11], [1e-3, 0.0]], "run.duration": "4 ms", "run.samples": "off"}
+    return gd.load_case(CASES / "braking.toml").replace(changes)
+
+
+def alternating():
+    return gd.load_case(CASES / "alternating.toml").replace({"run.duration": "5 ms", "run.samples": "off"})
+
+
+CASES_OF_ALL_KINDS = {
+    "low 1": LOW.replace({"run.duration": 0.05}),
+    "low 0.5": LOW.replace({"run.duration": 0.03, "coating.sam_fraction": 0.5}),
+    "low 0.45": LOW.replace({"run.duration": 0.03, "coating.sam_fraction": 0.45}),
+    "high coated": HIGH.replace({"run.duration": 3e-4, "coating.sam_fraction": 1.0}),
+    "high bare": HIGH.replace({"run.duration": 3e-4, "coating.sam_fraction": 0.0}),
+    "start in contact": LOW.replace({"run.duration": 5e-3, "initial.gap": 5.2 * 6e-9}),
+    "everything": HIGH.replace(
+        {
+            "run.duration": 2e-4,
+            "mesh.damping": 1e-6,
+            "mesh.static_error": [{"order": 19, "amplitude": 2e-9}],
+            "coating.sam_fraction": 0.5,
+        }
+    ),
+    "elastic gears": HIGH.replace({"run.duration": 2e-5, "contact.model": "elastic"}),
+    "slow roller": gd.preset("roller_slow"),
+    "fast roller": gd.preset("roller_fast"),
+    "coated roller": gd.preset("roller_slow").replace({"coating.sam_fraction": 1.0}),
+    "stretchy roller": gd.preset("roller_slow").replace(
+        {"surface.roughness": "1 nm", "contact.model": "asperity"}
+    ),
+    "start-up": start_up(),
+    "braking": braking(),
+    "alternating": alternating(),
+}
+
+
+@pytest.mark.parametrize("name", CASES_OF_ALL_KINDS)
+def test_residual_stays_within_its_bound(name):
+    scene = CASES_OF_ALL_KINDS[name].replace({"run.samples": "off"})
+    run = solve(scene)
+    assert run.status == "finished"
+    ledger = check(scene, run)
+    assert ledger.time == pytest.approx(scene.run.duration, rel=1e-12, abs=0)
+    assert ledger.adhesion_loss > 0.0
+
+
+@pytest.mark.parametrize("name", ["high bare", "slow roller"])
+def test_residual_falls_with_the_tolerance(name):
+    scene = CASES_OF_ALL_KINDS[name].replace({"run.samples": "off"})
+    coarse, fine = (solve(scene, rtol=rtol).ledger for rtol in (1e-5, 1e-8))
+    # three decades of tolerance; the residual's sign and size change from run to run by a factor of some
+    assert fine.imbalance < 3e-2 * coarse.imbalance
+
+
+def test_both_backends_keep_the_same_ledger():
+    scene = HIGH.replace({"run.duration": 1e-6, "coating.sam_fraction": 0.5})
+    native, portable = (solve(scene, backend=backend).ledger for backend in ("native", "sksundae"))
+    for name in native.__slots__:
+        # the same steps but for rounding, on the scale of all that has moved
+        assert getattr(portable, name) == pytest.approx(
+            getattr(native, name), rel=1e-6, abs=1e-9 * native.throughput
+        )
+
+
+# -- a long run in pieces ---------------------------------------------------------------------------------------------
+
+
+def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
+    scene = HIGH.replace({"run.duration": 2e-3, "coating.sam_fraction": 0.0, "run.samples": "off"})
+    starts = []
+
+    def take(block, tally, wall_time):
+        if block.checkpoint is not None and not starts:
+            starts.append(Start(block.checkpoint, tally, block.time))
+
+    whole = engine.follow(scene, take, backend="native")
+    rest = engine.follow(scene, lambda *_: None, backend="native", begin=starts[0])
+    assert 0.0 < starts[0].time < 2e-3
+    assert rest.ledger == whole.ledger
+    at_checkpoint = engine.ledger_at(scene, starts[0].checkpoint, "native")
+    assert at_checkpoint.time == pytest.approx(starts[0].time, rel=1e-12, abs=0)
+    assert abs(at_checkpoint.residual) <= at_checkpoint.bound(scene.run.rtol, roller=False)
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
+    monkeypatch.setattr("gearidae.engine.problem.rigid_limit", lambda *_: (2.0, True))
+    scene = gd.preset("roller_slow")
+    run = solve(scene, backend=backend)
+    assert run.statistics.skipped["elastic_deflection"] == 0
+    ledger = check(scene, run)
+    # the bodies give way: at the same height less is stored
+    assert ledger.model_change < -3 * abs(ledger.residual)
+
+
+def test_looking_does_not_disturb():
+    problem = make_problem(HIGH)
+    before = problem.data.copy()
+    problem.ledger(1e-3, problem.start, np.zeros_like(problem.start))
+    np.testing.assert_array_equal(problem.data, before)
+
+
+# -- in a dataset ----------------------------------------------------------------------------------------------------
+
+
+def test_the_ledger_is_in_the_dataset(tmp_path):
+    scene = LOW.replace({"run.duration": 2e-3, "run.samples": 11})
+    ds = gd.simulate(scene)
+    kept = json.loads(ds.attrs["ledger"])
+    given = kept["drive_work"] + kept["radius_work"] + kept["model_change"]
+    lost = kept["drag_loss"] + kept["dry_loss"] + kept["damping_loss"] + kept["adhesion_loss"]
+    left = given - lost - kept["stored_change"] - kept["kinetic_change"]
+    assert kept["residual"] == pytest.approx(left, abs=1e-12 * kept["throughput"])
+    assert kept["residual_bound"] == pytest.approx(10 * scene.run.rtol * kept["throughput"], rel=1e-12, abs=0)
+    archived = gd.simulate(scene, archive=tmp_path / "run.nc")
+    assert archived.attrs["ledger"] == ds.attrs["ledger"]
+
+
+def test_the_ledger_of_a_sweep(tmp_path):
+    scene = LOW.replace({"run.duration": 2e-3, "run.samples": 11})
+    swept = gd.sweep(scene, {"coating.sam_fraction": [0.5, 1.0]})
+    single = json.loads(gd.simulate(scene.replace({"coating.sam_fraction": 0.5})).attrs["ledger"])
+    for name in ("adhesion_loss", "residual", "throughput"):
+        assert swept[name].attrs["units"] == "J"
+        assert swept[name].sel(sam_fraction=0.5) == single[name]
