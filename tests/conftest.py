@@ -1,3 +1,5 @@
+import signal
+
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -8,6 +10,13 @@ from gearidae.engine.run import Block, Ending
 # Compilation, once per machine, falls into whichever example comes first.
 settings.register_profile("gearidae", deadline=None)
 settings.load_profile("gearidae")
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _heed_interrupts():
+    """Let tests send Ctrl-C to themselves and to programs of theirs also where a shell runs them in the background."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.pieces import Spread, count, first_above, pieces, reached, spread
 from gearidae.archive.select import is_roller, run_value, runs, scene_of
 from gearidae.records import EventKind
 
@@ -116,52 +117,53 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
 
 
 def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcome:
-    speed = run["gear_speed"].values
-    speed = speed[np.isfinite(speed)]
+    speed = run["gear_speed"]
     status = str(run_value(run, "status"))
+    extent = spread(speed)
     return GearOutcome(
         label=label,
         status=status,
-        verdict=_gear_verdict(speed, status, scheduled),
-        min_speed=float(speed.min()) if speed.size else np.nan,
-        max_speed=float(speed.max()) if speed.size else np.nan,
-        impacts=_impacts(run),
+        verdict=_gear_verdict(speed, extent, status, scheduled),
+        min_speed=extent.low,
+        max_speed=extent.high,
+        impacts=count(run["event_kind"], EventKind.ONSET),
         wall_time=float(run_value(run, "wall_time")),
     )
 
 
-def _gear_verdict(speed: np.ndarray[Any, np.dtype[np.float64]], status: str, scheduled: bool) -> str:
-    if not speed.size:
+def _gear_verdict(speed: xr.DataArray, extent: Spread, status: str, scheduled: bool) -> str:
+    if not extent.number:
         return "unfinished"
+    end = reached(speed)
     if scheduled:
         if status != "finished":
             return "unfinished"
-        return "runs" if speed[-max(1, speed.size // 20) :].min() > 0.0 else "stops"
-    started = int(np.argmax(speed > 0.0))  # a gear that starts from rest has not stuck there
-    if speed[started:].min() <= 0.0:
+        return "runs" if spread(speed, end - max(1, end // 20), end).low > 0.0 else "stops"
+    started = first_above(speed, 0.0)  # a gear that starts from rest has not stuck there
+    if spread(speed, started, end).low <= 0.0:
         return "sticks"
     if status != "finished":
         return "unfinished"
-    settled = speed[max(started, int(START_UP * speed.size)) :]
-    return "irregular" if np.ptp(settled) > IRREGULAR_ABOVE * settled.mean() else "turns smoothly"
+    settled = spread(speed, max(started, int(START_UP * end)), end)
+    return "irregular" if settled.high - settled.low > IRREGULAR_ABOVE * settled.mean else "turns smoothly"
 
 
 def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
-    force, speed = (run[name].values for name in ("force", "speed"))
-    force, speed = force[np.isfinite(force)], speed[np.isfinite(speed)]
+    force, speed = spread(run["force"]), run["speed"]
     status = str(run_value(run, "status"))
-    impacts = _impacts(run)
+    impacts = count(run["event_kind"], EventKind.ONSET)
     verdict, restitution = "unfinished", np.nan
-    if status == "finished" and speed.size:
+    if status == "finished" and force.number:
         verdict = "sticks" if impacts else "flies"
-        if impacts and not _in_touch(run) and speed[-1] > 0.0:
-            verdict, restitution = "rebounds", float(speed[-1] / abs(speed[0]))
+        first, last = float(speed[0]), float(speed[-1])
+        if impacts and not _in_touch(run) and last > 0.0:
+            verdict, restitution = "rebounds", last / abs(first)
     return RollerOutcome(
         label=label,
         status=status,
         verdict=verdict,
-        peak_force=float(force.max(initial=0.0)),
-        pull_off_force=abs(float(force.min(initial=0.0))),
+        peak_force=max(force.high, 0.0) if force.number else 0.0,
+        pull_off_force=max(-force.low, 0.0) if force.number else 0.0,
         restitution=restitution,
         impacts=impacts,
         wall_time=float(run_value(run, "wall_time")),
@@ -170,12 +172,11 @@ def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
 
 def _in_touch(run: xr.Dataset) -> bool:
     """Whether the last contact made has not been broken."""
-    kinds = run["event_kind"].values
-    return bool(kinds[np.isin(kinds, (EventKind.ONSET, EventKind.SEPARATION))][-1] == EventKind.ONSET)
-
-
-def _impacts(run: xr.Dataset) -> int:
-    return int(np.count_nonzero(run["event_kind"].values == EventKind.ONSET))
+    last = None
+    for _, kinds in pieces(run["event_kind"]):
+        changes = kinds[np.isin(kinds, (EventKind.ONSET, EventKind.SEPARATION))]
+        last = changes[-1] if changes.size else last
+    return bool(last == EventKind.ONSET)
 
 
 def _is_scheduled(scene: dict[str, Any]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import secrets
 from pathlib import Path
@@ -11,11 +12,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.definition import chunked
+from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import sync
 from gearidae.archive.growing import is_growing, trimmed
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
+from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
 from gearidae.archive.variables import EVENTS, columns
 from gearidae.errors import SceneError
 
@@ -24,7 +26,7 @@ __all__ = ["check_target", "open_archive", "save"]
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _ATTRIBUTES = ("title", "history", "source", "status", "message", "rtol", "t_end", "wall_time", "steps")
 """Attributes that readers of an archive rely on."""
-_LAZY_ABOVE = 256 * 2**20
+_LAZY_ABOVE = 128 * 2**20
 """Archives larger than this [bytes in memory] are read piece by piece as they are used."""
 
 
@@ -115,8 +117,9 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     -------
     xarray.Dataset
         Identical to what was saved. Of a run that is not at its end yet, what there is so far, with the status
-        ``running`` or ``interrupted``. Archives of more than 256 MB are read piece by piece as they are used
-        (the file stays open until ``ds.close()``), smaller ones at once.
+        ``running`` or ``interrupted``. Archives of more than 128 MB are read piece by piece as they are used, each
+        time they are used (the file stays open until ``ds.close()``; ``ds.load()`` reads all), smaller ones at
+        once.
 
     Raises
     ------
@@ -134,7 +137,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, "is not a netCDF4 file")
     running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
-        ds = xr.open_dataset(source, engine="netcdf4", decode_times=False)
+        ds = _opened(source)
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         raise SceneError("archive", path, f"is damaged or not a netCDF4 file ({error})") from error
     try:
@@ -142,7 +145,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         if is_growing(ds):
             ds = trimmed(ds, running=running)
         if ds.nbytes <= _LAZY_ABOVE:
-            ds.load()
+            ds = in_memory(ds)
     except SceneError:
         ds.close()
         raise
@@ -152,6 +155,27 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     if ds.nbytes <= _LAZY_ABOVE:
         ds.close()
     return ds
+
+
+def _opened(source: Path) -> xr.Dataset:
+    """Open a file without reading more than it takes to describe it."""
+    store = xr.backends.NetCDF4DataStore.open(str(source))  # type: ignore[no-untyped-call]
+    try:
+        variables = store.ds.variables
+        if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= _LAZY_ABOVE:
+            return xr.open_dataset(store, decode_times=False)
+        for variable in variables.values():
+            if variable.dimensions and variable.chunking() != "contiguous":
+                # two chunks are enough to go through in order; the library's own 64 MB count for each variable
+                variable.set_var_chunk_cache(size=2 * CHUNK)
+        times = variables.get("time")
+        if times is None or times.size <= LARGEST_IN_MEMORY:
+            return xr.open_dataset(store, decode_times=False, cache=False)
+        ds = xr.open_dataset(store, decode_times=False, cache=False, drop_variables="time")
+        return with_times(ds, store.open_store_variable("time", times))
+    except BaseException:
+        store.close()
+        raise
 
 
 def _as_path(path: str | os.PathLike[str]) -> Path:

@@ -83,6 +83,8 @@ def run_value(run: xr.Dataset, name: str) -> Any:
 
 def _own_events(run: xr.Dataset) -> xr.Dataset:
     """Drop the events of other runs, which stay behind when a run is picked from a sweep."""
+    if "swept" not in run.attrs:
+        return run
     labels = [
         name for name in map(str, run.coords) if name not in run.dims and f"event_{name}" in run.variables
     ]

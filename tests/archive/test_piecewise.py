@@ -1,0 +1,123 @@
+"""What is asked of a long archive is read piece by piece: no more of it is in memory than a piece at a time.
+
+The pieces are made small here, and every read of the file is watched; the largest decides how memory grows.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
+
+import gearidae as gd
+from gearidae import account as account_module
+from gearidae.analysis import teeth
+from gearidae.archive import netcdf, pieces, save, time_index, to_dataset
+from gearidae.archive.growing import GrowingArchive
+from gearidae.outcome import outcomes
+from gearidae.plot import spectra, style
+from gearidae.report import build_report, series
+
+SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
+LOOKED_BACK = 4_096  # samples that the view of the teeth looks back at together
+LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
+
+
+@pytest.fixture
+def lengths(monkeypatch):
+    """Make pieces small, and note how many values each read of a file fetches."""
+    for module, name, value in (
+        (netcdf, "_LAZY_ABOVE", 0),
+        (netcdf, "LARGEST_IN_MEMORY", PIECE),
+        (time_index, "LARGEST_IN_MEMORY", PIECE),
+        (pieces, "PIECE", PIECE),
+        (style, "PIECE", PIECE),
+        (series, "PIECE", PIECE),
+        (account_module, "PIECE", PIECE),
+        (style, "_MOST_POINTS", DRAWN),
+        (spectra, "_MOST_SAMPLES", ANALYSED),
+        (teeth, "_LONGEST_STRETCH", ANALYSED),
+    ):
+        monkeypatch.setattr(module, name, value)
+    found = []
+    read = NetCDF4ArrayWrapper._getitem
+
+    def watched(self, key):
+        values = read(self, key)
+        found.append(np.size(values))
+        return values
+
+    monkeypatch.setattr(NetCDF4ArrayWrapper, "_getitem", watched)
+    return found
+
+
+@pytest.fixture
+def long(make_solution, tmp_path, lengths):
+    """An archive of many pieces, unevenly, and what it holds in memory."""
+    ds = to_dataset(LOW, make_solution(LOW))
+    assert ds.sizes["time"] == SAMPLES
+    save(ds, tmp_path / "long.nc")
+    with gd.open_archive(tmp_path / "long.nc") as opened:
+        yield opened, ds
+
+
+def test_outcome_and_account(long, lengths):
+    opened, ds = long
+    assert outcomes(opened) == outcomes(ds)
+    piecewise, whole = account_module.account(opened), account_module.account(ds)
+    assert piecewise.as_json() == whole.as_json()  # in which what is not told, NaN, equals itself
+    assert 1 < max(lengths) <= PIECE + 2  # pieces of the account overlap
+
+
+def test_pictures_and_report(long, lengths):
+    opened, ds = long
+    del lengths[:]
+    for picture in (gd.plot.overview, gd.plot.gap, gd.plot.transmission_error):
+        picture(opened)
+    assert max(lengths) <= PIECE
+    for picture in (gd.plot.power_spectrum, gd.plot.cycle):
+        picture(opened)
+    assert max(lengths) <= ANALYSED
+    page = build_report(opened, most_values=9_000)
+    assert max(lengths) <= ANALYSED + LOOKED_BACK
+    assert page == build_report(ds, most_values=9_000)
+
+
+def test_opening_reads_next_to_nothing(long, lengths):
+    opened, _ = long
+    assert sum(lengths) < 100
+    assert opened.sel(time=0.1, method="nearest").gear_speed.size == 1
+    assert sum(lengths) < 200
+
+
+def test_a_growing_archive(make_solution, tmp_path, lengths):
+    """The same holds of a run under way; of a short one nothing stays behind in the file."""
+    template = to_dataset(LOW, make_solution(LOW)).isel(time=slice(0), event=slice(0))
+    path = tmp_path / "run.nc"
+    with GrowingArchive.create(path, template, SAMPLES, 0.3, 20) as archive:
+        archive._write("gear_speed", 0, np.ones(SAMPLES))
+        archive.samples = SAMPLES
+        archive._commit()
+    with gd.open_archive(path) as opened:
+        assert opened.sizes["time"] == SAMPLES
+        assert opened.attrs["status"] == "interrupted"
+        assert max(lengths) <= PIECE
+
+
+@pytest.mark.parametrize("size", [1, 7, 512, 10**6])
+def test_pieces(size, monkeypatch):
+    """However it is cut, a variable has one spread, one end, one first value above a level."""
+    monkeypatch.setattr(pieces, "PIECE", size)
+    values = np.random.default_rng(3).normal(size=1000)
+    values[900:] = np.nan
+    array = xr.DataArray(values, dims="time")
+    found = pieces.spread(array, 5, 950)
+    assert (found.number, found.low, found.high) == (895, values[5:900].min(), values[5:900].max())
+    assert found.mean == pytest.approx(values[5:900].mean(), rel=1e-12, abs=0)
+    assert pieces.reached(array) == 900
+    assert pieces.reached(array[:700]) == 700
+    assert pieces.first_above(array, 1.5) == int(np.argmax(values > 1.5))
+    assert pieces.first_above(array, 100.0) == 0
+    assert pieces.count(array, values[3]) == 1
+    assert pieces.spread(array, 900).number == 0
