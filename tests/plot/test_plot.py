@@ -9,11 +9,14 @@ import warnings
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import gearidae as gd
 from gearidae.archive import combine, to_dataset
+from gearidae.archive import pieces as pieces_module
+from gearidae.plot import style
 from gearidae.plot.style import scale_for, thin
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Solution, Statistics
 
@@ -236,11 +239,15 @@ def test_prefixes(largest, unit, factor, expected):
     assert scale.factor == pytest.approx(factor, rel=1e-12, abs=0)
 
 
+def along_time(values):
+    return xr.DataArray(values, dims="time")
+
+
 def test_thinning_keeps_every_extreme():
     """Of 600 000 samples, 3000 blocks of 200 are kept by their extremes: exact in any row of whole blocks."""
     time = np.linspace(0.0, 1.0, 600_000)
     values = np.random.default_rng(1).normal(size=time.size)
-    at, kept = thin(time, values)
+    at, kept = thin(along_time(time), along_time(values))
     assert len(kept) < 6_010
     assert (np.diff(at) > 0.0).all()
     for block in range(0, time.size, 2_000):
@@ -249,8 +256,21 @@ def test_thinning_keeps_every_extreme():
         assert kept[inside].min() == values[block : block + 2_000].min()
 
 
+def test_thinning_does_not_depend_on_how_the_file_is_read(monkeypatch):
+    """Pieces of 1000 samples (whole blocks of 2 among them, and a rest) give what one piece gives."""
+    time, values = (
+        along_time(np.linspace(0.0, 1.0, 8_003)),
+        along_time(np.random.default_rng(2).normal(size=8_003)),
+    )
+    whole = thin(time, values, 8_001)
+    monkeypatch.setattr(style, "PIECE", 1_000)
+    monkeypatch.setattr(pieces_module, "PIECE", 1_000)
+    for one, other in zip(thin(time, values, 8_001), whole, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
 def test_thinning_leaves_short_traces_alone():
     time = np.linspace(0.0, 1.0, 100)
-    at, kept = thin(time, time**2)
-    assert at is time
+    at, kept = thin(along_time(time), along_time(time**2))
+    assert np.array_equal(at, time)
     assert np.array_equal(kept, time**2)

@@ -99,7 +99,7 @@ def test_page_is_whole_and_loads_nothing(kind, request):
 def test_texts_of_the_scene_are_escaped(single):
     text = build_report(single)
     page = Page(text)
-    assert len(page.scripts) == 2  # the data and the viewer
+    assert len(page.scripts) == 3  # the data, those of the teeth, and the viewers
     assert "<b>" not in text
     assert "alert(1)</script>" not in text
     assert "alert(1)" in page.text  # shown as what it is
@@ -150,10 +150,10 @@ def test_run_that_ended_early(single):
     assert np.isfinite(embedded[:2000]).all()
 
 
-def test_account_of_a_run(single, roller):
+def test_account_of_a_run(single, swept):
     told = json.loads(single.attrs["account"])
     assert f"work of the drive {told['drive_work']:.6g} J" in Page(build_report(single)).text
-    assert "Account of the run" not in Page(build_report(roller)).text
+    assert "Account of the run" not in Page(build_report(swept)).text
 
 
 @pytest.mark.parametrize("preset", ["teodorescu2009_low_speed", "roller_slow"])

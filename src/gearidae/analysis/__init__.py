@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies, impact_spectrum
     from gearidae.analysis.spectra import power_spectrum, spectrogram
     from gearidae.analysis.starting import starting_torque, static_starting_torque
+    from gearidae.analysis.teeth import tooth_contacts
 
 __all__ = [
     "Assessment",
@@ -34,6 +35,7 @@ __all__ = [
     "spectrogram",
     "starting_torque",
     "static_starting_torque",
+    "tooth_contacts",
 ]
 
 _HOME = {
@@ -51,6 +53,7 @@ _HOME = {
     "spectrogram": "spectra",
     "starting_torque": "starting",
     "static_starting_torque": "starting",
+    "tooth_contacts": "teeth",
 }
 
 __getattr__, __dir__ = lazy_names(globals(), _HOME)

@@ -16,9 +16,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from gearidae.contact.jkr import asperity_of
@@ -29,9 +30,27 @@ from gearidae.mesh.involute import curvature_radii
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["PairLaw", "contact_resonance", "leaving_radii", "nearest_gap", "pair_law", "settled_gap"]
+__all__ = [
+    "MaterialLaw",
+    "PairLaw",
+    "contact_resonance",
+    "leaving_radii",
+    "material_laws",
+    "nearest_gap",
+    "pair_law",
+    "settled_gap",
+]
 
 PairLaw = Callable[..., float]
+
+
+class MaterialLaw(NamedTuple):
+    """Force law of one part of the flanks, see `material_laws`."""
+
+    scale: float
+    limit: float
+    table: NDArray[np.float64]
+
 
 _DEEPEST, _WIDEST = -30.0, GAP_HIGH - 0.1
 """Gaps between which a balance is sought, in roughnesses."""
@@ -103,26 +122,47 @@ def pair_law(scene: Scene) -> PairLaw:
         ``law(gap, joined, radius, opened)`` [m] gives the force [N], positive pushes apart. `joined` is the gap to
         which the pair has been pressed, `opened` (optional) the widest to which it has come since.
     """
+    roughness, parts = scene.surface.roughness, material_laws(scene)
+
+    def law(gap: float, joined: float, radius: float, opened: float = -math.inf) -> float:
+        at, low, high = gap / roughness, joined / roughness, opened / roughness
+        total = 0.0
+        for scale, limit, table in parts.values():
+            total += scale * law_value(table, at, min(max(low, high - limit), at))[0]
+        return math.sqrt(2.0 * radius * roughness) * float(total)
+
+    return law
+
+
+def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
+    """Force laws of the bare and of the coated part of a scene's teeth, as far as there are such parts.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+
+    Returns
+    -------
+    dict
+        By ``bare`` and ``coated``: force of unit value and unit ``sqrt(2 R sigma)`` [N/m] times the part's share, its
+        stretch limit over the roughness, and its table (see `gearidae.contact.law`).
+    """
     assert scene.gears is not None
     roughness, width = scene.surface.roughness, scene.gears.face_width
     covered = scene.coating.sam_fraction
-    parts = []
-    for part, surface in ((covered, scene.coated_surface), (1.0 - covered, scene.surface)):
+    laws = {}
+    for name, part, surface in (
+        ("coated", covered, scene.coated_surface),
+        ("bare", 1.0 - covered, scene.surface),
+    ):
         if part > 0.0:
             asperity = asperity_of(surface)
             hertz = 4.0 / 3.0 * asperity.modulus * math.sqrt(surface.asperity_radius)
             scale = part * force_scale(roughness, hertz, surface.asperity_density, width)
             limit = asperity.stretch_limit / roughness
-            parts.append((scale, limit, law_table(limit, scene.contact.asperity)))
-
-    def law(gap: float, joined: float, radius: float, opened: float = -math.inf) -> float:
-        at, low, high = gap / roughness, joined / roughness, opened / roughness
-        total = 0.0
-        for scale, limit, table in parts:
-            total += scale * law_value(table, at, min(max(low, high - limit), at))[0]
-        return math.sqrt(2.0 * radius * roughness) * float(total)
-
-    return law
+            laws[name] = MaterialLaw(scale, limit, law_table(limit, scene.contact.asperity))
+    return laws
 
 
 def leaving_radii(scene: Scene) -> tuple[float, list[float]]:

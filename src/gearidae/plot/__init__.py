@@ -1,5 +1,13 @@
-"""Pictures of datasets: one function each, takes a dataset, returns matplotlib axes or a figure."""
+"""Pictures of datasets: one function each, takes a dataset, returns matplotlib axes or a figure.
 
+Those of the teeth are loaded on first use, because they need the contact laws, compiled.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gearidae.lazy import lazy_names
 from gearidae.plot.coating import coating_map, starting_torque
 from gearidae.plot.files import write
 from gearidae.plot.gears import gap, gear_speed, transmission_error
@@ -8,7 +16,12 @@ from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
 from gearidae.plot.torque import contact_torque
 
+if TYPE_CHECKING:
+    from gearidae.plot.animation import animate_teeth
+    from gearidae.plot.teeth_view import teeth
+
 __all__ = [
+    "animate_teeth",
     "coating_map",
     "contact_torque",
     "cycle",
@@ -21,6 +34,9 @@ __all__ = [
     "roller_gap",
     "spectrogram",
     "starting_torque",
+    "teeth",
     "transmission_error",
     "write",
 ]
+
+__getattr__, __dir__ = lazy_names(globals(), {"animate_teeth": "animation", "teeth": "teeth_view"})

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import os
 import secrets
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 from gearidae.errors import SceneError
 
-__all__ = ["write"]
+__all__ = ["BY_FFMPEG", "MOVING", "whole_file", "write"]
+
+BY_FFMPEG = ("mp4", "webm")
+"""Endings of moving pictures that need ffmpeg."""
+MOVING = ("gif", "webp", *BY_FFMPEG)
+"""Endings of moving pictures."""
 
 
 def write(
@@ -39,21 +46,51 @@ def write(
     SceneError
         If the file exists and may not be replaced, the format is not known, or it cannot be written.
     """
+    with whole_file(path, figure.canvas.get_supported_filetypes(), overwrite=overwrite) as part:
+        figure.savefig(part, format=_kind(part), dpi=dpi)
+    return Path(path)
+
+
+@contextmanager
+def whole_file(
+    path: str | os.PathLike[str], known: Collection[str], *, overwrite: bool = False
+) -> Iterator[Path]:
+    """Let a file be written that appears whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        File to write.
+    known : collection of str
+        Endings allowed, without the dot.
+    overwrite : bool, optional
+        Whether a file that is there may be replaced.
+
+    Yields
+    ------
+    Path
+        Where to write it, a file beside with the same ending.
+
+    Raises
+    ------
+    SceneError
+        If the file exists and may not be replaced, its ending is not known, or it cannot be written.
+    """
     target = Path(path)
-    known = figure.canvas.get_supported_filetypes()
-    kind = target.suffix.removeprefix(".").lower()
-    if kind not in known:
-        raise SceneError(
-            "picture", path, f"must end in one of {', '.join(f'.{each}' for each in sorted(known))}"
-        )
+    if _kind(target) not in known:
+        endings = ", ".join(f".{each}" for each in sorted(known))
+        raise SceneError("picture", path, f"must end in one of {endings}")
     if target.is_dir() or (target.exists() and not overwrite):
         raise SceneError("picture", path, "exists already: name another with -o, or allow --overwrite")
-    part = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
+    part = target.with_name(f".{target.stem}.{os.getpid()}-{secrets.token_hex(4)}.part.{_kind(target)}")
     try:
-        figure.savefig(part, format=kind, dpi=dpi)
+        yield part
         part.replace(target)
     except OSError as error:
         raise SceneError("picture", path, f"cannot be written ({error.strerror})") from error
     finally:
         part.unlink(missing_ok=True)
-    return target
+
+
+def _kind(path: Path) -> str:
+    return path.suffix.removeprefix(".").lower()

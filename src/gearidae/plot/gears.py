@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.plot.style import Run, label_time, legend, new_axes, runs_of, scale_for, tidy
+from gearidae.plot.style import Run, label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 
 __all__ = ["gap", "gear_speed", "transmission_error"]
 
@@ -60,7 +59,7 @@ def transmission_error(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     ax = new_axes(ax)
     runs = runs_of(ds, "transmission_error")
-    scale = scale_for(_largest(runs, "transmission_error"), "m")
+    scale = scale_for(largest(runs, "transmission_error"), "m")
     _overlay(ax, runs, "transmission_error", scale.factor)
     ax.set_ylabel(f"transmission error ({scale.unit})")
     return ax
@@ -90,7 +89,7 @@ def gap(ds: xr.Dataset, ax: Axes | None = None, *, flank: str = "drive") -> Axes
     ax = new_axes(ax)
     name = f"{flank}_gap"
     runs = runs_of(ds, name)
-    scale = scale_for(_largest(runs, name), "m")
+    scale = scale_for(largest(runs, name), "m")
     _overlay(ax, runs, name, scale.factor)
     ax.set_ylabel(f"{flank} flank gap ({scale.unit})")
     return ax
@@ -99,12 +98,13 @@ def gap(ds: xr.Dataset, ax: Axes | None = None, *, flank: str = "drive") -> Axes
 def _overlay(ax: Axes, runs: list[Run], name: str, factor: float) -> None:
     """Draw the runs over each other, the liveliest at the back, so that it does not hide the others."""
     time = label_time(ax, runs)
-    for run in sorted(runs, key=lambda run: float(np.ptp(run.settled(name))), reverse=True):
+    for run in sorted(runs, key=lambda run: _liveliness(run, name), reverse=True):
         at, values = run.trace(name)
         ax.plot(at * time.factor, values * factor, color=run.colour, linewidth=1.0, label=run.label)
     tidy(ax)
     legend(ax, runs)
 
 
-def _largest(runs: list[Run], name: str) -> float:
-    return float(max(np.nanmax(np.abs(run.data[name].values)) for run in runs))
+def _liveliness(run: Run, name: str) -> float:
+    extent = run.settled(name)
+    return extent.high - extent.low

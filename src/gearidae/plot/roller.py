@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.plot.style import label_time, legend, new_axes, runs_of, scale_for, tidy
+from gearidae.plot.style import label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 
 __all__ = ["roller_force", "roller_gap"]
 
@@ -59,7 +58,7 @@ def _draw(ds: xr.Dataset, ax: Axes | None, name: str, unit: str, words: str) -> 
     ax = new_axes(ax)
     runs = runs_of(ds, name)
     time = label_time(ax, runs)
-    scale = scale_for(float(max(np.nanmax(np.abs(run.data[name].values)) for run in runs)), unit)
+    scale = scale_for(largest(runs, name), unit)
     for run in runs:
         at, values = run.trace(name)
         ax.plot(

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter
 
 from gearidae import analysis
+from gearidae.archive.pieces import pieces, reached
 from gearidae.archive.select import runs, scene_of
 from gearidae.errors import SceneError
 from gearidae.plot.style import Run, legend, new_axes, runs_of, scale_for, thin, tidy
@@ -21,6 +22,8 @@ _DECADES = 6
 """Spectra are shown down to this many decades below their largest value."""
 _SETTLED = 0.2
 """Part of a run left out of its spectrum, because it has not settled."""
+_MOST_SAMPLES = 2**19
+"""Samples of a run that are analysed for a picture, which could not show more lines."""
 
 
 def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -48,9 +51,10 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     period, name = _period(ds, shown)
     scale = scale_for(period, "s")
     for run in shown:
-        speed = run.data["gear_speed"].dropna("time")
+        end = reached(run.data["gear_speed"])
+        speed = _between(run.data, end - _MOST_SAMPLES, end)["gear_speed"]
         last = speed.sel(time=slice(float(speed["time"][-1]) - period, None))
-        at, values = thin(last["time"].values - last["time"].values[0], last.values)
+        at, values = thin(last["time"] - last["time"][0], last)
         ax.plot(at * scale.factor, values, color=run.colour, linewidth=1.0, label=run.label)
     ax.set_xlabel(f"time within the last {name} ({scale.unit})")
     ax.set_ylabel("gear speed (rad/s)")
@@ -65,7 +69,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run or a sweep of a gear pair. The first fifth of it is left out.
+        A single run or a sweep of a gear pair. The first fifth of it is left out; of a longer record than half a
+        million samples the last half million is analysed.
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
 
@@ -88,11 +93,12 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     mesh = _mesh_frequency(ds, settled[shown[-1].label])
     drive = [float(one["frequency"]) for one in scene_of(ds).get("drive", {}).get("harmonic", [])]
     lines = [line for line in (mesh, *drive) if line > 0.0]
-    for run in shown:
-        density = spectra[run.label]
-        ax.semilogy(density["frequency"], density, color=run.colour, linewidth=0.9, label=run.label)
     nyquist = float(next(iter(spectra.values()))["frequency"][-1])
-    ax.set_xlim(0.0, min(nyquist, 6.0 * max(lines)) if lines else nyquist)
+    highest = min(nyquist, 6.0 * max(lines)) if lines else nyquist
+    for run in shown:
+        density = spectra[run.label].sel(frequency=slice(0.0, highest))
+        ax.semilogy(density["frequency"], density, color=run.colour, linewidth=0.9, label=run.label)
+    ax.set_xlim(0.0, highest)
     ax.set_ylim(top * 10.0**-_DECADES, 3.0 * top)
     for line in drive:
         _mark(ax, line, "drive")
@@ -112,7 +118,7 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run of a gear pair.
+        A single run of a gear pair, all of which is read into memory.
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
     highest : float, optional
@@ -159,7 +165,7 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run or a sweep of a gear pair.
+        A single run or a sweep of a gear pair. It is looked for in the first half million samples.
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
 
@@ -177,11 +183,12 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax)
     highest = 0.0
     for run in shown:
-        rings = analysis.impact_frequencies(run.data)["frequency"]
+        record = _between(run.data, 0, _MOST_SAMPLES)
+        rings = analysis.impact_frequencies(record)["frequency"]
         ringing = np.flatnonzero(np.isfinite(rings.values))
         if not ringing.size:
             continue
-        density = analysis.impact_spectrum(run.data).isel(impact=int(ringing[0]))
+        density = analysis.impact_spectrum(record).isel(impact=int(ringing[0]))
         ring = float(rings[ringing[0]])
         highest = max(highest, ring)
         at_ring = float(density.sel(frequency=ring, method="nearest"))
@@ -218,8 +225,25 @@ def _single(ds: xr.Dataset) -> xr.Dataset:
 
 def _settled(run: Run) -> xr.Dataset:
     """Leave the start of a run out."""
-    time = run.data["time"].values[np.isfinite(run.data["gear_speed"].values)]
-    return run.data.sel(time=slice(time[0] + _SETTLED * (time[-1] - time[0]), time[-1]))
+    time, end = run.data["time"], reached(run.data["gear_speed"])
+    begin, stop = float(time[0]), float(time[end - 1])
+    part = _between(run.data, end - _MOST_SAMPLES, end)
+    return part.sel(time=slice(begin + _SETTLED * (stop - begin), stop))
+
+
+def _between(run: xr.Dataset, first: int, end: int) -> xr.Dataset:
+    """Pick the speeds from one place to before another, and the events meanwhile; read them, if in a file."""
+    first, end = max(first, 0), min(end, run.sizes["time"])
+    if first == 0 and end == run.sizes["time"]:
+        return run
+    others = [name for name in run.data_vars if "time" in run[name].dims and name != "gear_speed"]
+    part = run.drop_vars(others).isel(time=slice(first, end))
+    begin, stop = float(part["time"][0]), float(part["time"][-1])
+    events = [
+        place + np.flatnonzero((times >= begin) & (times <= stop))
+        for place, times in pieces(run["event_time"])
+    ]
+    return part.isel(event=np.concatenate([*events, np.empty(0, dtype=np.int64)])).load()
 
 
 def _length(run: xr.Dataset) -> float:

@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
 from gearidae.errors import SceneError
 from gearidae.outcome import START_UP
@@ -27,6 +28,7 @@ __all__ = [
     "Run",
     "Scale",
     "label_time",
+    "largest",
     "legend",
     "new_axes",
     "runs_of",
@@ -91,15 +93,13 @@ class Run:
 
     def trace(self, name: str) -> tuple[Floats, Floats]:
         """Time [s] and samples [SI] up to where the run ended, thinned for drawing."""
-        values = self.data[name].values
-        reached = np.isfinite(values)
-        return thin(self.data["time"].values[reached], values[reached])
+        return thin(self.data["time"], self.data[name], reached(self.data[name]))
 
-    def settled(self, name: str) -> Floats:
-        """Return the samples [SI] without those of the start-up."""
-        values: Floats = self.data[name].values
-        values = values[np.isfinite(values)]
-        return values[int(START_UP * len(values)) :]
+    def settled(self, name: str) -> Spread:
+        """Return how the samples [SI] are spread, without those of the start-up."""
+        values = self.data[name]
+        end = reached(values)
+        return spread(values, int(START_UP * end), end)
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
         If the dataset lacks the variable or has no samples.
     """
     everything = list(runs(ds)) if name in ds else []
-    found = [(label, run) for label, run in everything if np.isfinite(run[name].values).any()]
+    found = [(label, run) for label, run in everything if _has_samples(run[name])]
     if not found:
         raise SceneError("plot", name, "the dataset has no samples of it")
     if len(found) > _MOST_RUNS:
@@ -169,26 +169,42 @@ def scale_for(largest: float, unit: str) -> Scale:
     return Scale(10.0**-power, f"{_PREFIXES[power]}{unit}")
 
 
-def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
+def largest(runs: Sequence[Run], name: str) -> float:
+    """Largest magnitude of a variable in some runs [SI]."""
+    extents = [spread(run.data[name]) for run in runs]
+    return max(max(abs(extent.low), abs(extent.high)) for extent in extents)
+
+
+def thin(time: xr.DataArray, values: xr.DataArray, end: int | None = None) -> tuple[Floats, Floats]:
     """Keep the smallest and the largest sample of some thousand intervals: the same picture, fewer points.
 
     Parameters
     ----------
-    time, values : ndarray, shape (n,)
+    time, values : DataArray, shape (n,)
+        In memory, or in a file: they are read piece by piece.
+    end : int, optional
+        Number of samples to take; by default all.
 
     Returns
     -------
     time, values : ndarray
     """
-    size = len(values) * 2 // _MOST_POINTS
+    end = len(values) if end is None else end
+    size = end * 2 // _MOST_POINTS
     if size < 2:
-        return time, values
-    whole = len(values) // size * size
-    blocks = values[:whole].reshape(-1, size)
-    first = np.arange(0, whole, size)
-    extremes = np.sort([first + blocks.argmin(axis=1), first + blocks.argmax(axis=1)], axis=0)
-    kept = np.unique(np.concatenate([[0], extremes.T.ravel(), np.arange(whole, len(values))]))
-    return time[kept], values[kept]
+        return time.variable[:end].values, values.variable[:end].values
+    kept = [np.zeros(1, dtype=np.int64)]
+    heights = [values.variable[:1].values]
+    for place, part in pieces(values, 0, end, size=max(1, PIECE // size) * size):
+        whole = len(part) // size * size
+        blocks = part[:whole].reshape(-1, size)
+        first = np.arange(0, whole, size)
+        extremes = np.sort([first + blocks.argmin(axis=1), first + blocks.argmax(axis=1)], axis=0)
+        chosen = np.concatenate([extremes.T.ravel(), np.arange(whole, len(part))])
+        kept.append(place + chosen)
+        heights.append(part[chosen])
+    places, once = np.unique(np.concatenate(kept), return_index=True)
+    return _picked(time, places), np.concatenate(heights)[once]
 
 
 def new_axes(ax: Axes | None, *, height: float = 3.2) -> Axes:
@@ -219,7 +235,7 @@ def label_time(ax: Axes, runs: Sequence[Run]) -> Scale:
     Scale
         Of the axis.
     """
-    longest = float(max(run.data["time"].values[-1] for run in runs))
+    longest = float(max(run.data["time"][-1] for run in runs))
     scale = scale_for(longest, "s")
     ax.set_xlabel(f"time ({scale.unit})")
     ax.set_xlim(0.0, (longest or 1.0) * scale.factor)
@@ -245,6 +261,18 @@ def legend(ax: Axes, runs: Sequence[Run]) -> None:
     )
     for handle in shown.get_lines():
         handle.set_linewidth(2.0)
+
+
+def _has_samples(values: xr.DataArray) -> bool:
+    return any(bool(np.isfinite(part).any()) for _, part in pieces(values))
+
+
+def _picked(time: xr.DataArray, places: NDArray[np.int64]) -> Floats:
+    """Values at some places in increasing order, read piece by piece."""
+    parts = [
+        part[places[(places >= place) & (places < place + len(part))] - place] for place, part in pieces(time)
+    ]
+    return np.concatenate(parts)
 
 
 def _label(label: Mapping[str, Any], run: xr.Dataset) -> str:

@@ -41,7 +41,7 @@ def contact_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     runs = runs_of(ds, _TORQUE)
     ax = new_axes(ax, height=3.2 if len(runs) == 1 else 1.2 + 0.7 * len(runs))
     settled = [run.settled(_TORQUE) for run in runs]
-    low, high = float(min(each.min() for each in settled)), float(max(each.max() for each in settled))
+    low, high = min(each.low for each in settled), max(each.high for each in settled)
     scale = scale_for(max(abs(low), abs(high)), "N m")
     if len(runs) == 1:
         _curve(ax, runs[0], low, high, scale)
@@ -56,6 +56,8 @@ def _curve(ax: Axes, run: Run, low: float, high: float, scale: Scale) -> None:
     at, torque = run.trace(_TORQUE)
     ax.plot(at * time.factor, torque * scale.factor, color=run.colour, linewidth=1.0)
     tidy(ax)
+    if 0.0 < low < 0.5 * (high - low):
+        low = 0.0  # a run-up begins there
     margin = 0.06 * (high - low) or 0.06 * abs(high) or 1.0 / scale.factor
     ax.set_ylim((low - margin) * scale.factor, (high + margin) * scale.factor)
     if low < 0.0 < high:

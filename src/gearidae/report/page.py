@@ -22,6 +22,7 @@ from gearidae.report.tables import (
     parameter_tables,
     provenance_list,
 )
+from gearidae.report.teeth import pack_teeth
 
 __all__ = ["build_report", "write_report"]
 
@@ -55,6 +56,7 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
         for part in (
             html.section("outcome", "Outcome", outcome_table(ds), account_table(ds)),
             html.section("series", "Time series", _viewer(ds, most_values)),
+            html.section("teeth", "Teeth in mesh", _teeth(ds)),
             html.section("pictures", "Pictures", pictures(ds)),
             html.section("events", "Events", event_table(ds)),
             html.section("parameters", "Parameters", parameter_tables(ds)),
@@ -85,7 +87,9 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
 {main}
 </main>
 <script>
+{_resource("common.js")}
 {_resource("viewer.js")}
+{_resource("teeth.js")}
 </script>
 </body>
 </html>
@@ -140,6 +144,12 @@ def _viewer(ds: xr.Dataset, most_values: int) -> str:
         "<noscript><p>The viewer needs JavaScript; the pictures below do not.</p></noscript>\n"
         + html.json_block("data", data)
     )
+
+
+def _teeth(ds: xr.Dataset) -> str:
+    """Place the view of the teeth and its data; there is none for rollers."""
+    data = pack_teeth(ds)
+    return '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", data) if data else ""
 
 
 def _resource(name: str) -> str:

@@ -9,8 +9,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.pieces import PIECE, count, pieces
 from gearidae.archive.select import is_roller, runs
 from gearidae.archive.variables import SAMPLES, columns
+from gearidae.errors import SceneError
 from gearidae.plot.style import runs_of
 from gearidae.records import EventKind
 
@@ -40,12 +42,15 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
         ``end``), ``runs`` (label and times of onsets and separations [s]). Empty without samples.
     """
     names = [name for name in columns(is_roller(ds)) if name in ds]
-    time = ds["time"].values
-    if not names or not len(time) or not any(np.isfinite(ds[name].values).any() for name in names):
+    samples = ds.sizes["time"]
+    try:
+        shown = runs_of(ds, names[0]) if names and samples else []
+    except SceneError:  # no run has samples
         return {}
-    shown = runs_of(ds, names[0])
+    if not shown:
+        return {}
     share = max(2, most_values // (len(names) * len(shown)))
-    size = _block(len(time), share)
+    size = _block(samples, share)
     series = []
     for name in names:
         variable = SAMPLES[name]
@@ -55,12 +60,12 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
                 "label": variable.long_name,
                 "unit": "" if variable.units == "1" else variable.units,
                 "shown": name in _SHOWN_FIRST,
-                "runs": [_encode(_extremes(run.data[name].values, size)) for run in shown],
+                "runs": [_encode(_reduced(run.data[name], size)) for run in shown],
             }
         )
     return {
-        "end": float(time[-1]),
-        "samples": len(time),
+        "end": float(ds["time"][-1]),
+        "samples": samples,
         "reduced": size,
         "series": series,
         "runs": [{"label": run.label or "run", **_contacts(run.data)} for run in shown],
@@ -71,6 +76,12 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
 def _block(samples: int, share: int) -> int:
     """Samples per interval so that two values of each interval are at most `share` values."""
     return 1 if samples <= share else -(-2 * samples // share)
+
+
+def _reduced(values: xr.DataArray, size: int) -> NDArray[np.float64]:
+    """Reduce a variable of any length, read in pieces of whole intervals."""
+    step = max(1, PIECE // size) * size
+    return np.concatenate([_extremes(part, size) for _, part in pieces(values, size=step)])
 
 
 def _extremes(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
@@ -94,10 +105,23 @@ def _encode(values: NDArray[np.float64]) -> str:
 
 def _contacts(run: xr.Dataset) -> dict[str, list[float]]:
     """Times of contacts made and broken [s], evenly picked where there are very many."""
-    found = {}
-    for name, kind in (("onsets", EventKind.ONSET), ("separations", EventKind.SEPARATION)):
-        times = run["event_time"].values[run["event_kind"].values == kind]
-        if len(times) > _MOST_EVENTS:
-            times = times[np.linspace(0, len(times) - 1, _MOST_EVENTS).astype(int)]
-        found[name] = [float(f"{time:.9g}") for time in times]
-    return found
+    return {
+        name: [float(f"{time:.9g}") for time in _times(run, kind)]
+        for name, kind in (("onsets", EventKind.ONSET), ("separations", EventKind.SEPARATION))
+    }
+
+
+def _times(run: xr.Dataset, kind: EventKind) -> NDArray[np.float64]:
+    """Times of the events of a kind, at most `_MOST_EVENTS` of them."""
+    total = count(run["event_kind"], kind)
+    wanted = np.linspace(0, total - 1, min(total, _MOST_EVENTS)).astype(int)
+    found, passed = [np.empty(0)], 0
+    for place, kinds in pieces(run["event_kind"]):
+        own = place + np.flatnonzero(kinds == kind)
+        here = wanted[(wanted >= passed) & (wanted < passed + own.size)] - passed
+        if here.size:
+            first = int(own[here[0]])
+            times = run["event_time"].variable[first : int(own[here[-1]]) + 1].values
+            found.append(times[own[here] - first])
+        passed += own.size
+    return np.concatenate(found)

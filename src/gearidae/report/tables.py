@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.pieces import pieces
 from gearidae.archive.select import runs, scene_of, swept_dims
 from gearidae.outcome import GearOutcome, RollerOutcome, outcomes
 from gearidae.records import EventKind
@@ -59,6 +61,19 @@ _ACCOUNT = (
     ("contact_loss", "into the contacts (the rest)", "J"),
     ("uncertainty", "uncertainty of that rest", "J"),
 )
+_LEDGER = (
+    ("drive_work", "work of the drive", "J"),
+    ("radius_work", "work of the changing radius", "J"),
+    ("model_change", "jump at the change of the contact model", "J"),
+    ("drag_loss", "lost to drag", "J"),
+    ("dry_loss", "lost to dry resistance", "J"),
+    ("damping_loss", "lost to damping", "J"),
+    ("adhesion_loss", "lost to adhesion", "J"),
+    ("stored_change", "stored in contacts", "J"),
+    ("kinetic_change", "stored in motion", "J"),
+    ("residual", "residual: what does not add up", "J"),
+    ("residual_bound", "bound of the residual", "J"),
+)
 _IN_WORDS = {"irregular": "turns irregularly", "unfinished": "was not followed to the end of the run"}
 
 
@@ -88,13 +103,15 @@ def outcome_table(ds: xr.Dataset) -> str:
 
 
 def account_table(ds: xr.Dataset) -> str:
-    """Tell where time and energy of a single run of gears went; nothing of any other dataset."""
+    """Tell where time and energy of a single run went, of a roller energy only; nothing of a sweep."""
     told = json.loads(ds.attrs.get("account", "{}"))
+    kept = json.loads(ds.attrs.get("ledger", "{}"))
     rows = [
         (words, _number(float(told[name]) if isinstance(told[name], int) else told[name]), unit)
         for name, words, unit in _ACCOUNT
-        if told.get(name) not in (None, "")
+        if told.get(name) not in (None, "") and not (kept and unit == "J")
     ]
+    rows += [(words, _number(kept[name]), unit) for name, words, unit in _LEDGER if kept.get(name)]
     if not rows:
         return ""
     return html.table(("quantity", "value", "unit"), rows, caption="Account of the run", numeric=(1,))
@@ -102,22 +119,43 @@ def account_table(ds: xr.Dataset) -> str:
 
 def event_table(ds: xr.Dataset) -> str:
     """Count the events of each run and name the first and the hardest contact."""
-    found = list(runs(ds))
-    kinds = [kind for kind in EventKind if (ds["event_kind"].values == kind).any()]
+    found = [(label, _tally(run)) for label, run in runs(ds)]
+    kinds = [kind for kind in EventKind if any(tally.counts[kind] for _, tally in found)]
     if not kinds:
         return html.paragraph("No events.")
     dims = swept_dims(ds)
     rows = []
-    for label, run in found:
-        kind, time, rate = (run[f"event_{name}"].values for name in ("kind", "time", "gap_rate"))
-        made = kind == EventKind.ONSET
-        first = f"{time[made][0] * 1e3:.6g}" if made.any() else "-"
-        hardest = f"{max(-rate[made].min(), 0.0):.3g}" if made.any() else "-"
-        counts = [str(np.count_nonzero(kind == each)) for each in kinds]
-        rows.append([*(_number(value) for value in label.values()), *counts, first, hardest])
+    for label, tally in found:
+        made = tally.counts[EventKind.ONSET]
+        first = f"{tally.first * 1e3:.6g}" if made else "-"
+        fastest = f"{max(tally.fastest, 0.0):.3g}" if made else "-"
+        counts = [str(tally.counts[each]) for each in kinds]
+        rows.append([*(_number(value) for value in label.values()), *counts, first, fastest])
     names = [each.name.lower().replace("_", " ") for each in kinds]
     headings = [*dims, *names, "first onset (ms)", "fastest closing at an onset (m/s)"]
     return html.table(headings, rows, caption="Events of each run", numeric=range(len(headings)))
+
+
+@dataclass(slots=True)
+class _Tally:
+    """Events of a run: how many of each kind, time of the first onset [s], fastest closing at one [m/s]."""
+
+    counts: dict[EventKind, int]
+    first: float = math.inf
+    fastest: float = -math.inf
+
+
+def _tally(run: xr.Dataset) -> _Tally:
+    tally = _Tally(dict.fromkeys(EventKind, 0))
+    for place, kinds in pieces(run["event_kind"]):
+        for kind in EventKind:
+            tally.counts[kind] += int(np.count_nonzero(kinds == kind))
+        made = kinds == EventKind.ONSET
+        if made.any():
+            cut = slice(place, place + len(kinds))
+            tally.first = min(tally.first, float(run["event_time"].variable[cut].values[made].min()))
+            tally.fastest = max(tally.fastest, float(-run["event_gap_rate"].variable[cut].values[made].min()))
+    return tally
 
 
 def parameter_tables(ds: xr.Dataset) -> str:

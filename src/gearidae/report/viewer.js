@@ -1,44 +1,19 @@
 // Time series of a report: panels over one common time axis. No library, no network.
 (() => {
   "use strict";
+  const { decode, element, prefixOf, style, colour, seconds, whenSeenAnew, penOf } = gearidae;
   const holder = document.getElementById("viewer");
   const source = document.getElementById("data");
   if (!holder || !source) return;
   const data = JSON.parse(source.textContent);
 
-  // Okabe and Ito's palette; black has no contrast on a dark ground, so the theme's ink takes its place.
-  const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", null];
-  const ON_DARK = ["#4da6e0", "#f08040", "#2fc79b", "#e39ac2", "#f0b840", "#8fd0f5", null];
   const DASHES = [[], [8, 3], [2, 2], [8, 3, 2, 3], [5, 2], [11, 3, 2, 3], []];
-  const PREFIXES = { "-24": "y", "-21": "z", "-18": "a", "-15": "f", "-12": "p", "-9": "n", "-6": "µ", "-3": "m", "0": "", "3": "k", "6": "M", "9": "G" };
   const LEFT = 62, RIGHT = 10, TOP = 8, BOTTOM = 24;
   const shortest = data.end * 20 / Math.max(data.samples, 40);
   const view = { from: 0, to: data.end };
   const hidden = new Set();
   const panels = [];
-  let cursor = null, waiting = false;
-
-  function decode(text) {
-    const raw = atob(text), view = new DataView(new ArrayBuffer(raw.length));
-    for (let i = 0; i < raw.length; i++) view.setUint8(i, raw.charCodeAt(i));
-    const values = new Float32Array(raw.length / 4);
-    for (let i = 0; i < values.length; i++) values[i] = view.getFloat32(4 * i, true);
-    return values;
-  }
-
-  function element(tag, parent, text, properties) {
-    const made = document.createElement(tag);
-    if (text) made.textContent = text;
-    Object.assign(made, properties || {});
-    parent.append(made);
-    return made;
-  }
-
-  function prefixOf(largest) {
-    if (!(largest > 0)) return { factor: 1, prefix: "" };
-    const power = Math.min(9, Math.max(-24, 3 * Math.floor(Math.log10(largest * (1 + 1e-9)) / 3)));
-    return { factor: 10 ** -power, prefix: PREFIXES[power] };
-  }
+  let cursor = null, followed = null, waiting = false;
 
   function ticks(low, high, wanted) {
     const rough = (high - low) / Math.max(wanted, 1), power = 10 ** Math.floor(Math.log10(rough));
@@ -47,10 +22,6 @@
     for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
     return { found, digits: Math.max(0, Math.min(12, -Math.floor(Math.log10(step) + 1e-9))) };
   }
-
-  const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const printing = window.matchMedia("print"), dark = window.matchMedia("(prefers-color-scheme: dark)");
-  const colour = (run) => (dark.matches && !printing.matches ? ON_DARK : COLOURS)[run % 7] || style("--ink");
 
   function later() {
     if (waiting) return;
@@ -101,16 +72,9 @@
   }
 
   function draw(panel) {
-    const canvas = panel.canvas, ratio = window.devicePixelRatio || 1;
-    const width = canvas.clientWidth, height = canvas.clientHeight;
-    if (!width) return;
-    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-      canvas.width = Math.round(width * ratio);
-      canvas.height = Math.round(height * ratio);
-    }
-    const pen = canvas.getContext("2d");
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    pen.clearRect(0, 0, width, height);
+    const sheet = penOf(panel.canvas);
+    if (!sheet) return;
+    const { pen, width, height } = sheet;
     pen.font = "12px system-ui, sans-serif";
     const inner = width - LEFT - RIGHT, tall = height - TOP - BOTTOM;
     const x = (time) => LEFT + inner * (time - view.from) / (view.to - view.from);
@@ -147,6 +111,10 @@
     pen.beginPath(); pen.rect(LEFT, TOP, inner, tall); pen.clip();
     for (const run of byLiveliness(panel)) trace(pen, panel.values[run], run, x, y, inner);
     contacts(pen, x, TOP + tall);
+    if (followed !== null && followed >= view.from && followed <= view.to) {
+      pen.setLineDash([4, 3]); pen.lineWidth = 1; pen.strokeStyle = style("--ink");
+      pen.beginPath(); pen.moveTo(x(followed), TOP); pen.lineTo(x(followed), TOP + tall); pen.stroke();
+    }
     if (cursor !== null && cursor >= view.from && cursor <= view.to) {
       pen.setLineDash([]); pen.lineWidth = 1; pen.strokeStyle = style("--ink");
       pen.beginPath(); pen.moveTo(x(cursor), TOP); pen.lineTo(x(cursor), TOP + tall); pen.stroke();
@@ -231,17 +199,12 @@
     readout.textContent = parts.join("  ·  ");
   }
 
-  function seconds(time) {
-    if (time === 0) return "0 s";
-    const scale = prefixOf(Math.abs(time));
-    return (time * scale.factor).toPrecision(6) + " " + scale.prefix + "s";
-  }
-
   function look(from, to) {
     const span = Math.min(data.end, Math.max(shortest, to - from));
     const start = Math.min(Math.max(0, from + (to - from - span) / 2), data.end - span);
     view.from = start;
     view.to = start + span;
+    document.dispatchEvent(new CustomEvent("gearidae:view", { detail: { from: view.from, to: view.to } }));
     later();
   }
   function zoom(factor, about) {
@@ -270,6 +233,7 @@
     });
     canvas.addEventListener("pointermove", (event) => {
       cursor = timeAt(canvas, event.clientX);
+      document.dispatchEvent(new CustomEvent("gearidae:cursor", { detail: cursor }));
       const before = [...fingers.values()];
       if (!fingers.has(event.pointerId)) { later(); return; }
       fingers.set(event.pointerId, event.clientX);
@@ -355,9 +319,8 @@
   notes.push("Marks at the foot: contacts made (long) and broken (short).");
   element("p", holder, notes.join(" "), { className: "hint" });
 
-  window.addEventListener("resize", later);
-  for (const query of [dark, printing]) query.addEventListener("change", drawAll);
-  window.addEventListener("beforeprint", drawAll);
-  window.addEventListener("afterprint", drawAll);
+  // The time at which the teeth are shown.
+  document.addEventListener("gearidae:teeth", (event) => { followed = event.detail; later(); });
+  whenSeenAnew(drawAll, later);
   drawAll();
 })();

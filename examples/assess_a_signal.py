@@ -1,0 +1,29 @@
+"""How much of the coating is left, judged by a measured speed?
+
+A map is made once for a pair of gears at one torque. A signal, here a simulated one with noise on it in the place of a
+measurement, is then held against it.
+"""
+
+import numpy as np
+
+import gearidae as gd
+
+scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "150 ms", "run.samples": 15001})
+
+# The rig: 71.3 % of the monolayer, which nobody knows, and a sensor that is off by 5 mrad/s.
+rig = gd.simulate(scene.replace({"coating.sam_fraction": 0.713}))
+measured = rig.gear_speed.values + np.random.default_rng(1).normal(0.0, 5e-3, rig.sizes["time"])
+np.savetxt(
+    "rig.csv",
+    np.column_stack([rig.time, measured]),
+    delimiter=",",
+    header="time [s], gear_speed [rad/s]",
+    comments="",
+)
+
+chart = gd.analysis.coating_map(scene, np.round(np.arange(1.0, 0.595, -0.02), 4))
+found = gd.analysis.assess("rig.csv", chart)
+print(
+    f"{found.verdict}: {found.sam_fraction:.3f} of the monolayer is left ({found.low:.3f} to {found.high:.3f})"
+)
+gd.plot.write(gd.plot.coating_map(chart, assessment=found).figure, "assessed.png", overwrite=True)

@@ -1,0 +1,21 @@
+"""What do the teeth do while the gear is held back?
+
+The pairs of teeth of a run, reconstructed from its archive: their gaps, forces and states at a time, as numbers, as a
+picture and as a moving one.
+"""
+
+import gearidae as gd
+from gearidae.analysis import tooth_contacts
+
+scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5})
+run = gd.simulate(scene, t_end=0.09, samples=9001)
+dip = float(run.gear_contact_torque.idxmin())
+
+(state,) = tooth_contacts(run, dip)
+print(f"at {state.time * 1e3:.2f} ms all pairs together give {state.mesh_force * 1e12:+.3f} pN")
+for pair in state.contacts:
+    told = f"{pair.gap * 1e9:.1f} nm, {pair.force * 1e12:+.3f} pN, {pair.state.name}"
+    print(f"  pair {pair.pair}, {pair.flank.name}: {told}")
+
+gd.plot.write(gd.plot.teeth(run, time=dip), "teeth.png", overwrite=True)
+gd.plot.animate_teeth(run, "teeth.gif", start=dip - 2e-3, stop=dip + 2e-3, frames=8, dpi=60, overwrite=True)

@@ -1,0 +1,154 @@
+"""``gearidae plot``: an archive or a coating map as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+import gearidae as gd
+from gearidae.archive.select import swept_dims
+from gearidae.cli.codes import DONE
+from gearidae.cli.output import say
+from gearidae.cli.values import assignments, default_output
+from gearidae.errors import SceneError
+from gearidae.plot.files import MOVING
+from gearidae.scene.group import did_you_mean
+from gearidae.scene.units import from_text
+
+__all__ = ["draw"]
+
+_FUNCTIONS_OF_FILES = ("animate_teeth", "write")
+
+
+def draw(
+    archive: Path,
+    picture: str | None,
+    output: Path | None,
+    *,
+    select: Sequence[str],
+    time: str | None,
+    span: tuple[str | None, str | None],
+    frames: int | None,
+    overwrite: bool,
+) -> int:
+    """Draw an archive or a coating map into an image file.
+
+    Parameters
+    ----------
+    archive : Path
+        What to draw.
+    picture : str or None
+        Name of a function of `gearidae.plot`; None for the overview, or the map.
+    output : Path or None
+        Image to write, its kind told by its ending; None for the archive's name with ``.png``, or ``.gif`` for a moving
+        picture.
+    select : sequence of str
+        ``dimension=value``: which run of a sweep.
+    time : str or None
+        When to draw the teeth, in seconds or with a unit.
+    span : tuple of str or None
+        First and last time of a moving picture.
+    frames : int or None
+        Its number of pictures.
+    overwrite : bool
+        Whether the image may replace a file.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be read, there is no such picture or run in it, or the image cannot be written.
+    """
+    pictures = [name for name in gd.plot.__all__ if name not in _FUNCTIONS_OF_FILES]
+    if picture is not None and picture not in pictures:
+        meant = did_you_mean(picture, pictures)
+        raise SceneError(
+            "--picture", picture, f"must be one of {', '.join(pictures)}{'; ' if meant else ''}{meant}"
+        )
+    asked: dict[str, object] = {"--time": time, "--from": span[0], "--to": span[1], "--frames": frames}
+    asked["--output"] = output if output is not None and _is_moving(output) else None
+    given = {option: str(value) for option, value in asked.items() if value is not None}
+    if given and picture != "teeth":
+        raise SceneError(*next(iter(given.items())), "goes with --picture teeth")
+    moves = bool(given.keys() - {"--time"})
+    ds, usual = _open(archive)
+    ds = _selected(ds, select)
+    if moves:
+        if time is not None:
+            raise SceneError("--time", time, "is for one picture; a moving one takes --from and --to")
+        start, stop = span
+        target = gd.plot.animate_teeth(
+            ds,
+            output or default_output(str(archive), ".gif"),
+            start=0.0 if start is None else _seconds("--from", start),
+            stop=None if stop is None else _seconds("--to", stop),
+            frames=100 if frames is None else frames,
+            overwrite=overwrite,
+        )
+    else:
+        target = output or default_output(str(archive), ".png")
+        at = {} if time is None else {"time": _seconds("--time", time)}
+        drawn = getattr(gd.plot, picture or usual)(ds, **at)
+        figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
+        assert figure is not None
+        gd.plot.write(figure, target, overwrite=overwrite)
+    say(f"Picture: {target}")
+    return DONE
+
+
+def _is_moving(path: Path) -> bool:
+    return path.suffix.lower().removeprefix(".") in MOVING
+
+
+def _open(archive: Path) -> tuple[xr.Dataset, str]:
+    """Dataset of a file, and the picture that says most about it."""
+    try:
+        return gd.open_archive(archive), "overview"
+    except SceneError:
+        try:
+            return gd.analysis.open_map(archive), "coating_map"
+        except SceneError:
+            pass
+        raise
+
+
+def _selected(ds: xr.Dataset, pairs: Sequence[str]) -> xr.Dataset:
+    """Pick runs of a sweep by the values of swept dimensions."""
+    if not pairs:
+        return ds
+    dims = swept_dims(ds)
+    for dim, value in assignments(pairs, "--select", "sam_fraction=0.5").items():
+        if dim not in dims:
+            known = f"must be one of {', '.join(dims)}" if dims else "there is only one run"
+            raise SceneError("--select", dim, known)
+        labels = ds[dim].values
+        numeric = np.issubdtype(labels.dtype, np.number) and isinstance(value, int | float)
+        # a value as it is printed is not always the same float
+        found = (
+            np.isclose(labels, value, rtol=1e-9, atol=0.0) if numeric else labels.astype(str) == str(value)
+        )
+        if not found.any():
+            shown = ", ".join(f"{each:g}" if numeric else str(each) for each in labels[:20])
+            raise SceneError(f"--select {dim}", value, f"must be one of {shown}")
+        ds = ds.isel({dim: int(np.flatnonzero(found)[0])})
+    return ds
+
+
+def _seconds(option: str, text: str) -> float:
+    """Read a time in seconds, or with a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    try:
+        return from_text(text, "s")
+    except ValueError as error:
+        raise SceneError(option, text, str(error)) from None

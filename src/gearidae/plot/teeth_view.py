@@ -1,0 +1,332 @@
+"""The teeth in mesh at one time: where they meet, how far apart, with what force and in what state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from gearidae.analysis.teeth import run_scene, tooth_contacts
+from gearidae.analysis.tooth_states import ContactState, MeshState, ToothContact
+from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
+from gearidae.plot.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
+from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
+from gearidae.records import Flank
+from gearidae.scene import Scene
+
+__all__ = ["STATE_WORDS", "TeethView", "nearest_pairs", "pairs_at_most", "teeth"]
+
+STATE_WORDS = {
+    ContactState.UNTOLD: "not told by the record",
+    ContactState.OPEN: "open",
+    ContactState.LOADING: "loading",
+    ContactState.PARTLY_STRETCHED: "partly stretched",
+    ContactState.FULLY_STRETCHED: "fully stretched",
+}
+"""States of a contact in words."""
+_MARKS = {
+    ContactState.UNTOLD: ("X", "0.6"),
+    ContactState.OPEN: ("o", "white"),
+    ContactState.LOADING: ("o", POSITIVE),
+    ContactState.PARTLY_STRETCHED: ("^", "#E69F00"),
+    ContactState.FULLY_STRETCHED: ("s", NEGATIVE),
+}
+_ALONG = "along the flank (µm), heights \N{MULTIPLICATION SIGN} {}"
+_TEETH = 5  # on either side of the pitch point
+_ACROSS, _DOWN, _UP = 4.6, 1.9, 2.0  # modules shown
+_LONGEST = 1.4  # modules of the longest arrow
+_NO_ARROW = 0.01  # of the largest force: less has no arrow
+_ROUNDED = 8.0  # roughnesses up to which the gap at a rounded end counts as near
+
+
+def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
+    """Draw the teeth in mesh at one time, with close-ups of the pairs that meet.
+
+    The gears are drawn to scale, from the involutes of the scene and the recorded motion. Gaps are nanometres: the
+    close-ups show them, with heights stretched by the factor they state.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        One run of a gear pair; from a sweep, one selected with ``sel``.
+    time : float, optional
+        Time [s], of which the nearest sample is shown; by default the last sample.
+
+    Returns
+    -------
+    matplotlib Figure
+
+    Raises
+    ------
+    SceneError
+        If the dataset is of a roller, of several runs, or has no samples, or the time lies outside of them.
+
+    Notes
+    -----
+    Force and state of each pair are reconstructed as `gearidae.analysis.tooth_contacts` says, and where the record
+    does not tell them neither does the picture. The asperities drawn are a sample of the model's; a record knows of
+    no single one.
+    """
+    (state,) = tooth_contacts(ds, [math.inf if time is None else time])
+    view = TeethView(ds, [state])
+    view.draw(state)
+    return view.figure
+
+
+def pairs_at_most(scene: Scene) -> int:
+    """Return how many pairs of one flank can be near each other at a time: one to three."""
+    geometry = scene.geometry
+    assert scene.mesh is not None
+    end = math.sqrt(2.0 * scene.mesh.tip_relief_radius * _ROUNDED * scene.surface.roughness)
+    return min(math.ceil((geometry.path_length + 2.0 * end) / geometry.base_pitch), 3)
+
+
+def nearest_pairs(state: MeshState, places: int) -> list[ToothContact]:
+    """Return the pairs of the flank that is nearest, at most one for each number modulo `places`."""
+    nearest = min(state.contacts, key=lambda one: one.gap).flank
+    taken: dict[int, ToothContact] = {}
+    for one in sorted(state.contacts, key=lambda one: one.gap):
+        if one.flank == nearest:
+            taken.setdefault(one.pair % places, one)
+    return sorted(taken.values(), key=lambda one: one.pair)
+
+
+class TeethView:
+    """A figure in which the teeth of one run can be drawn time after time.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        One run of a gear pair.
+    states : sequence of MeshState
+        What will be drawn; the largest force among them sets the scale of the arrows.
+    """
+
+    def __init__(self, ds: xr.Dataset, states: Sequence[MeshState]) -> None:
+        self._scene = run_scene(ds)
+        self._picture = mesh_picture(self._scene)
+        forces = [abs(one.force) for state in states for one in state.contacts if math.isfinite(one.force)]
+        self._largest = max(forces, default=0.0)
+        self._places = pairs_at_most(self._scene)
+        self.figure = Figure(figsize=(7.6, 7.2), dpi=150)
+        self._mesh = self.figure.add_axes((0.015, 0.525, 0.97, 0.43))
+        width = 0.985 / self._places
+        self._close = [
+            self.figure.add_axes((0.085 + k * width, 0.245, width - 0.1, 0.145)) for k in range(self._places)
+        ]
+        self._time_factor, self._cursor = _speed_strip(self.figure.add_axes((0.085, 0.055, 0.9, 0.08)), ds)
+        self._legend(all(each.told for each in states))
+
+    def draw(self, state: MeshState) -> None:
+        """Draw a state in place of the one before.
+
+        Parameters
+        ----------
+        state : MeshState
+        """
+        shown = nearest_pairs(state, self._places)
+        _draw_mesh(self._mesh, self._picture, state, shown, self._largest)
+        for place, ax in enumerate(self._close):
+            ax.clear()
+            here = [one for one in shown if one.pair % self._places == place]
+            ax.set_visible(bool(here))
+            for one in here:
+                factor = close_up(ax, self._scene, one)
+                joined = joined_asperities(self._scene, one)
+                _caption(ax, one, factor, joined, narrow=self._places > 2)
+        self._cursor.set_xdata([state.time * self._time_factor] * 2)
+        self._mesh.set_title(_headline(state), loc="left", fontsize="medium")
+
+    def _legend(self, told: bool) -> None:
+        """Explain the marks of the mesh, and below the close-ups their colours."""
+        marks = {state: mark for state, mark in _MARKS.items() if state != ContactState.UNTOLD or not told}
+        handles = [
+            Line2D([], [], marker=mark, color="0.1", mfc=face, linestyle="", label=STATE_WORDS[state])
+            for state, (mark, face) in marks.items()
+        ]
+        asperities = [
+            Line2D([], [], color=colour, linewidth=3.0, label=label)
+            for colour, label in (
+                (POSITIVE, "pressed"),
+                (NEGATIVE, "stretched"),
+                (COATING, "monolayer"),
+            )
+        ]
+        for entries, top in ((handles, 0.515), (asperities, 0.182)):
+            self.figure.legend(
+                handles=entries,
+                loc="upper left",
+                bbox_to_anchor=(0.012, top),
+                ncols=len(entries),
+                frameon=False,
+                fontsize="small",
+                handletextpad=0.5,
+                columnspacing=1.4,
+                borderaxespad=0.0,
+            )
+        self.figure.text(
+            0.99,
+            0.179,
+            "asperities drawn: a sample of the model's",
+            ha="right",
+            va="top",
+            fontsize="small",
+        )
+
+
+def _draw_mesh(
+    ax: Axes, picture: GearPicture, state: MeshState, shown: Sequence[ToothContact], largest: float
+) -> None:
+    """Draw both gears to scale, the lines of action, and the pairs on them."""
+    ax.clear()
+    ax.set_axis_off()
+    module = picture.geometry.module
+    turned = picture.turned(state.travel, state.transmission_error)
+    for wheel, angle, colour in zip((picture.pinion, picture.gear), turned, FLANKS, strict=True):
+        outline = wheel.outline(angle, _TEETH) / module
+        ax.fill(*outline.T, facecolor=colour, edgecolor="0.25", linewidth=0.7)
+    for flank in (Flank.DRIVE, Flank.COAST):
+        ends = (
+            np.stack([picture.line(flank, place) for place in (0.0, picture.geometry.path_length)]) / module
+        )
+        used = shown[0].flank == flank
+        ax.plot(
+            *ends.T, color="0.1" if used else "0.55", linewidth=1.0, linestyle="-" if used else (0, (4, 3))
+        )
+    ax.plot(0.0, 0.0, "+", color="0.1", markersize=9)
+    for one in shown:
+        _draw_contact(ax, picture, one, largest)
+    way = math.copysign(1.0, state.gear_speed)
+    for name, height in (("pinion, drives", _UP - 0.28), ("gear", -_DOWN + 0.18)):
+        ax.text(-_ACROSS + 0.1, height, f"{name}  {'→' if way > 0 else '←'}", fontsize="small", va="center")
+    _scale_bar(ax, module)
+    ax.set_xlim(-_ACROSS, _ACROSS)
+    ax.set_ylim(-_DOWN, _UP)
+    ax.set_aspect("equal")
+
+
+def _draw_contact(ax: Axes, picture: GearPicture, one: ToothContact, largest: float) -> None:
+    """Mark where a pair meets, and draw its force on the gear."""
+    module = picture.geometry.module
+    at = contact_points(picture, one.flank, one.place, one.gap)[1] / module
+    along = picture.line(one.flank, picture.geometry.approach + 1.0)
+    if abs(one.force) > _NO_ARROW * largest and one.state != ContactState.OPEN:
+        # long enough to be seen beside the mark
+        length = _LONGEST * max(abs(one.force) / largest, 0.2)
+        ax.annotate(
+            "",
+            tuple(at + along * math.copysign(length, one.force)),
+            tuple(at),
+            arrowprops={
+                "arrowstyle": "-|>",
+                "color": POSITIVE if one.force > 0.0 else NEGATIVE,
+                "linewidth": 2.2,
+                "mutation_scale": 14,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            },
+            zorder=5,
+        )
+    mark, face = _MARKS[one.state]
+    ax.plot(*at, mark, color="0.1", markerfacecolor=face, markersize=8, zorder=6)
+    across = np.array([-along[1], along[0]]) * (1.0 if along[0] > 0.0 else -1.0)
+    ax.annotate(
+        f"{one.pair}",
+        tuple(at + 0.42 * across),
+        ha="center",
+        va="center",
+        fontsize="small",
+        weight="bold",
+        zorder=7,
+        bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
+    )
+
+
+def _scale_bar(ax: Axes, module: float) -> None:
+    """Draw a length of one, two or five in modules' place."""
+    power = 10.0 ** math.floor(math.log10(module))
+    length = next(step * power for step in (5.0, 2.0, 1.0) if step * power <= module)
+    scale = scale_for(length, "m")
+    right, height = _ACROSS - 0.15, -_DOWN + 0.18
+    ax.plot([right - length / module, right], [height, height], color="0.1", linewidth=2.0)
+    ax.text(
+        right - length / module - 0.08,
+        height,
+        f"{length * scale.factor:g} {scale.unit}",
+        ha="right",
+        va="center",
+        fontsize="small",
+    )
+
+
+def _caption(ax: Axes, one: ToothContact, factor: float, joined: float, *, narrow: bool) -> None:
+    """Say beside a close-up what it shows."""
+    flank = "drive" if one.flank == Flank.DRIVE else "coast"
+    parted = ",\n" if narrow else ", "
+    lines = [
+        f"Pair {one.pair}, {flank} flank",
+        parted.join([f"gap {_quantity(one.gap, 'm')}", _force(one)]),
+        *([] if math.isnan(joined) else [f"joined asperities {joined:.2g}"]),
+        parted.join(_states(one)),
+    ]
+    size = "x-small" if narrow else "small"
+    ax.set_title("\n".join(lines), loc="left", fontsize=size)
+    ax.set_xlabel(
+        f"along the flank (µm), heights \N{MULTIPLICATION SIGN} {_round(factor)}",
+        fontsize=size,
+        labelpad=1,
+    )
+    if ax.get_position().x0 < 0.2:
+        ax.set_ylabel("height (nm)", fontsize="small", labelpad=1)
+
+
+def _force(one: ToothContact) -> str:
+    if not math.isfinite(one.force):
+        return "force not told by the record"
+    if one.force == 0.0:
+        return "no force"
+    return f"{'pushes' if one.force > 0.0 else 'pulls'} with {_quantity(abs(one.force), 'N')}"
+
+
+def _states(one: ToothContact) -> list[str]:
+    """State of a pair in words, of its two materials where they differ."""
+    if len(set(one.states.values())) == 1:
+        return [STATE_WORDS[one.state]]
+    names = {"bare": "bare", "coated": "monolayer"}
+    return [f"{names[part]} {STATE_WORDS[state]}" for part, state in sorted(one.states.items())]
+
+
+def _headline(state: MeshState) -> str:
+    return (
+        f"t = {_quantity(state.time, 's', 6)}    gear {state.gear_speed:.4g} rad/s    "
+        f"force of all pairs {_quantity(state.mesh_force, 'N')}"
+    )
+
+
+def _quantity(value: float, unit: str, digits: int = 4) -> str:
+    scale = scale_for(abs(value), unit)
+    return f"{value * scale.factor:.{digits}g} {scale.unit}"
+
+
+def _round(factor: float) -> str:
+    """Two digits."""
+    return f"{float(f'{factor:.2g}'):g}"
+
+
+def _speed_strip(ax: Axes, ds: xr.Dataset) -> tuple[float, Line2D]:
+    """Draw the gear's speed over the whole run with a mark for the time."""
+    (run,) = runs_of(ds, "gear_speed")
+    at, values = run.trace("gear_speed")
+    scale = scale_for(float(at[-1]), "s")
+    ax.plot(at * scale.factor, values, color="0.35", linewidth=0.8)
+    tidy(ax)
+    ax.set_xlabel(f"time ({scale.unit})", fontsize="small", labelpad=1)
+    ax.set_ylabel("gear (rad/s)", fontsize="small")
+    ax.yaxis.set_label_coords(-0.065, 0.5)
+    ax.tick_params(labelsize="x-small")
+    return scale.factor, ax.axvline(0.0, color=NEGATIVE, linewidth=1.4)

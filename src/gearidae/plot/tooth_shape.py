@@ -1,0 +1,237 @@
+r"""Outlines of two gears in mesh, and the points at which their teeth meet.
+
+The pitch point is the origin, the pinion lies above and turns counter-clockwise, the gear lies below and turns
+clockwise. Contacts of the drive flank travel along the line of action
+:math:`\mathbf n = (\cos\alpha, -\sin\alpha)`, which touches the pinion's base circle at :math:`-R_1
+\tan\alpha\,\mathbf n` and the gear's at :math:`R_2 \tan\alpha\,\mathbf n`; those of the coast flank along its mirror
+image. A flank is the end of a string that unwinds from the base circle. Beyond the path of contact the tooth ends are
+rounded: the flank recedes by :math:`d^2 / 2\rho`, as in the model (`gearidae.mesh.separation`).
+
+Both flanks of a gear's tooth are half a pitch apart; the whole backlash is taken from the pinion's teeth, so that a
+pair's place along the line of action is where the gear's flank crosses it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.mesh.involute import Geometry
+from gearidae.records import Flank
+from gearidae.scene import Scene
+
+__all__ = ["GearPicture", "ToothedWheel", "contact_points", "mesh_picture"]
+
+Floats = NDArray[np.float64]
+
+_FLANK_POINTS = 40
+_DEDENDUM = 1.25  # modules
+_ROUNDED = 8.0
+"""The rounded end of a tooth is drawn until it has receded by this many roughnesses."""
+_TALLEST = 1.18
+"""Modules above the pitch circle at most: below the other gear's root."""
+_RIM = 1.6
+"""Modules of the wheel's body shown below its roots."""
+
+
+@dataclass(frozen=True, slots=True)
+class ToothedWheel:
+    """One gear in its own frame, centre at the origin.
+
+    Attributes
+    ----------
+    tooth : ndarray, shape (n, 2)
+        Outline of tooth 0 from the root of its drive flank to that of its coast flank, clockwise [m], where its drive
+        flank crosses the pitch point.
+    teeth : int
+    centre : float
+        Height of the centre over the pitch point [m].
+    base_radius, tip_radius, rim_radius : float
+        Base circle, largest radius of the teeth, and depth to which the body is drawn [m].
+    turning : int
+        1 counter-clockwise, -1 clockwise.
+    """
+
+    tooth: Floats
+    teeth: int
+    centre: float
+    base_radius: float
+    tip_radius: float
+    rim_radius: float
+    turning: int
+
+    def outline(self, turned: float, count: int) -> Floats:
+        """Outline of the teeth nearest to the mesh, closed by the rim.
+
+        Parameters
+        ----------
+        turned : float
+            Angle that tooth 0 has turned beyond the pitch point [rad], in the wheel's own sense.
+        count : int
+            Teeth on either side of the one at the pitch point.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            Points [m], the pitch point at the origin.
+        """
+        pitch = 2.0 * math.pi / self.teeth
+        count = min(count, (self.teeth - 1) // 2)
+        beyond = turned - round(turned / pitch) * pitch
+        # clockwise, as the points of a tooth
+        angles = [self.turning * beyond - k * pitch for k in range(-count, count + 1)]
+        body = np.concatenate([_rotated(self.tooth, angle) for angle in angles])
+        first, last = (math.atan2(point[1], point[0]) for point in (body[0], body[-1]))
+        back = np.linspace(last, last + (first - last) % (2.0 * math.pi), 40)
+        rim = self.rim_radius * np.stack([np.cos(back), np.sin(back)], axis=1)
+        outline: Floats = np.concatenate([body, rim]) + np.array([0.0, self.centre])
+        return outline
+
+
+@dataclass(frozen=True, slots=True)
+class GearPicture:
+    """Both gears and the line of action of a scene; lengths in m.
+
+    Attributes
+    ----------
+    geometry : Geometry
+    pinion, gear : ToothedWheel
+    half_backlash : float
+    """
+
+    geometry: Geometry
+    pinion: ToothedWheel
+    gear: ToothedWheel
+    half_backlash: float
+
+    def turned(self, travel: float, transmission_error: float) -> tuple[float, float]:
+        """Angles that tooth 0 of pinion and gear have turned beyond the pitch point [rad].
+
+        A static transmission error is drawn as a turn of the pinion, so that the drawn gap is the true one.
+        """
+        beyond = travel - self.geometry.approach
+        pinion = (beyond - self.half_backlash + transmission_error) / self.geometry.base_radius_pinion
+        return pinion, beyond / self.geometry.base_radius_gear
+
+    def line(self, flank: Flank, place: float) -> Floats:
+        """Point of a flank's line of action, by its place along the path of contact [m]."""
+        beyond, angle = place - self.geometry.approach, self.geometry.pressure_angle
+        across = math.cos(angle) if flank == Flank.DRIVE else -math.cos(angle)
+        return np.array([beyond * across, -beyond * math.sin(angle)])
+
+
+def mesh_picture(scene: Scene) -> GearPicture:
+    """Lay out the gears of a scene for drawing.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+
+    Returns
+    -------
+    GearPicture
+
+    Raises
+    ------
+    SceneError
+        If the scene has no gears.
+    """
+    geometry = scene.geometry
+    assert scene.mesh is not None
+    rounding = scene.mesh.tip_relief_radius, _ROUNDED * scene.surface.roughness
+    half_pitch = 0.5 * geometry.base_pitch
+    return GearPicture(
+        geometry=geometry,
+        pinion=_wheel(
+            geometry, geometry.pinion_teeth, geometry.recess, half_pitch - scene.mesh.backlash, rounding, 1
+        ),
+        gear=_wheel(geometry, geometry.gear_teeth, geometry.approach, half_pitch, rounding, -1),
+        half_backlash=0.5 * scene.mesh.backlash,
+    )
+
+
+def contact_points(picture: GearPicture, flank: Flank, place: float, gap: float) -> tuple[Floats, Floats]:
+    """Where a pair's two flanks cross the line of action.
+
+    Parameters
+    ----------
+    picture : GearPicture
+    flank : Flank
+    place : float
+        Place xi along the path of contact [m].
+    gap : float
+        Gap of the pair [m].
+
+    Returns
+    -------
+    pinion, gear : ndarray, shape (2,)
+        Points [m], a gap apart. Relief of rounded ends is left to the pinion's.
+    """
+    return picture.line(flank, place - gap), picture.line(flank, place)
+
+
+def _wheel(
+    geometry: Geometry,
+    teeth: int,
+    beyond_pitch: float,
+    thickness: float,
+    rounding: tuple[float, float],
+    turning: int,
+) -> ToothedWheel:
+    """Lay out one gear.
+
+    Parameters
+    ----------
+    geometry : Geometry
+    teeth : int
+    beyond_pitch : float
+        How far beyond the pitch point its tips stay in contact, along the line of action [m].
+    thickness : float
+        Arc between the flanks of one tooth along the base circle's pitch, as seen at the pitch circle [m].
+    rounding : tuple of float
+        Radius of the tooth ends and how far they may recede [m].
+    turning : int
+        1 for the pinion, -1 for the gear.
+    """
+    module, alpha = geometry.module, geometry.pressure_angle
+    pitch_radius = 0.5 * teeth * module
+    base = pitch_radius * math.cos(alpha)
+    root = pitch_radius - _DEDENDUM * module
+    tangent = base * math.tan(alpha)
+    end = tangent + beyond_pitch
+    radius, depth = rounding
+    tallest = math.sqrt((pitch_radius + _TALLEST * module) ** 2 - base**2)
+    longest = min(end + math.sqrt(2.0 * radius * depth), max(tallest, end))
+    begin = math.sqrt(root**2 - base**2) if root > base else 0.0
+    string = np.concatenate(
+        [np.linspace(begin, end, _FLANK_POINTS), np.linspace(end, longest, 8)[1:] if longest > end else []]
+    )
+    length = string - np.maximum(string - end, 0.0) ** 2 / (2.0 * radius)
+    # the pinion's frame: centre above the pitch point, string along n from the point where it touches the circle
+    unwound = -(string - tangent) / base
+    touch = np.array([-base * math.sin(alpha), -base * math.cos(alpha)])
+    along = np.array([math.cos(alpha), -math.sin(alpha)])
+    cos, sin = np.cos(unwound), np.sin(unwound)
+    x, y = (touch[:, None] + along[:, None] * length).reshape(2, -1)
+    flank = np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+    if root < base:
+        flank = np.concatenate([flank[:1] * (root / base), flank])
+    other = _rotated(flank * np.array([-1.0, 1.0]), -thickness / base)
+    low, high = (math.atan2(point[1], point[0]) for point in (other[-1], flank[-1]))
+    land = np.linspace(low, high, 6)[1:-1]
+    tip = float(np.hypot(*flank[-1]))
+    top = tip * np.stack([np.cos(land), np.sin(land)], axis=1)
+    # from the trailing flank over the tip to the drive flank; the gear is the pinion's picture turned upside down
+    tooth = np.concatenate([flank, top[::-1], other[::-1]]) * turning
+    return ToothedWheel(tooth, teeth, turning * pitch_radius, base, tip, root - _RIM * module, turning)
+
+
+def _rotated(points: Floats, angle: float) -> Floats:
+    """Turn points counter-clockwise about the origin."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    turned: Floats = points @ np.array([[cos, sin], [-sin, cos]])
+    return turned

@@ -1,0 +1,70 @@
+// What the scripts of a report share: reading embedded data, making elements, units, colours.
+const gearidae = (() => {
+  "use strict";
+  // Okabe and Ito's palette; black has no contrast on a dark ground, so the theme's ink takes its place.
+  const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", null];
+  const ON_DARK = ["#4da6e0", "#f08040", "#2fc79b", "#e39ac2", "#f0b840", "#8fd0f5", null];
+  const PREFIXES = { "-24": "y", "-21": "z", "-18": "a", "-15": "f", "-12": "p", "-9": "n", "-6": "µ", "-3": "m", "0": "", "3": "k", "6": "M", "9": "G" };
+
+  function decode(text) {
+    const raw = atob(text), view = new DataView(new ArrayBuffer(raw.length));
+    for (let i = 0; i < raw.length; i++) view.setUint8(i, raw.charCodeAt(i));
+    const values = new Float32Array(raw.length / 4);
+    for (let i = 0; i < values.length; i++) values[i] = view.getFloat32(4 * i, true);
+    return values;
+  }
+
+  function element(tag, parent, text, properties) {
+    const made = document.createElement(tag);
+    if (text) made.textContent = text;
+    Object.assign(made, properties || {});
+    parent.append(made);
+    return made;
+  }
+
+  function prefixOf(largest) {
+    if (!(largest > 0)) return { factor: 1, prefix: "" };
+    const power = Math.min(9, Math.max(-24, 3 * Math.floor(Math.log10(largest * (1 + 1e-9)) / 3)));
+    return { factor: 10 ** -power, prefix: PREFIXES[power] };
+  }
+
+  const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const printing = window.matchMedia("print"), dark = window.matchMedia("(prefers-color-scheme: dark)");
+  const isDark = () => dark.matches && !printing.matches;
+  const colour = (run) => (isDark() ? ON_DARK : COLOURS)[run % 7] || style("--ink");
+
+  function seconds(time) {
+    if (time === 0) return "0 s";
+    const scale = prefixOf(Math.abs(time));
+    return (time * scale.factor).toPrecision(6) + " " + scale.prefix + "s";
+  }
+
+  function quantity(value, unit, digits) {
+    const scale = prefixOf(Math.abs(value));
+    return Number((value * scale.factor).toPrecision(digits || 4)) + " " + scale.prefix + unit;
+  }
+
+  // Draws anew whenever the size, the colours or the medium change.
+  function whenSeenAnew(draw, later) {
+    window.addEventListener("resize", later);
+    for (const query of [dark, printing]) query.addEventListener("change", draw);
+    window.addEventListener("beforeprint", draw);
+    window.addEventListener("afterprint", draw);
+  }
+
+  // A canvas cleared and scaled so that one unit is one CSS pixel; null while it is not shown.
+  function penOf(canvas) {
+    const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+    if (!width) return null;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    const pen = canvas.getContext("2d");
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    return { pen, width, height };
+  }
+
+  return { decode, element, prefixOf, style, colour, seconds, quantity, whenSeenAnew, penOf };
+})();

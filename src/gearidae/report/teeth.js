@@ -1,0 +1,340 @@
+// The teeth in mesh: both gears to scale, and the pairs that meet close up. Follows the time series' cursor.
+(() => {
+  "use strict";
+  const { decode, element, style, colour, seconds, quantity, whenSeenAnew, penOf } = gearidae;
+  const holder = document.getElementById("teeth-viewer");
+  const source = document.getElementById("teeth-data");
+  if (!holder || !source) return;
+  const data = JSON.parse(source.textContent);
+  const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
+  const BELOW = 3.5, ABOVE = 12; // roughnesses
+  const UNTOLD = -1, OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3, COAST = 1;
+  const PLAYED = 14; // seconds for what is in view
+  const FRAME = data.columns.frame.length, PAIR = data.columns.pair.length;
+  const still = window.matchMedia("(prefers-reduced-motion: reduce)");
+  let run = null, frame = 0, view = null, playing = null, waiting = false;
+
+  function take(number) {
+    run = data.runs[number];
+    if (!run.rows) {
+      run.numbers = decode(run.states);
+      run.size = FRAME + PAIR * run.places;
+      run.rows = run.numbers.length / run.size;
+      run.sample = run.asperities.map(decode);
+      run.largest = 0;
+      for (let i = 0; i < run.rows; i++) {
+        for (const pair of pairsOf(i)) if (Number.isFinite(pair.force)) run.largest = Math.max(run.largest, Math.abs(pair.force));
+      }
+    }
+    frame = Math.min(frame, run.rows - 1);
+    slider.max = run.rows - 1;
+  }
+
+  function frameOf(index) {
+    const found = {};
+    data.columns.frame.forEach((name, k) => { found[name] = run.numbers[run.size * index + k]; });
+    return found;
+  }
+
+  function pairsOf(index) {
+    const found = [];
+    for (let place = 0; place < run.places; place++) {
+      const start = run.size * index + FRAME + PAIR * place;
+      if (Number.isNaN(run.numbers[start])) continue;
+      const pair = { place_in_row: place };
+      data.columns.pair.forEach((name, k) => { pair[name] = run.numbers[start + k]; });
+      pair.state = Math.max(...[pair.bare, pair.coated].filter((state) => !Number.isNaN(state)));
+      found.push(pair);
+    }
+    return found;
+  }
+
+  const nearest = (time) => Math.max(0, Math.min(run.rows - 1, Math.round(time / frameOf(run.rows - 1).time * (run.rows - 1)) || 0));
+
+  // Point of a flank's line of action, in modules; the pitch point is the origin.
+  function onLine(flank, place) {
+    const beyond = (place - run.approach) / run.module;
+    return [(flank === COAST ? -1 : 1) * beyond * Math.cos(run.angle), -beyond * Math.sin(run.angle)];
+  }
+
+  function outline(pen, wheel, turned, x, y) {
+    const pitch = 2 * Math.PI / wheel.teeth, count = Math.min(TEETH, Math.floor((wheel.teeth - 1) / 2));
+    const beyond = turned - Math.round(turned / pitch) * pitch;
+    pen.beginPath();
+    let first = null, last = null;
+    for (let k = -count; k <= count; k++) {
+      const angle = wheel.turning * beyond - k * pitch, c = Math.cos(angle), s = Math.sin(angle);
+      for (let i = 0; i < wheel.tooth.length; i += 2) {
+        const a = c * wheel.tooth[i] - s * wheel.tooth[i + 1], b = s * wheel.tooth[i] + c * wheel.tooth[i + 1];
+        first = first || [a, b];
+        last = [a, b];
+        pen.lineTo(x(a), y(b + wheel.centre));
+      }
+    }
+    const size = wheel.rim / Math.hypot(...last);
+    const from = Math.atan2(last[1], last[0]), sweep = (Math.atan2(first[1], first[0]) - from + 4 * Math.PI) % (2 * Math.PI);
+    for (let k = 0; k <= 40; k++) {
+      const angle = from + sweep * k / 40, radius = size * Math.hypot(...last);
+      pen.lineTo(x(radius * Math.cos(angle)), y(radius * Math.sin(angle) + wheel.centre));
+    }
+    pen.closePath();
+  }
+
+  function drawMesh(now, pairs) {
+    const sheet = penOf(mesh);
+    if (!sheet) return;
+    const { pen, width, height } = sheet;
+    const size = Math.min(width / (2 * ACROSS), height / (UP + DOWN));
+    const x = (a) => width / 2 + size * a, y = (b) => height / 2 + size * ((UP - DOWN) / 2 - b);
+    const travel = now.phase * run.pitch - run.approach;
+    const angles = [(travel - run.halfBacklash + now.transmission_error) / run.pinion.base, travel / run.gear.base];
+    [run.pinion, run.gear].forEach((wheel, k) => {
+      outline(pen, wheel, angles[k], x, y);
+      pen.fillStyle = style(k ? "--gear" : "--pinion");
+      pen.strokeStyle = style("--ink");
+      pen.lineWidth = 1;
+      pen.fill();
+      pen.stroke();
+    });
+    const used = pairs.length && pairs[0].flank === COAST ? COAST : 0;
+    for (const flank of [0, COAST]) {
+      pen.setLineDash(flank === used ? [] : [5, 4]);
+      pen.strokeStyle = style(flank === used ? "--ink" : "--faint");
+      pen.beginPath();
+      pen.moveTo(...at(onLine(flank, 0)));
+      pen.lineTo(...at(onLine(flank, run.path)));
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    function at([a, b]) { return [x(a), y(b)]; }
+    pen.fillStyle = style("--ink");
+    pen.font = "13px system-ui, sans-serif";
+    pen.textBaseline = "middle";
+    pen.textAlign = "left";
+    const way = now.gear_speed < 0 ? " ←" : " →";
+    pen.fillText("pinion, drives" + way, 8, 14);
+    pen.fillText("gear" + way, 8, height - 14);
+    for (const pair of pairs) force(pen, pair, at, size);
+    for (const pair of pairs) mark(pen, pair, at);
+  }
+
+  // The force of a pair on the gear: long enough to be seen beside the mark, none for a hundredth of the largest.
+  function force(pen, pair, at, size) {
+    if (!(Math.abs(pair.force) > 0.01 * run.largest) || pair.state === OPEN) return;
+    const [a, b] = at(onLine(pair.flank, pair.place)), [c, d] = at(onLine(pair.flank, pair.place + run.module));
+    const share = Math.max(Math.abs(pair.force) / run.largest, 0.2) * Math.sign(pair.force) * LONGEST;
+    const along = [(c - a) * share, (d - b) * share], length = Math.hypot(...along), head = Math.min(12, length);
+    const unit = [along[0] / length, along[1] / length], tip = [a + along[0], b + along[1]];
+    const foot = [tip[0] - head * unit[0], tip[1] - head * unit[1]];
+    pen.strokeStyle = pen.fillStyle = colour(pair.force > 0 ? 0 : 1);
+    pen.lineWidth = 3;
+    pen.beginPath(); pen.moveTo(a, b); pen.lineTo(...foot); pen.stroke();
+    pen.beginPath();
+    pen.moveTo(...tip);
+    pen.lineTo(foot[0] - unit[1] * head / 2, foot[1] + unit[0] * head / 2);
+    pen.lineTo(foot[0] + unit[1] * head / 2, foot[1] - unit[0] * head / 2);
+    pen.fill();
+  }
+
+  const faceOf = (state) => ({ [OPEN]: style("--ground"), [LOADING]: colour(0), [PARTLY]: colour(4), [FULLY]: colour(1) })[state] || style("--faint");
+
+  function symbol(pen, state, a, b) {
+    pen.fillStyle = faceOf(state);
+    pen.strokeStyle = style("--ink");
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    if (state === PARTLY) { pen.moveTo(a, b - 7); pen.lineTo(a + 7, b + 6); pen.lineTo(a - 7, b + 6); pen.closePath(); }
+    else if (state === FULLY) pen.rect(a - 6, b - 6, 12, 12);
+    else if (state === UNTOLD) { pen.moveTo(a - 6, b - 6); pen.lineTo(a + 6, b + 6); pen.moveTo(a - 6, b + 6); pen.lineTo(a + 6, b - 6); }
+    else pen.arc(a, b, 6, 0, 2 * Math.PI);
+    pen.fill();
+    pen.stroke();
+  }
+
+  function mark(pen, pair, at) {
+    const [a, b] = at(onLine(pair.flank, pair.place));
+    symbol(pen, pair.state, a, b);
+    pen.fillStyle = style("--ground");
+    pen.beginPath(); pen.arc(a + 9, b - 24, 11, 0, 2 * Math.PI); pen.fill();
+    pen.fillStyle = style("--ink");
+    pen.textAlign = "center";
+    pen.font = "bold 13px system-ui, sans-serif";
+    pen.fillText(String(pair.number), a + 9, b - 24);
+  }
+
+  // One pair close up: asperities of the one flank under the smooth other, heights stretched.
+  function drawClose(box, pair) {
+    box.figure.hidden = !pair;
+    if (!pair) return;
+    const sheet = penOf(box.canvas);
+    if (!sheet) return;
+    const { pen, width, height } = sheet;
+    const sigma = run.roughness, half = run.halfWidth, top = Math.max(ABOVE * sigma, pair.gap + BELOW * sigma);
+    const x = (a) => width * (a + half) / (2 * half), y = (b) => height * (top - b) / (top + BELOW * sigma);
+    const row = run.sample[((pair.number % run.sample.length) + run.sample.length) % run.sample.length];
+    const count = row.length / 3, upper = (a) => pair.gap + a * a / (2 * pair.radius);
+    const lower = [];
+    for (let i = 0; i <= width; i += 1) {
+      const a = (2 * i / width - 1) * half;
+      let height = -Infinity, owner = 0;
+      for (let k = 0; k < count; k++) {
+        const cap = row[count + k] - (a - row[k]) ** 2 / (2 * run.asperityRadius);
+        if (cap > height) { height = cap; owner = k; }
+      }
+      lower.push({ a, height: Math.min(height, upper(a)), pressed: height > upper(a), coated: row[2 * count + owner] > 0 });
+    }
+    pen.strokeStyle = style("--ink");
+    for (const [fill, edge, line] of [["--gear", height, (one) => one.height], ["--pinion", 0, (one) => upper(one.a)]]) {
+      pen.beginPath();
+      for (const one of lower) pen.lineTo(x(one.a), y(line(one)));
+      pen.lineWidth = 1.2;
+      pen.stroke();
+      pen.lineTo(width, edge);
+      pen.lineTo(0, edge);
+      pen.fillStyle = style(fill);
+      pen.fill();
+    }
+    for (const [wanted, ink, thick] of [["coated", 2, 3], ["pressed", 0, 5]]) {
+      pen.strokeStyle = colour(ink);
+      pen.lineWidth = thick;
+      pen.beginPath();
+      lower.forEach((one, i) => {
+        if (!one[wanted]) return;
+        if (i === 0 || !lower[i - 1][wanted]) pen.moveTo(x(one.a), y(one.height)); else pen.lineTo(x(one.a), y(one.height));
+      });
+      pen.stroke();
+    }
+    pen.strokeStyle = colour(1);
+    pen.lineWidth = 4;
+    pen.beginPath();
+    for (let k = 0; k < count; k++) {
+      const rise = row[k] ** 2 / (2 * pair.radius), joined = row[2 * count + k] > 0 ? pair.joined_coated : pair.joined_bare;
+      if (joined + rise < row[count + k] && row[count + k] < pair.gap + rise) {
+        pen.moveTo(x(row[k]), y(row[count + k]));
+        pen.lineTo(x(row[k]), y(pair.gap + rise));
+      }
+    }
+    pen.stroke();
+    pen.strokeStyle = style("--ink");
+    pen.lineWidth = 1;
+    pen.setLineDash([4, 3]);
+    pen.beginPath(); pen.moveTo(0, y(0)); pen.lineTo(width, y(0)); pen.stroke();
+    pen.setLineDash([]);
+    pen.beginPath(); pen.moveTo(width / 2, y(0)); pen.lineTo(width / 2, y(pair.gap)); pen.stroke();
+    const factor = (height / (top + BELOW * sigma)) / (width / (2 * half));
+    box.caption.textContent = told(pair).join("; ");
+    box.scale.textContent = quantity(2 * half, "m", 3) + " across; heights × " + factor.toPrecision(2);
+  }
+
+  function told(pair) {
+    const words = ["Pair " + pair.number + ", " + (pair.flank === COAST ? "coast" : "drive") + " flank: gap " + quantity(pair.gap, "m")];
+    if (!Number.isFinite(pair.force)) words.push("force not told by the record");
+    else words.push(pair.force === 0 ? "no force" : (pair.force > 0 ? "pushes with " : "pulls with ") + quantity(Math.abs(pair.force), "N"));
+    const parts = [["bare", pair.bare], ["monolayer", pair.coated]].filter((part) => !Number.isNaN(part[1]));
+    const same = parts.every((part) => part[1] === parts[0][1]);
+    words.push(same ? data.words[parts[0][1]] : parts.map(([name, state]) => name + " " + data.words[state]).join(", "));
+    if (Number.isFinite(pair.count)) words.push("joined asperities " + (pair.count < 1e-3 ? pair.count.toExponential(1) : pair.count.toPrecision(2)));
+    return words;
+  }
+
+  function draw() {
+    const now = frameOf(frame), pairs = pairsOf(frame);
+    drawMesh(now, pairs);
+    close.forEach((box, place) => drawClose(box, pairs.find((pair) => pair.place_in_row === place)));
+    slider.value = frame;
+    slider.setAttribute("aria-valuetext", seconds(now.time));
+    readout.textContent = "t = " + seconds(now.time) + "  ·  gear " + now.gear_speed.toPrecision(4) + " rad/s  ·  force of all pairs "
+      + quantity(now.mesh_force, "N");
+    for (const [canvas, state] of key) {
+      const sheet = penOf(canvas);
+      if (sheet) symbol(sheet.pen, state, 9, 9);
+    }
+  }
+
+  function later() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => { waiting = false; draw(); });
+  }
+
+  function show(index, tell) {
+    frame = Math.max(0, Math.min(run.rows - 1, index));
+    if (tell) document.dispatchEvent(new CustomEvent("gearidae:teeth", { detail: frameOf(frame).time }));
+    later();
+  }
+
+  // What is in view of the time series, once through; then it stops.
+  function play() {
+    if (playing !== null) { stop(); return; }
+    const end = frameOf(run.rows - 1).time;
+    const from = nearest(view ? view.from : 0), to = nearest(view ? view.to : end);
+    let start = frame > from && frame < to ? frame : from, began = null;
+    const perSecond = Math.max((to - from) / PLAYED, 1);
+    button.textContent = "Pause";
+    const step = (time) => {
+      if (began === null) began = time;
+      const index = Math.floor(start + perSecond * (time - began) / 1000);
+      if (index !== frame) show(Math.min(index, to), true);
+      if (index >= to) stop(); else playing = requestAnimationFrame(step);
+    };
+    playing = requestAnimationFrame(step);
+  }
+
+  function stop() {
+    if (playing !== null) cancelAnimationFrame(playing);
+    playing = null;
+    button.textContent = "Play";
+  }
+
+  const controls = element("div", holder, "", { className: "controls" });
+  const button = element("button", controls, "Play", { type: "button" });
+  if (still.matches) button.title = "moves the picture";
+  button.addEventListener("click", play);
+  for (const [sign, name, step] of [["−1", "one picture back", -1], ["+1", "one picture on", 1]]) {
+    const single = element("button", controls, sign, { type: "button", title: name });
+    single.setAttribute("aria-label", name);
+    single.addEventListener("click", () => { stop(); show(frame + step, true); });
+  }
+  const slider = element("input", controls, "", { type: "range", min: 0, step: 1, value: 0 });
+  slider.setAttribute("aria-label", "time of the picture of the teeth");
+  slider.addEventListener("input", () => { stop(); show(Number(slider.value), true); });
+  if (data.runs.length > 1) {
+    const choice = element("select", controls, "", {});
+    choice.setAttribute("aria-label", "run shown");
+    data.runs.forEach((one, number) => element("option", choice, one.label, { value: number }));
+    choice.addEventListener("change", () => {
+      const time = frameOf(frame).time;
+      stop();
+      take(Number(choice.value));
+      show(nearest(time), true);
+    });
+  }
+  const readout = element("output", holder);
+  const mesh = element("canvas", holder, "", { className: "mesh" });
+  mesh.setAttribute("role", "img");
+  mesh.setAttribute("aria-label", "both gears near the pitch point, to scale; what the pairs do is written below");
+  const legend = element("p", holder, "", { className: "key" });
+  const key = Object.entries(data.words).map(([state, words]) => [Number(state), words]).sort((a, b) => a[0] - b[0]).map(([state, words]) => {
+    const entry = element("span", legend), canvas = element("canvas", entry);
+    entry.append(words);
+    return [canvas, state];
+  });
+  const row = element("div", holder, "", { className: "close-ups" });
+  const close = Array.from({ length: Math.max(...data.runs.map((one) => one.places)) }, () => {
+    const figure = element("figure", row), canvas = element("canvas", figure);
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "the flanks of a pair close up");
+    return { figure, canvas, caption: element("figcaption", figure), scale: element("p", figure, "", { className: "hint" }) };
+  });
+  take(0);
+  const notes = [];
+  if (run.every > 1) notes.push("One of every " + run.every + " samples is shown.");
+  notes.push("Blue pushes or is pressed, orange pulls or is stretched, green is covered by the monolayer. Arrows: force of a pair on the gear.");
+  notes.push("The asperities are a sample of the model's; a record knows of no single one.");
+  element("p", holder, notes.join(" "), { className: "hint" });
+
+  document.addEventListener("gearidae:cursor", (event) => { stop(); show(nearest(event.detail), false); });
+  document.addEventListener("gearidae:view", (event) => { view = event.detail; });
+  whenSeenAnew(draw, later);
+  draw();
+})();

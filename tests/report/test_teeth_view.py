@@ -1,0 +1,186 @@
+"""The teeth in the report: what is embedded is what the record says, and a browser shows it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.analysis.teeth import tooth_contacts
+from gearidae.records import Flank
+from gearidae.report import build_report
+from gearidae.report.teeth import FRAME, PAIR, pack_teeth
+
+SCENE = gd.preset("teodorescu2009_low_speed")
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+# A browser without a window paints when it likes; frames come by the clock instead, which is a virtual one.
+CLOCK = """<script>
+window.requestAnimationFrame = (then) => setTimeout(() => then(performance.now()), 16);
+window.cancelAnimationFrame = clearTimeout;
+</script>"""
+
+# Looks at the page as a reader would, and leaves what it saw in the title.
+LOOK = """<script>
+const seen = [];
+window.onerror = (message) => seen.push("error: " + message);
+const note = (name) => seen.push(name + ": " + document.querySelector("#teeth-viewer output").textContent
+  + " | " + [...document.querySelectorAll("#teeth-viewer figcaption")].map((one) => one.textContent).join(" | "));
+const frames = (count) => new Promise((done) => {
+  const next = () => count-- > 0 ? requestAnimationFrame(next) : done();
+  next();
+});
+(async () => {
+  const slider = document.querySelector("#teeth-viewer input"), plot = document.querySelector("#viewer canvas");
+  await frames(3);
+  note("first");
+  slider.value = SLIDER;
+  slider.dispatchEvent(new Event("input"));
+  await frames(3);
+  note("slider");
+  const box = plot.getBoundingClientRect();
+  plot.dispatchEvent(new PointerEvent("pointermove", { clientX: box.right - 10, clientY: box.top + 20 }));
+  await frames(3);
+  note("cursor");
+  const choice = document.querySelector("#teeth-viewer select");
+  if (choice) { choice.value = 1; choice.dispatchEvent(new Event("change")); await frames(3); note("other run"); }
+  slider.value = 0;
+  slider.dispatchEvent(new Event("input"));
+  const play = document.querySelector("#teeth-viewer button");
+  play.click();
+  await frames(12);
+  seen.push("playing: " + play.textContent + " " + (slider.value > 0));
+  play.click();
+  seen.push("stopped: " + play.textContent);
+  const mesh = document.querySelector(".mesh"), image = mesh.getContext("2d").getImageData(0, 0, mesh.width,
+  mesh.height).data; const colours = new Set();
+  for (let i = 0; i < image.length; i += 4) colours.add(image[i] + "," + image[i + 1] + "," + image[i + 2]);
+  for (const name of ["--pinion", "--gear"]) {
+    const hex = getComputedStyle(document.documentElement).getPropertyValue(name).trim().slice(1);
+    seen.push(name + ": " + colours.has([0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)).join(",")));
+  }
+  seen.push("wide: " + (document.documentElement.scrollWidth - document.documentElement.clientWidth));
+  document.title = JSON.stringify(seen);
+})();
+</script>"""
+
+
+@pytest.fixture(scope="module")
+def single():
+    return gd.simulate(SCENE.replace({"coating.sam_fraction": 0.5}), t_end=0.03, samples=3001)
+
+
+@pytest.fixture(scope="module")
+def swept():
+    return gd.sweep(SCENE, {"coating.sam_fraction": [1.0, 0.5]}, t_end=0.004, samples=401)
+
+
+def rows(run):
+    numbers = np.frombuffer(base64.b64decode(run["states"]), dtype="<f4")
+    return numbers.reshape(-1, len(FRAME) + run["places"] * len(PAIR))
+
+
+def test_embedded_states_are_samples_of_the_record(single):
+    data = pack_teeth(single, most_states=100)
+    (run,) = data["runs"]
+    states = rows(run)
+    assert run["every"] == 31
+    assert 90 < len(states) <= 100
+    for at in range(0, len(states), 7):
+        time, phase, u, speed, force = states[at, :5]
+        sample = single.isel(time=31 * at)
+        # float32 keeps seven digits
+        assert time == pytest.approx(sample.time.item(), rel=1e-6, abs=0.0)
+        assert (u, speed, force) == pytest.approx(
+            (sample.transmission_error.item(), sample.gear_speed.item(), sample.mesh_force.item()),
+            rel=1e-6,
+            abs=0.0,
+        )
+        travel = sample.gear_angle.item() * SCENE.geometry.base_radius_gear / SCENE.geometry.base_pitch
+        assert phase == pytest.approx(travel % 1.0, abs=1e-6)
+        (state,) = tooth_contacts(single, sample.time.item())
+        told = {(one.pair, one.flank): one for one in state.contacts}
+        pairs = states[at, 5:].reshape(run["places"], len(PAIR))
+        nearest = pairs[np.isfinite(pairs[:, 0])]
+        assert len(nearest)
+        assert nearest[:, PAIR.index("gap")].min() == pytest.approx(
+            sample.drive_gap.item(), rel=1e-6, abs=0.0
+        )
+        for pair in nearest:
+            one = told[int(pair[0]), Flank(int(pair[1]))]
+            assert pair[PAIR.index("force")] == pytest.approx(one.force, rel=1e-6, abs=1e-30)
+            assert pair[PAIR.index("coated")] == one.states["coated"]
+
+
+def test_a_page_holds_no_more_states_than_it_may(swept):
+    data = pack_teeth(swept, most_states=120)
+    assert [run["label"] for run in data["runs"]] == ["SAM 100 %", "SAM 50 %"]
+    assert all(len(rows(run)) <= 60 for run in data["runs"])
+    assert np.isnan(rows(data["runs"][0])[:, 5 + PAIR.index("bare")]).all()  # nothing is bare
+
+
+def test_rollers_have_no_teeth():
+    roller = gd.simulate(gd.preset("roller_slow"), samples=101)
+    assert pack_teeth(roller) == {}
+    page = build_report(roller)
+    assert 'id="teeth-viewer"' not in page
+    assert "Teeth in mesh" not in page
+
+
+def shown_in_browser(page, slider, tmp_path, *options):
+    page = page.replace("</head>", CLOCK + "</head>")
+    target = tmp_path / "page.html"
+    target.write_text(
+        page.replace("</body>", LOOK.replace("SLIDER", str(slider)) + "</body>"), encoding="utf-8"
+    )
+    command = [
+        CHROMIUM,
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        f"--user-data-dir={tmp_path / 'profile'}",
+    ]
+    command += ["--virtual-time-budget=5000", "--dump-dom", *options, target.as_uri()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    title = re.search("<title>(.*?)</title>", done.stdout)[1]
+    for escape, char in (("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")):
+        title = title.replace(escape, char)
+    return dict(entry.split(": ", 1) for entry in json.loads(title))
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("single", ["--window-size=1200,900"]),
+        ("swept", ["--window-size=500,800", "--blink-settings=preferredColorScheme=0"]),
+    ],
+)
+def test_browser_shows_the_teeth(kind, options, request, tmp_path):
+    ds = request.getfixturevalue(kind)
+    seen = shown_in_browser(build_report(ds), 100, tmp_path, *options)
+    assert "error" not in seen
+    every = pack_teeth(ds)["runs"][0]["every"]
+    run = ds if kind == "single" else ds.sel(sam_fraction=1.0)
+    assert seen["first"].startswith("t = 0 s")
+    last = float(ds.time[-1])
+    for name, time in (("slider", float(ds.time[100 * every])), ("cursor", last)):
+        (state,) = tooth_contacts(run, time)
+        assert seen[name].startswith(f"t = {time * 1e3:#.6g} ms")
+        for one in state.contacts:
+            if one.flank == Flank.DRIVE and 0 < one.place < SCENE.geometry.path_length:
+                words = f"Pair {one.pair}, drive flank: gap {one.gap * 1e9:.4g} nm"
+                assert words in seen[name]
+    if kind == "swept":
+        assert "monolayer" not in seen["cursor"]  # one material only
+        assert seen["other run"].startswith("t = 4.00000 ms")
+    assert seen["playing"] == "Pause true"
+    assert seen["stopped"] == "Play"
+    assert seen["--pinion"] == seen["--gear"] == "true"
+    assert int(seen["wide"]) <= 0  # nothing sticks out to the side
