@@ -11,7 +11,10 @@ from scipy.optimize import brentq
 import gearidae as gd
 from gearidae.engine import layout as at
 from gearidae.engine import solve
+from gearidae.engine.backend import run_blocks
+from gearidae.engine.events import begin
 from gearidae.engine.problem import make_problem
+from gearidae.engine.run import Ending, Tally
 from gearidae.records import EventKind
 
 BASE = gd.preset("teodorescu2009").replace(
@@ -95,6 +98,49 @@ def test_an_entry_and_an_exit_at_the_same_time_are_both_told():
     np.testing.assert_allclose(run.events.time, times, rtol=1e-9)
     ours = zip(run.events.kind, run.events.pair, run.events.flank, strict=True)
     assert sorted(map(tuple, ours)) == sorted(e[1:] for e in expected)
+
+
+def test_two_pairs_that_touch_together_are_both_told_each_time():
+    """On the path of contact all gaps of a flank are one: pairs 0 and -1 of a gear that hardly moves do all at once."""
+    scene = BASE.replace(
+        {
+            "gears.gear_inertia": 1e-12,
+            "initial.gear_speed": 1e-3,
+            "initial.gap": 5e-8,
+            "coating.sam_fraction": 0.5,
+            "run.duration": 2e-6,
+        }
+    )
+    run = solve(scene)
+    events = run.events
+    for kind in (EventKind.ONSET, EventKind.TURNING_POINT, EventKind.FULL_STRETCH):
+        chosen = events.kind == kind
+        assert np.count_nonzero(chosen) >= 2
+        # the pinion's radius of curvature differs, the gaps do not: equal to the last bits of their sums
+        np.testing.assert_allclose(events.time[chosen][::2], events.time[chosen][1::2], rtol=1e-9)
+        assert sorted(events.pair[chosen]) == [-1] * (chosen.sum() // 2) + [0] * (chosen.sum() // 2)
+
+
+@pytest.mark.parametrize("pitches", [1, 2, 5, -3])
+def test_which_pair_is_called_which_does_not_matter(pitches):
+    """Started some pitches on, the same happens to pairs of other numbers, whose histories lie in other places."""
+    runs = []
+    for shift in (0, pitches):
+        problem = make_problem(BASE.replace({"initial.gap": 3e-8, "coating.sam_fraction": 0.5}))
+        problem.start[at.PHASE] += shift
+        begin(problem.data, 0.0, problem.start)
+        tally = Tally()
+        blocks = list(run_blocks(problem, 1e-8, 41, "native", tally))
+        assert tally.ending is Ending.FINISHED
+        runs.append(np.concatenate([block.events for block in blocks]))
+    ours, theirs = runs
+    assert np.count_nonzero(ours[:, 1] == EventKind.TURNING_POINT) > 5
+    assert len(set(ours[:, 2])) > 1
+    np.testing.assert_array_equal(theirs[:, [1, 3]], ours[:, [1, 3]])
+    flank = ours[:, 3] >= 0
+    np.testing.assert_array_equal(theirs[flank, 2], ours[flank, 2] + pitches)
+    # the phase rounds otherwise, which impacts magnify
+    np.testing.assert_allclose(theirs[:, 0], ours[:, 0], rtol=1e-5)
 
 
 def on_a_guard():

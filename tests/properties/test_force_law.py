@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
+from scipy.optimize import brentq
 
-from gearidae.contact.history import joined_height
+from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.law import law_table, law_value
 from gearidae.contact.line import line_force
 from gearidae.contact.psi import psi
@@ -45,7 +46,9 @@ def test_force_is_continuous_through_every_branch(limit, turning, share, place):
     near = walk(limit, np.array([*turning, at - step, at]))[0][-2:]
     there = walk(limit, np.array([*turning, at, at + step]))[0][-2:]
     back = walk(limit, np.array([*turning, at, at - step]))[0][-2:]
-    pushes = abs(law_value(law_table(limit), at, at)[0])
+    pushes = law_value(law_table(0.0), at, at)[
+        0
+    ]  # without adhesion: what the pull takes away may leave little
     size = pushes + np.abs([*near, *there, *back]).max()
     # forces fall by e^6 per roughness and stretched ones change by their own size over a stretch limit
     bound = (20.0 + 5.0 / limit) * size * step + 1e-9 * size
@@ -119,6 +122,37 @@ def test_a_loop_that_tears_nothing_loses_nothing(limit, low, share, steps):
     force = walk(limit, np.concatenate([up, up[::-1]]))[0]
     size = np.abs(force).max()
     np.testing.assert_allclose(force[:steps], force[steps:][::-1], rtol=0, atol=1e-9 * size)
+
+
+@given(joined=st.floats(-10.0, 10.0), way=st.floats(0.0, 10.0), limit=st.floats(1e-3, 5.0))
+def test_nothing_stretches_beyond_the_limit(joined, way, limit):
+    """Parting stretches what is joined up to the limit and tears the rest; closing up joins what it touches."""
+    stretched = joined_height(joined, joined + way, limit)
+    assert stretched == pytest.approx(
+        joined + max(way - limit, 0.0), rel=0, abs=1e-14
+    )  # rounding of a few tens
+    assert joined_height(joined, joined - way, limit) == joined - way
+
+
+@given(
+    gap=st.floats(-10.0, 10.0),
+    span=st.floats(1e-3, 10.0),
+    before=st.floats(-2.0, -0.01),
+    after=st.floats(0.01, 2.0),
+    bend=st.floats(-3.0, 3.0),
+)
+def test_the_turning_point_of_a_cubic_is_exact(gap, span, before, after, bend):
+    """The rate is a parabola from `before` to `after` (scaled by the span), bent either way; it is zero once."""
+    place = brentq(lambda s: bend * s**2 + (after - before - bend) * s + before, 0.0, 1.0, xtol=1e-16)
+
+    def moved(s):
+        return bend * s**3 / 3 + (after - before - bend) * s**2 / 2 + before * s
+
+    found = extreme_gap(span, gap, before / span, gap + moved(1.0), after / span)
+    assert found == pytest.approx(gap + moved(place), rel=0, abs=1e-12 * 20)
+    assert extreme_gap(span, -gap, -before / span, -gap - moved(1.0), -after / span) == pytest.approx(
+        -found, rel=0, abs=1e-12 * 20
+    )
 
 
 positive = st.floats(0.1, 10.0)

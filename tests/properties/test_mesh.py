@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import gearidae as gd
 from gearidae.engine import layout as at
 from gearidae.engine.events import begin
-from gearidae.engine.mesh import first_pair, last_pair, pair_gap
+from gearidae.engine.mesh import first_pair, history_slot, last_pair, pair_force, pair_gap, set_joined
 from gearidae.engine.problem import make_problem
 from gearidae.engine.residual import jacobian, mesh_forces, residual
 
@@ -23,6 +23,7 @@ SMOOTH = make_problem(
         {"mesh.backlash": 4e-8, "initial.gap": 2e-8, "contact.asperity": "hertz", "mesh.damping": 1e-6}
     )
 )
+IMPACT = make_problem(gd.preset("roller_slow").replace({"contact.model": "asperity"}))
 PATH = float(PROBLEM.data[at.PATH])
 COAST = float(PROBLEM.data[at.COAST_PHASE])
 
@@ -114,6 +115,32 @@ def test_all_pairs_that_can_touch_are_looked_at(u, phase):
         for pair in range(-12, 13):
             gap = pair_gap(d, flank, pair, u, 0.0, phase, 0.0)[0]
             assert pair in seen or gap >= d[at.CUTOFF]
+
+
+@given(
+    gap=st.floats(-4.0, 7.0),
+    toward=st.floats(0.05, 3.0),
+    away=st.floats(0.05, 3.0),
+    span=st.floats(0.01, 0.2),
+)
+def test_in_a_step_that_turns_round_the_contact_has_been_at_the_turning_point(gap, toward, away, span):
+    """The last accepted time lies before the turning point; the force behind it knows of it all the same."""
+    turning = gap - 0.5 * toward**2 * span / (toward + away)
+    there = gap + 0.5 * span * (away - toward)
+    slot = history_slot(IMPACT.data, 0, 0)
+    forces = []
+    for joined, way, rate in ((20.0, -1.0, away), (turning, 1.0, away), (20.0, -1.0, -away)):
+        d = IMPACT.data.copy()
+        set_joined(d, slot, 0, joined)
+        d[[slot + at.PAIR, slot + at.WAY, slot + at.LAST_GAP, slot + at.LAST_RATE]] = 0.0, way, gap, -toward
+        d[at.LAST_TIME] = 0.0
+        forces.append(pair_force(d, slot, True, span, there, rate, 0.0)[0])
+    within, after, never = forces
+    # a rate that is linear in time leaves only the rounding of the turning point and the stored branch's 1e-9
+    size = max(map(abs, forces))
+    assert within == pytest.approx(after, rel=0, abs=1e-7 * size)
+    if there - turning > 0.02:
+        assert within < never - 1e-4 * size  # what is stretched pulls
 
 
 @settings(max_examples=60)

@@ -3,21 +3,25 @@
 import math
 from datetime import date
 
+import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.bench import stress
+from gearidae.bench import stress, stress_checks
 from gearidae.bench.random_scenes import random_scene
 from gearidae.bench.stress import Outcome, run_one, run_stress
-from gearidae.bench.stress_report import counts, page, quantiles, worst
+from gearidae.bench.stress_report import counts, ledger_quantiles, page, quantiles, worst
 from gearidae.cli import main
-from gearidae.engine.run import Ending
+from gearidae.engine import solve
+from gearidae.engine.problem import ROOT_LIMIT, make_problem
+from gearidae.engine.run import BLOCK_STEPS, Ending
+from gearidae.records import EventKind
 
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
 
 
 def test_random_scenes_end_soundly():
-    outcomes = run_stress(30, seed=1)
+    outcomes = run_stress(30, seed=4, budget=BLOCK_STEPS)
     assert [o for o in outcomes if not o.sound] == []
     assert {o.status for o in outcomes} <= NAMED
     assert sum(o.status in ("finished", "budget") for o in outcomes) >= 25
@@ -39,6 +43,41 @@ def test_no_event_follows_another_without_end(number):
     assert outcome.status in ("finished", "budget")
 
 
+@pytest.mark.parametrize(("seed", "number"), [(1, 404), (2, 66), (2, 456)])
+def test_an_overlap_beyond_the_force_laws_tables_is_named(seed, number):
+    """Found by the stress run: pressed deeper than forty roughnesses a run went on with an extrapolated force."""
+    outcome = run_one(random_scene(seed, number))
+    assert outcome.sound
+    assert outcome.status == "deflection"
+    assert 0.0 < outcome.reached < 1.0
+
+
+def test_a_flank_at_the_end_of_a_long_flight_is_met():
+    """Found by the stress run: a start in flight took a step so long that Newton's iteration failed in the tooth."""
+    outcome = run_one(random_scene(2, 281), budget=BLOCK_STEPS)
+    assert outcome.sound
+    assert outcome.status in ("finished", "budget")
+
+
+def test_ringing_fast_against_the_loads_own_time_is_no_chatter():
+    """Found by the stress run: teeth that ring in their adhesive well turn round thousands of times in a time unit."""
+    scene = gd.preset("teodorescu2009_low_speed").replace(
+        {
+            "surface.roughness": 1e-9,
+            "coating.sam_fraction": 0.0,
+            "contact.model": "asperity",
+            "initial.gap": 6e-9,
+            "run.duration": 8e-5,
+            "run.samples": 11,
+        }
+    )
+    run = solve(scene)
+    turned = np.count_nonzero(run.events.kind == EventKind.TURNING_POINT)
+    assert run.status == "finished"
+    assert turned > 2 * ROOT_LIMIT
+    assert turned > 10_000 * scene.run.duration / make_problem(scene).time_unit
+
+
 def test_the_same_numbers_give_the_same_scene():
     assert random_scene(3, 17) == random_scene(3, 17)
     assert random_scene(3, 17) != random_scene(3, 18)
@@ -49,9 +88,27 @@ def test_a_wrong_force_would_be_seen(monkeypatch):
     """The envelope of what a contact can do is narrow enough to catch forces that are off by a part in a thousand."""
     scene = gd.preset("roller_slow").replace({"contact.model": "asperity", "run.samples": 401})
     assert run_one(scene).sound
-    honest = stress.line_force
-    monkeypatch.setattr(stress, "line_force", lambda *a: 1.001 * honest(*a))
+    honest = stress_checks.line_force
+    monkeypatch.setattr(stress_checks, "line_force", lambda *a: 1.001 * honest(*a))
     assert "force is" in run_one(scene).complaint
+
+
+def test_processes_share_the_scenes_and_one_that_does_not_come_back_is_a_defect(monkeypatch):
+    alone = run_stress(8, seed=4, budget=BLOCK_STEPS)
+    done = []
+    shared = run_stress(8, seed=4, jobs=2, budget=BLOCK_STEPS, report=done.append)
+    assert [(o.number, o.status) for o in shared] == [(o.number, o.status) for o in alone]
+    assert done[-1] == 8
+    monkeypatch.setattr(stress, "_PATIENCE", 0.01)  # no process is even started in that time
+    hung = run_stress(8, seed=4, jobs=2)
+    assert [o.number for o in hung] == list(range(8))
+    assert {o.status for o in hung} == {"hung"}
+    assert not any(o.sound for o in hung)
+
+
+def test_an_unbalanced_ledger_is_a_complaint(monkeypatch):
+    monkeypatch.setattr(stress, "LEDGER_TOLERANCES", 0.0)
+    assert "ledger" in run_one(gd.preset("roller_slow").replace({"contact.model": "asperity"})).complaint
 
 
 def test_a_defect_is_listed_and_does_not_end_the_run(monkeypatch):
@@ -67,13 +124,14 @@ def test_a_defect_is_listed_and_does_not_end_the_run(monkeypatch):
 
 def test_the_page_counts_and_lists():
     outcomes = [
-        Outcome(0, "finished", rtol=1e-6, error=1e-5, steps=10, reached=1.0),
+        Outcome(0, "finished", rtol=1e-6, error=1e-5, imbalance=3e-6, steps=10, reached=1.0),
         Outcome(1, "budget", rtol=1e-6, error=1e-3),
         Outcome(2, "finished", complaint="force is off", rtol=1e-6),
         Outcome(3, "refused", "surface.roughness = 0: must be above 0"),
     ]
     assert counts(outcomes) == {"finished": 2, "budget": 1, "refused": 1}
     assert quantiles(outcomes)[1.0] == pytest.approx(1000.0)
+    assert ledger_quantiles(outcomes)[1.0] == pytest.approx(3.0)
     assert [o.number for o in worst(outcomes)] == [2, 1, 0]
     text = page(outcomes, 7, date(2026, 1, 2))
     assert "Unsound: 1" in text

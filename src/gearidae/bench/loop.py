@@ -35,7 +35,7 @@ from gearidae.bench.steps import (
 )
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
-from gearidae.engine.events import EVENTS_AT_ONCE, accept, guard, handle
+from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, accept, guard, handle, pass_knot
 
 __all__ = ["run_dop853", "run_gauss", "run_rk4"]
 
@@ -208,13 +208,15 @@ def run_gauss(
     states: Floats,
     scale: Floats,
     tolerance: float,
+    knots: Floats,
     counts: Counts,
 ) -> None:
-    """Collocation of order twelve, with a step's end at every event and at every sample: the reference.
+    """Collocation of order twelve, with a step's end at every event, schedule knot and sample: the reference.
 
     The error of the embedded rule of order six, in units of `scale`, is held to `tolerance`; that of the method is
-    far below it between the knots of the force law's tables, where only three derivatives are continuous.
-    Parameters are otherwise those of `run_rk4`.
+    far below it between the knots of the force law's tables, where only three derivatives are continuous. A jump of
+    the equations (stick, slip, the schedule's `knots` over tau) only begins another step. Parameters are otherwise
+    those of `run_rk4`.
     """
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
@@ -230,6 +232,14 @@ def run_gauss(
             states[sample] = y
             sample += 1
             continue
+        knot = int(d[at.NEXT_KNOT])
+        if knot < knots.size:
+            if knots[knot] <= t:
+                pass_knot(d, t, room, 0)
+                rates(d, t, y, zero, k[0])
+                before = watch(d, t, y, heights, armed)
+                continue
+            stop = min(stop, knots[knot])
         cut = t + h >= stop
         step = stop - t if cut else h
         error = gauss_step(d, t, y, step, scale, k, zero, trial, new) / tolerance
@@ -273,8 +283,9 @@ def run_gauss(
         y[:] = new
         t = later
         if fallen:
-            _, counts[FAILED] = handle(d, t, y, room, 0)
-            if counts[FAILED] != 0:
+            _, action = handle(d, t, y, room, 0)
+            if action == CROWDED:
+                counts[FAILED] = action
                 return
         rates(d, t, y, zero, k[0])
         armed = arm(d, y, heights)

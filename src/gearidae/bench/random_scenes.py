@@ -16,6 +16,9 @@ __all__ = ["random_scene"]
 SCENES_PER_SURFACE = 4
 """Scenes that share a surface, whose force law takes longer to tabulate than most of the runs."""
 
+ELASTIC_EVERY, ELASTIC_AT = 5, 3
+"""Of so many scenes in a row this one has bodies that give way."""
+
 _ROLLERS = 0.15
 _SILICON = 2330.0  # [kg/m^3], of which the random gears are solid discs
 _TRIES = 1000
@@ -27,7 +30,7 @@ def random_scene(seed: int, number: int) -> Scene:
     Roughness 1..30 nm, tip radius 20 nm..5 um, 1e12..1e15 asperities per square metre, surface energy 0..3 J/m^2,
     modulus 50..400 GPa, SAM fraction 0..1, torque over twelve decades or none, 12..120 teeth, backlash 0..1 um, speed
     up to 1e4 rad/s either way, tolerance 1e-3..1e-10; special values (nothing, all, a start exactly on a guard) more
-    often than chance would have them.
+    often than chance would have them. Each fifth scene has bodies that give way, of 2..400 GPa.
 
     Parameters
     ----------
@@ -41,12 +44,17 @@ def random_scene(seed: int, number: int) -> Scene:
     """
     surface, coating = _surface(np.random.default_rng([seed, number // SCENES_PER_SURFACE, 1]))
     rng = np.random.default_rng([seed, number, 2])
+    model = "asperity"
+    if number % ELASTIC_EVERY == ELASTIC_AT:
+        bodies = np.random.default_rng([seed, number, 3])
+        surface |= {"youngs_modulus": _log(bodies, 2e9, 400e9)}
+        model = str(bodies.choice(["elastic", "auto"]))
     data: dict[str, Any] = {
         "name": f"stress {seed}-{number}",
         "surface": surface | {"asperity_density": _log(rng, 1e12, 1e15)},
         "coating": coating | {"sam_fraction": float(rng.choice([0.0, 1.0, rng.random()], p=[0.2, 0.2, 0.6]))},
         "contact": {
-            "model": "asperity",
+            "model": model,
             "asperity": str(rng.choice(["jkr", "dmt", "hertz"], p=[0.8, 0.1, 0.1])),
         },
         "run": {"duration": 1e-6, "samples": 401, "rtol": _log(rng, 1e-10, 1e-3)},

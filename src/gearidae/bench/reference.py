@@ -41,6 +41,7 @@ __all__ = [
     "reference_folders",
     "save_reference",
     "scene_hash",
+    "solve_with",
 ]
 
 Floats = NDArray[np.float64]
@@ -135,13 +136,32 @@ def physical(problem: Problem, states: Floats) -> tuple[Floats, Floats]:
     return states[:, at.W] * unit / float(problem.data[at.GEAR_RADIUS]), states[:, at.U] * length
 
 
-def _solve(bench: BenchScene, method: str, tolerance: float) -> tuple[Floats, Floats, Floats]:
+def solve_with(bench: BenchScene, method: str, tolerance: float) -> tuple[Floats, Floats, Floats]:
+    """Solve a scene by a method of reference.
+
+    Parameters
+    ----------
+    bench : BenchScene
+    method : {"gauss", "dop853"}
+    tolerance : float
+
+    Returns
+    -------
+    time, speed, position : ndarray, shape (n,)
+        As in `Reference`.
+
+    Raises
+    ------
+    SolverError
+        If the method fails; ``dop853`` does where the scene restarts (stick, schedule knots).
+    """
     problem = make_problem(bench.scene)
     times = np.linspace(0.0, problem.end, bench.scene.run.sample_count)
     y, states = problem.start.copy(), np.zeros((times.size, problem.start.size))
     counts = np.zeros(4, np.int64)
     if method == "gauss":
-        run_gauss(problem.data, y, problem.end, times, states, problem.tolerance_scale, tolerance, counts)
+        scale = problem.tolerance_scale
+        run_gauss(problem.data, y, problem.end, times, states, scale, tolerance, problem.knots, counts)
     else:
         run_dop853(
             problem.data, y, problem.end, times, states, tolerance * problem.tolerance_scale, True, counts
@@ -164,11 +184,11 @@ def make_reference(bench: BenchScene) -> Reference:
     Raises
     ------
     SolverError
-        If the scene restarts (stick, schedule knots): the reference methods do not follow it there.
+        If the scene restarts (stick, schedule knots), where the check by Dormand and Prince's pair does not follow it.
     """
-    time, speed, position = _solve(bench, "gauss", TOLERANCE)
+    time, speed, position = solve_with(bench, "gauss", TOLERANCE)
     length = bench.scene.surface.roughness
-    checks = [_solve(bench, "gauss", 0.1 * TOLERANCE), _solve(bench, "dop853", CHECK_TOLERANCE)]
+    checks = [solve_with(bench, "gauss", 0.1 * TOLERANCE), solve_with(bench, "dop853", CHECK_TOLERANCE)]
     own_error = max(run_error(speed, position, s, p, length) for _, s, p in checks)
     versions = {"gearidae": gearidae.__version__, **{name: version(name) for name in ("numpy", "numba")}}
     date = datetime.now(UTC).isoformat(timespec="seconds")

@@ -217,7 +217,8 @@ def gauss_step(
     Returns
     -------
     float
-        Error of the embedded rule of order six over `scale`; infinite if the iteration does not settle.
+        Error of the embedded rule of order six over `scale`; infinite if the iteration does not settle or
+        overflows.
     """
     n = y.size
     for s in range(_GAUSS_STAGES):
@@ -252,5 +253,7 @@ def gauss_step(
             if s < _GAUSS_STAGES - 1:
                 other += _GE[s + 1] * k[1 + s, i]
         new[i] = y[i] + h * rise
+        if not math.isfinite(new[i]):  # a trial far inside a tooth: NaN passes for small in a maximum
+            return math.inf
         error = max(error, abs(h * (rise - other)) / scale[i])
     return error

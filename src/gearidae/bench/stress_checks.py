@@ -1,0 +1,136 @@
+"""What samples and events of any run must satisfy, whatever its scene.
+
+Gaps are worked out again from the angles. Forces of the asperity model must lie between those of a contact that has
+just been made and of one stretched to its limit, by quadrature and not by the engine's tables; with bodies that give
+way the force has no such bounds, as deflection can take a contact to either side of them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.contact.jkr import asperity_of
+from gearidae.contact.line import line_force
+from gearidae.mesh.involute import curvature_radii, separation
+from gearidae.scene import Scene
+
+__all__ = ["complaint_about"]
+
+Floats = NDArray[np.float64]
+
+_CHECKED_SAMPLES = 24
+_GAP_TOLERANCE = 1e-7  # of the roughness: rounding of angles and radii
+_FORCE_TOLERANCE = 1e-5  # of what pushes and pulls: e^6 of the gap's tolerance per roughness, and the tables
+_NEGLECTED = (
+    1e-11  # of the scene's reference force: beyond the cut-off the engine takes less than 1e-13 as nothing
+)
+
+
+def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, rigid: bool) -> str:
+    """Name the first thing that is wrong, if anything is.
+
+    Parameters
+    ----------
+    scene : Scene
+    rows : ndarray
+        Samples, as the engine's blocks have them.
+    events : ndarray, shape (m, 5)
+    unit : float
+        The engine's reference force of the scene [N].
+    rigid : bool
+        Whether all of it is by the asperity model, so that forces have their bounds.
+
+    Returns
+    -------
+    str
+        Empty if nothing is wrong.
+    """
+    if not np.isfinite(rows).all() or not np.isfinite(events).all():
+        return "not finite"
+    if len(events) and (np.any(np.diff(events[:, 0]) < 0) or events[0, 0] < 0):
+        return "events out of order"
+    chosen = rows[np.unique(np.linspace(0, len(rows) - 1, _CHECKED_SAMPLES).astype(int))]
+    for row in chosen:
+        check = _check_roller if scene.roller else _check_gears
+        complaint = check(scene, row, unit, rigid)
+        if complaint:
+            return complaint
+    return ""
+
+
+def _check_roller(scene: Scene, row: Floats, unit: float, rigid: bool) -> str:
+    assert scene.roller
+    if not rigid:
+        return ""
+    height, _, force = row
+    low, high, size = _limits(scene, np.array([height]), np.array([scene.roller.radius]), scene.roller.width)
+    return _within("force", force, float(low.sum()), float(high.sum()), float(size.sum()), unit)
+
+
+def _check_gears(scene: Scene, row: Floats, unit: float, rigid: bool) -> str:
+    assert scene.gears
+    sigma = scene.surface.roughness
+    angle, u, force, torque, drive_gap, coast_gap = row[2:8]
+    signs, gaps, slopes, radii = _pairs(scene, u, angle)
+    for name, sign, found in (("drive_gap", 1.0, drive_gap), ("coast_gap", -1.0, coast_gap)):
+        nearest = float(gaps[signs == sign].min())
+        if abs(found - nearest) > _GAP_TOLERANCE * sigma + 1e-9 * abs(nearest):
+            return f"{name} is {found:.6g} m where the geometry has {nearest:.6g} m"
+    if not rigid:
+        return ""
+    low, high, size = _limits(scene, gaps, radii, scene.gears.face_width)
+    low, high = np.where(signs > 0, low, -high), np.where(signs > 0, high, -low)
+    total = float(size.sum())
+    gear = torque / scene.geometry.base_radius_gear
+    return _within("mesh_force", force, float(low.sum()), float(high.sum()), total, unit) or _within(
+        "gear_contact_torque / R2",
+        gear,
+        float((low * (1.0 + slopes)).sum()),
+        float((high * (1.0 + slopes)).sum()),
+        total,
+        unit,
+    )
+
+
+def _pairs(scene: Scene, u: float, angle: float) -> tuple[Floats, Floats, Floats, Floats]:
+    """Flank (1 drive, -1 coast), gap, slope of the tip relief and reduced radius of every pair near the mesh."""
+    assert scene.mesh
+    geometry, relief = scene.geometry, scene.mesh.tip_relief_radius
+    pitch, travel = geometry.base_pitch, geometry.base_radius_gear * angle
+    middle = round(travel / pitch)
+    number = np.arange(middle - 40, middle + 41)
+    drive = travel - number * pitch
+    coast = 2.0 * geometry.approach - (travel - (number + 0.5) * pitch)
+    along = np.concatenate([drive, coast])
+    signs = np.repeat([1.0, -1.0], number.size)
+    opened, slopes = separation(geometry, along, relief)
+    gaps = 0.5 * scene.mesh.backlash - signs * u + opened
+    return signs, gaps, slopes, curvature_radii(geometry, along)[2]
+
+
+def _limits(scene: Scene, gaps: Floats, radii: Floats, width: float) -> tuple[Floats, Floats, Floats]:
+    """Least and largest force at these gaps, and the size of what pushes and pulls [N]."""
+    low, high, size = np.zeros_like(gaps), np.zeros_like(gaps), np.zeros_like(gaps)
+    near = gaps < 14.0 * scene.surface.roughness
+    share = scene.coating.sam_fraction
+    law = scene.contact.asperity
+    for surface, part in ((scene.surface, 1.0 - share), (scene.coated_surface, share)):
+        if part == 0.0 or not near.any():
+            continue
+        unit = part * np.sqrt(radii[near])
+        loading = unit * line_force(gaps[near], 0.0, 1.0, width, surface, law)
+        stretch = asperity_of(surface).stretch_limit
+        parting = unit * line_force(gaps[near], stretch, 1.0, width, surface, law)
+        pushing = unit * line_force(gaps[near], 0.0, 1.0, width, surface, "hertz")
+        low[near] += np.minimum(parting, loading)
+        high[near] += np.maximum(parting, loading)
+        size[near] += np.abs(pushing) + np.abs(parting) + np.abs(loading)
+    return low, high, size
+
+
+def _within(name: str, found: float, low: float, high: float, size: float, unit: float) -> str:
+    slack = _FORCE_TOLERANCE * size + _NEGLECTED * unit
+    if low - slack <= found <= high + slack:
+        return ""
+    return f"{name} is {found:.6g} N where the contact has {low:.6g} .. {high:.6g} N"

@@ -1,0 +1,231 @@
+"""Faults that the tests must catch: one small change of the physics each, and the tests that should fail of it."""
+
+from dataclasses import dataclass
+
+__all__ = ["MUTANTS", "SHORT", "Mutant"]
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A wrong version of one line.
+
+    Attributes
+    ----------
+    what : str
+        The fault in words.
+    file : str
+        In ``src/gearidae``.
+    old, new : str
+        The text, which occurs once, and what it becomes.
+    tests : tuple of str
+        Files (or single tests) in ``tests`` of which at least one test must fail.
+    """
+
+    what: str
+    file: str
+    old: str
+    new: str
+    tests: tuple[str, ...]
+
+
+JKR, HISTORY, LAW = ("contact/test_jkr.py",), ("contact/test_history.py",), ("contact/test_law.py",)
+IMPACT = ("engine/test_closed_forms.py::test_an_impact_loses_the_adhesion_energy",)
+SHAFTS = ("properties/test_gears_without_adhesion.py",)
+MESH = ("properties/test_mesh.py",)
+
+SHORT = (
+    Mutant(
+        "pull-off load with DMT's factor 2 in place of 1.5",
+        "contact/jkr.py",
+        "pull_off = 1.5 * math.pi",
+        "pull_off = 2.0 * math.pi",
+        JKR,
+    ),
+    Mutant(
+        "play operator clipped at 90 % of the stretch limit",
+        "contact/history.py",
+        "max(joined, gap - limit)",
+        "max(joined, gap - 0.9 * limit)",
+        ("properties/test_force_law.py::test_nothing_stretches_beyond_the_limit",),
+    ),
+    Mutant(
+        "module, and with it the length of the path of contact, too large",
+        "mesh/involute.py",
+        "module = 2 * base_radius / (",
+        "module = 2.02 * base_radius / (",
+        ("mesh/test_involute.py",),
+    ),
+)
+"""Caught without compiling anything."""
+
+MUTANTS = (
+    *SHORT,
+    Mutant(
+        "wrong constant in the displacement of an asperity (12^(1/3))",
+        "contact/jkr.py",
+        "return np.asarray(t * (t**3 - 4.0) / 3.0)",
+        "return np.asarray(t * (t**3 - 4.0) / 2.9)",
+        JKR,
+    ),
+    Mutant(
+        "wrong constant in the table's measure (12^(1/3))",
+        "contact/law.py",
+        "rate = 4.0 * 12.0 ** (1 / 3) * s**3",
+        "rate = 4.0 * 12.0 ** (1 / 3.01) * s**3",
+        LAW,
+    ),
+    Mutant(
+        "fold at another radius (a^3 = 1/18)",
+        "contact/jkr.py",
+        "S_FOLD = (1.0 / 18.0)",
+        "S_FOLD = (1.0 / 18.1)",
+        JKR,
+    ),
+    Mutant(
+        "work of adhesion of one surface in place of two",
+        "contact/jkr.py",
+        "adhesion = 2.0 * surface.energy",
+        "adhesion = surface.energy",
+        JKR,
+    ),
+    Mutant(
+        "modulus of one body in place of two",
+        "contact/jkr.py",
+        "youngs_modulus / (2.0 * (1.0",
+        "youngs_modulus / (1.0 * (1.0",
+        JKR,
+    ),
+    Mutant(
+        "asperities that stay joined when compressed beyond",
+        "contact/history.py",
+        "return min(max(joined, gap - limit), gap)",
+        "return max(joined, gap - limit)",
+        HISTORY,
+    ),
+    Mutant(
+        "turning point within a step put in a wrong place",
+        "contact/history.py",
+        "(0.5 * b + s * a / 3.0)",
+        "(0.5 * b + s * a / 2.0)",
+        ("properties/test_force_law.py::test_the_turning_point_of_a_cubic_is_exact",),
+    ),
+    Mutant(
+        "force scale with the roughness in a wrong power",
+        "contact/law.py",
+        "hertz_factor * roughness**1.5",
+        "hertz_factor * roughness**1.51",
+        LAW,
+    ),
+    Mutant(
+        "history not updated at a turning point",
+        "engine/events.py",
+        "joined_height(d[slot + at.JOINED + material], middle, limit))",
+        "d[slot + at.JOINED + material])",
+        (*IMPACT, "engine/test_twin.py"),
+    ),
+    Mutant(
+        "history not followed through a turning point within a step",
+        "engine/mesh.py",
+        "turned = d[slot + at.WAY] * rate < 0.0",
+        "turned = False",
+        MESH,
+    ),
+    Mutant(
+        "SAM fraction taken for the bare one",
+        "engine/problem.py",
+        "((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))",
+        "((scene.surface, fraction), (scene.coated_surface, 1.0 - fraction))",
+        IMPACT,
+    ),
+    Mutant(
+        "tip relief that does no work on the gear",
+        "engine/residual.py",
+        "relief += load * slope",
+        "relief += 0.0 * slope",
+        SHAFTS,
+    ),
+    Mutant(
+        "tip relief twice as steep as its slope",
+        "engine/mesh.py",
+        "gap += 0.5 * d[at.RELIEF]",
+        "gap += 1.0 * d[at.RELIEF]",
+        MESH,
+    ),
+    Mutant(
+        "coast flank that pushes like the drive flank",
+        "engine/residual.py",
+        "sign = 1.0 - 2.0 * coast",
+        "sign = 1.0",
+        MESH,
+    ),
+    Mutant(
+        "coast flank half a pitch out of place",
+        "engine/problem.py",
+        "2.0 * geometry.approach / pitch + 0.5",
+        "2.0 * geometry.approach / pitch",
+        ("properties/test_engine_edges.py",),
+    ),
+    Mutant(
+        "radius of curvature of the wrong sign",
+        "engine/mesh.py",
+        "pinion - pinion * pinion * d[at.SUM_CURVATURE]",
+        "pinion + pinion * pinion * d[at.SUM_CURVATURE]",
+        SHAFTS,
+    ),
+    Mutant(
+        "inertias of pinion and gear swapped",
+        "engine/problem.py",
+        "= mass / pinion_mass, mass / gear_mass",
+        "= mass / gear_mass, mass / pinion_mass",
+        ("engine/test_closed_forms.py",),
+    ),
+    Mutant(
+        "drag proportional to the speed",
+        "engine/residual.py",
+        "force = d[at.DRAG] * w * abs(w)",
+        "force = d[at.DRAG] * w",
+        ("engine/test_closed_forms.py",),
+    ),
+    Mutant(
+        "mesh damping left out",
+        "engine/residual.py",
+        "force += d[at.DAMPING] * v",
+        "force += 0.0 * v",
+        SHAFTS,
+    ),
+    Mutant(
+        "curvature of the static error left out",
+        "engine/residual.py",
+        "- e2 * turn * turn",
+        "- 0.0 * turn",
+        SHAFTS,
+    ),
+    Mutant(
+        "phase of a harmonic torque left out",
+        "engine/torque.py",
+        "value += d[k] * math.cos(d[k + 1] * t + d[k + 2])",
+        "value += d[k] * math.cos(d[k + 1] * t)",
+        SHAFTS,
+    ),
+    Mutant(
+        "dry resistance that pushes a gear that turns backwards",
+        "engine/residual.py",
+        "force += d[at.SLIP] * max(",
+        "force += max(",
+        ("properties/test_engine_symmetries.py",),
+    ),
+    Mutant(
+        "dry resistance that holds twice as much as it should",
+        "engine/events.py",
+        "return max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + 2.0",
+        "return 2.0 * max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + 2.0",
+        ("properties/test_event_times.py",),
+    ),
+    Mutant(
+        "bodies that give way the wrong way",
+        "engine/nodes.py",
+        "own[i] -= kappa[m, k, i] * p",
+        "own[i] += kappa[m, k, i] * p",
+        ("engine/test_elastic.py",),
+    ),
+)
