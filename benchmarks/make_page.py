@@ -1,8 +1,9 @@
-"""Measure everything and renew the benchmark's page: ``python benchmarks/make_page.py [--quick | --tables]``.
+"""Measure everything and renew the benchmark's page: ``python benchmarks/make_page.py [--quick | --tables | --long]``.
 
 Runs the whole benchmark (some ten minutes), writes ``benchmarks/results/``, replaces the tables between the markers of
 ``docs/benchmarks.md`` and the pictures ``docs/images/work_precision_*.png``. ``--quick`` measures little, to see
-that it works; ``--tables`` only writes the page again from the last results.
+that it works; ``--tables`` only writes the page again from the last results; ``--long`` only lets a million teeth pass
+(some minutes) and renews the table about that.
 """
 
 from __future__ import annotations
@@ -12,15 +13,20 @@ from pathlib import Path
 
 from gearidae.bench import Result, Settings, find_scenes, run_benchmark
 from gearidae.bench.files import write_result
+from gearidae.bench.long import long_page, measure_long
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "benchmarks.md"
 RESULTS = ROOT / "benchmarks" / "results"
-BEGIN, END = "<!-- begin measured -->\n", "<!-- end measured -->\n"
 
 
 def main(arguments: list[str]) -> None:
     """Measure (or load) a result and write it into the page."""
+    if "--long" in arguments:
+        parts = measure_long(report=lambda passed: sys.stderr.write(f"\r{passed} passages"))
+        (RESULTS / "long.md").write_text(long_page(parts))
+        _insert("long", RESULTS / "long.md")
+        return
     if "--tables" in arguments:
         result = Result.load(RESULTS / "benchmark.json")
     else:
@@ -30,10 +36,15 @@ def main(arguments: list[str]) -> None:
             find_scenes(()), settings, beyond=not quick, report=lambda words: sys.stderr.write(f"{words}\n")
         )
     write_result(result, RESULTS, PAGE.parent / "images")
-    text = PAGE.read_text()
-    before, rest = text.split(BEGIN)
-    _, after = rest.split(END)
-    PAGE.write_text(before + BEGIN + "\n" + (RESULTS / "benchmark.md").read_text() + "\n" + END + after)
+    _insert("measured", RESULTS / "benchmark.md")
+
+
+def _insert(name: str, source: Path) -> None:
+    """Replace what stands between two markers of the page."""
+    begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->\n"
+    before, rest = PAGE.read_text().split(begin)
+    _, after = rest.split(end)
+    PAGE.write_text(before + begin + "\n" + source.read_text() + "\n" + end + after)
 
 
 if __name__ == "__main__":

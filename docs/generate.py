@@ -7,7 +7,7 @@ from pathlib import Path
 
 from cyclopts import Argument
 
-from gearidae.archive.variables import EVENTS, RUN, SAM_FRACTION, SAMPLES, TIME, Variable
+from gearidae.archive.variables import EVENTS, LEDGER, RUN, SAM_FRACTION, SAMPLES, TIME, Variable
 from gearidae.cli.session import app
 from gearidae.records import EventKind, Flank
 from gearidae.scene import describe_keys
@@ -51,6 +51,7 @@ def dataset_tables() -> str:
         ("Samples", SAMPLES.values()),
         ("Events", EVENTS.values()),
         ("Status and statistics of a run", RUN.values()),
+        ("Energy ledger of a run", LEDGER.values()),
     )
     headings = ("name", "dimensions", "unit", "what it is")
     parts = []

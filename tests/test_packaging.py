@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tarfile
+import tomllib
+import zipfile
 from importlib.resources import files
+from pathlib import Path
 
 import pytest
 
 import gearidae as gd
+
+ROOT = Path(__file__).parents[1]
 
 SCRIPT = """
 from pathlib import Path
@@ -68,6 +74,53 @@ def test_what_the_report_needs_is_in_the_package():
         ("gearidae.report", "viewer.js"),
     ):
         assert (files(package) / name).is_file()
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """Names of the files in a wheel and in a source distribution, both built of this very tree."""
+    sdist_builder = pytest.importorskip("hatchling.builders.sdist").SdistBuilder
+    wheel_builder = pytest.importorskip("hatchling.builders.wheel").WheelBuilder
+    folder = tmp_path_factory.mktemp("dist")
+    (wheel,) = wheel_builder(str(ROOT)).build(directory=str(folder), versions=["standard"])
+    (sdist,) = sdist_builder(str(ROOT)).build(directory=str(folder), versions=["standard"])
+    with zipfile.ZipFile(wheel) as file:
+        in_wheel = set(file.namelist())
+    with tarfile.open(sdist) as archive:
+        in_sdist = {name.partition("/")[2] for name in archive.getnames()}
+    return in_wheel, in_sdist
+
+
+def shipped(folder):
+    """Files below a folder that are to be shipped, by their place in the tree."""
+    return {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / folder).rglob("*")
+        if path.is_file()
+        and not {"__pycache__", "_build", "generated"}.intersection(path.parts)
+        and not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
+    }
+
+
+def test_wheel_has_the_whole_package_and_nothing_else(built):
+    in_wheel, _ = built
+    package = {name for name in in_wheel if ".dist-info/" not in name}
+    assert package == {name.removeprefix("src/") for name in shipped("src")}
+    assert any(name.endswith("entry_points.txt") for name in in_wheel)
+
+
+def test_source_distribution_has_what_tests_and_docs_need(built):
+    _, in_sdist = built
+    for folder in ("src", "tests", "docs", "cases", "examples", "benchmarks"):
+        assert shipped(folder) <= in_sdist
+    assert {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "Makefile"} <= in_sdist
+
+
+def test_every_supported_python_is_named():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    named = [line.rpartition(" ")[2] for line in project["classifiers"] if ":: Python :: 3." in line]
+    assert project["requires-python"] == f">={named[0]}"
+    assert f"{sys.version_info.major}.{sys.version_info.minor}" in named
 
 
 def test_every_public_name_can_be_had():

@@ -1,16 +1,20 @@
-"""What holds for every command: quiet, verbose, the log file, and examples that are right."""
+"""What holds for every command: quiet, verbose, the log file, right examples, completion, words for mistyped ones."""
 
 from __future__ import annotations
 
 import logging
 import shlex
+import shutil
+import subprocess
 
 import pytest
 
+import gearidae as gd
 from gearidae.cli import main
 from gearidae.cli.examples import EXAMPLES
 from gearidae.cli.session import app
 from gearidae.cli.values import spread
+from gearidae.scene import dump_case
 
 SHORT = ["--set", "run.samples=51"]
 
@@ -80,3 +84,56 @@ def test_help_shows_examples_that_parse(command, capfd):
 def test_completion_is_offered(capfd):
     assert main(["--help"]) == 0
     assert "--install-completion" in capfd.readouterr().out
+
+
+WORDS = {
+    "gearidae sw": {"sweep"},
+    "gearidae sweep --zi": {"--zipped"},
+    "gearidae --quiet coating-map --jo": {"--jobs"},
+    "gearidae run lo": {"low.toml"},
+    "gearidae plot lo": {"low.toml"},
+    "gearidae assess --map lo": {"low.toml"},
+}
+TRY = """
+source completion
+for line in "$@"; do
+    COMP_WORDS=($line); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); COMP_LINE="$line"; COMP_POINT=${#line}; COMPREPLY=()
+    _gearidae
+    echo "${COMPREPLY[*]}"
+done
+"""
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+def test_bash_completes_commands_options_and_files(tmp_path):
+    (tmp_path / "low.toml").touch()
+    (tmp_path / "completion").write_text(app.meta.generate_completion(shell="bash"))
+    (tmp_path / "try.sh").write_text(TRY)
+    done = subprocess.run(
+        ["bash", "try.sh", *WORDS], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stderr == ""
+    assert [set(line.split()) for line in done.stdout.splitlines()] == list(WORDS.values())
+
+
+@pytest.mark.parametrize(
+    ("line", "meant"),
+    [
+        (
+            "check teodorescu2009_lo_speed",
+            "neither a file nor a preset; did you mean teodorescu2009_low_speed?",
+        ),
+        ("check roller_slow --set coating.sam_fracton=1", "did you mean coating.sam_fraction?"),
+        ("sweep roller_slow --over rollr.speed=1,2", "did you mean roller.speed?"),
+        ("check teodorescu2009 --set drive.harmonic.0.fase=1", "did you mean drive.harmonic.0.phase?"),
+        ("check typo.toml", "coating.sam_fracton = 1.0: unknown key; did you mean sam_fraction?"),
+        ("run roller_slow --overwrit", "Did you mean --overwrite?"),
+        ("chek roller_slow", 'Did you mean "check"?'),
+        ("plot x.nc --picture gear_sped", "did you mean gear_speed?"),
+    ],
+)
+def test_mistyped_words_are_answered_by_the_right_one(line, meant, tmp_path, capfd):
+    case = dump_case(gd.preset("teodorescu2009"))
+    (tmp_path / "typo.toml").write_text(case.replace("sam_fraction", "sam_fracton"))
+    assert main(shlex.split(line)) == 2
+    assert meant in capfd.readouterr().err

@@ -20,7 +20,9 @@ from gearidae.scene import describe_keys
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 CASES = ROOT / "cases"
-PAGES = sorted(path.relative_to(ROOT) for path in (*DOCS.glob("*.md"), ROOT / "README.md"))
+PAGES = sorted(
+    path.relative_to(ROOT) for path in (*DOCS.glob("*.md"), *DOCS.glob("reference/*.md"), ROOT / "README.md")
+)
 
 # Commands that a test cannot or should not run: they install, need other machines, or take minutes.
 NOT_RUN = re.compile(r"^(?!gearidae )|--install-completion|^gearidae (bench|assess|coating-map)\b|--dask")

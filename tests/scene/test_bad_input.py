@@ -147,6 +147,8 @@ def test_names_the_entry_within_lists_and_tables(gears: Scene, key: str, value: 
         ("gear.pinion_teeth", "gears.pinion_teeth"),
         ("coatng", "coating"),
         ("drive.harmonic.fase", "drive.harmonic.phase"),
+        ("drive.harmonic.0.amplitud", "drive.harmonic.0.amplitude"),
+        ("mesh.static_error.12.ordr", "mesh.static_error.12.order"),
         ("energy", "surface.energy or coating.energy"),
     ],
 )

@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 import gearidae
+from gearidae.errors import SceneError
 
 __all__ = ["app"]
 
@@ -20,7 +21,7 @@ app = App(
 )
 app.meta.suppress_keyboard_interrupt = False
 
-Case = Annotated[str, Parameter(help="Case file (TOML), or the name of a preset.")]
+Case = Annotated[Path, Parameter(help="Case file (TOML), or the name of a preset.")]
 Output = Annotated[
     Path | None, Parameter(name=["--output", "-o"], help="File to write; by default named after the input.")
 ]
@@ -51,7 +52,7 @@ def run(
     """Run one scene and keep it as a netCDF archive, which can be opened while the run goes on."""
     from gearidae.cli.simulation import run_case
 
-    return run_case(case, output, settings or [], rtol, overwrite=overwrite, resume=resume)
+    return run_case(str(case), output, settings or [], rtol, overwrite=overwrite, resume=resume)
 
 
 @app.command
@@ -87,7 +88,7 @@ def sweep(
     from gearidae.cli.simulation import sweep_case
 
     return sweep_case(
-        case,
+        str(case),
         over,
         output,
         settings or [],
@@ -106,15 +107,42 @@ def plot(
     *,
     picture: Annotated[
         str | None,
-        Parameter(help="One picture, such as power_spectrum or impact_spectrum; by default an overview."),
+        Parameter(help="One picture, such as power_spectrum or teeth; by default an overview."),
     ] = None,
+    select: Annotated[
+        list[str] | None,
+        Parameter(
+            help="One run of a sweep: sam_fraction=0.5; repeatable or several.", consume_multiple=False
+        ),
+    ] = None,
+    time: Annotated[
+        str | None, Parameter(help="When to draw the teeth (12.5 ms); by default at the last sample.")
+    ] = None,
+    start: Annotated[
+        str | None, Parameter(name="--from", help="Draw the teeth as a moving picture from this time on.")
+    ] = None,
+    stop: Annotated[str | None, Parameter(name="--to", help="Up to this time.")] = None,
+    frames: Annotated[int | None, Parameter(help="Pictures of a moving one; by default 100.")] = None,
     output: Output = None,
     overwrite: Overwrite = False,
 ) -> int:
-    """Draw an archive: speed and contact torque of gears, force and gap of a roller, or any other picture."""
-    from gearidae.cli.files import draw
+    """Draw an archive: speed and contact torque of gears, force and gap of a roller, or any other picture.
 
-    return draw(archive, picture, output, overwrite=overwrite)
+    The picture teeth shows the teeth in mesh at one time or, into a file that ends in .gif, .webp or .mp4, as they
+    move.
+    """
+    from gearidae.cli.pictures import draw
+
+    return draw(
+        archive,
+        picture,
+        output,
+        select=select or [],
+        time=time,
+        span=(start, stop),
+        frames=frames,
+        overwrite=overwrite,
+    )
 
 
 @app.command
@@ -149,7 +177,7 @@ def coating_map(
     """Map the frequency of the impact response against the SAM fraction."""
     from gearidae.cli.coating import map_case
 
-    return map_case(case, over or [], output, settings or [], jobs, overwrite=overwrite)
+    return map_case(str(case), over or [], output, settings or [], jobs, overwrite=overwrite)
 
 
 @app.command
@@ -174,7 +202,7 @@ def check(case: Case, *, settings: Settings = None) -> int:
     """Check a case file and print what follows from it, without running it."""
     from gearidae.cli.checking import check_case
 
-    return check_case(case, settings or [])
+    return check_case(str(case), settings or [])
 
 
 @app.command
@@ -213,10 +241,26 @@ def bench(
     ] = False,
     runs: Annotated[int, Parameter(help="Random scenes to run.")] = 2000,
     seed: Annotated[int, Parameter(help="Which random scenes.")] = 1,
+    accuracy: Annotated[
+        bool, Parameter(help="Hold the error of every shipped case against the tolerance asked for instead.")
+    ] = False,
+    jobs: Annotated[
+        int | None, Parameter(help="Scenes at a time, with --stress or --accuracy; by default one per core.")
+    ] = None,
+    long: Annotated[
+        bool, Parameter(help="Let very many teeth pass instead, and see whether anything drifts or grows.")
+    ] = False,
+    passages: Annotated[int, Parameter(help="Tooth passages of the long run.")] = 1_000_000,
 ) -> int:
     """Measure run time against error on this machine, and hold it against other integrators."""
-    from gearidae.cli.bench import bench_scenes, bench_stress
+    from gearidae.cli.bench import bench_accuracy, bench_long, bench_scenes, bench_stress
 
+    if stress + accuracy + long > 1:
+        raise SceneError("bench", "--stress, --accuracy, --long", "say one of them")
+    if long:
+        return bench_long(passages, output)
     if stress:
-        return bench_stress(runs, seed, output)
+        return bench_stress(runs, seed, jobs, output)
+    if accuracy:
+        return bench_accuracy(jobs, output)
     return bench_scenes(scenes or [], output, quick=quick)

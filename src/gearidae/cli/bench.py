@@ -1,4 +1,4 @@
-"""``gearidae bench``: run time against error on this machine."""
+"""``gearidae bench``: run time against error on this machine; error against tolerance; the stress run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,12 @@ from rich.console import Console
 from rich.table import Table
 
 from gearidae.bench import Result, Settings, find_scenes, run_benchmark
+from gearidae.bench.accuracy import accuracy_scenes, measure_accuracy
+from gearidae.bench.accuracy_report import PICTURE, draw_accuracy
+from gearidae.bench.accuracy_report import page as accuracy_page
+from gearidae.bench.accuracy_report import quantiles as accuracy_quantiles
 from gearidae.bench.files import write_result
+from gearidae.bench.long import FEWEST_PASSAGES, long_page, measure_long, sound
 from gearidae.bench.stress import run_stress
 from gearidae.bench.stress_report import counts, page, quantiles
 from gearidae.bench.tables import ERRORS, beyond_rows, equal_error_rows
@@ -21,8 +26,9 @@ from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import say, show
 from gearidae.cli.tables import show_rows
 from gearidae.errors import SceneError
+from gearidae.executors import check_jobs
 
-__all__ = ["bench_scenes", "bench_stress"]
+__all__ = ["bench_accuracy", "bench_scenes", "bench_stress"]
 
 _QUICK_SCENES = ("low_sam", "high_sam", "roller_slow_bare")
 _QUICK = Settings(rounds=3, longest=1.0, share=1.0, every=2)
@@ -63,13 +69,43 @@ def bench_scenes(scenes: Sequence[str], output: Path | None, *, quick: bool) -> 
     return DONE
 
 
-def bench_stress(runs: int, seed: int, output: Path | None) -> int:
+def bench_long(passages: int, output: Path | None) -> int:
+    """Let very many teeth pass, print what changed from part to part, and write the page about it if asked.
+
+    Parameters
+    ----------
+    passages : int
+        How many.
+    output : Path or None
+        Folder for ``long.md``.
+
+    Returns
+    -------
+    int
+        Exit code: `UNFINISHED` if a passage was miscounted.
+    """
+    if passages < FEWEST_PASSAGES:
+        raise SceneError("--passages", passages, f"must be at least {FEWEST_PASSAGES}")
+    with Console(stderr=True).status("") as status:
+        parts = measure_long(passages, lambda passed: status.update(f"{passed} of {passages} passages ..."))
+    text = long_page(parts)
+    say(text)
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        (output / "long.md").write_text(text)
+        say(f"Report: {output / 'long.md'}")
+    return DONE if sound(parts) else UNFINISHED
+
+
+def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) -> int:
     """Run random scenes, print how they ended, and write the page about them if asked.
 
     Parameters
     ----------
     runs, seed : int
         How many scenes, and which.
+    jobs : int or None
+        Processes to share them; by default one per core.
     output : Path or None
         Folder for ``stress.md``.
 
@@ -80,8 +116,9 @@ def bench_stress(runs: int, seed: int, output: Path | None) -> int:
     """
     if runs < 1 or seed < 0:
         raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
+    workers = check_jobs(jobs)
     with Console(stderr=True).status("") as status:
-        outcomes = run_stress(runs, seed, lambda number: status.update(f"{number + 1} of {runs} ..."))
+        outcomes = run_stress(runs, seed, workers, report=lambda done: status.update(f"{done} of {runs} ..."))
     rows = [(ending, str(number), "") for ending, number in counts(outcomes).items()]
     rows += [
         (f"error / rtol of {100 * share:g} %", f"{ratio:.2g}", "at most")
@@ -96,6 +133,39 @@ def bench_stress(runs: int, seed: int, output: Path | None) -> int:
         (output / "stress.md").write_text(page(outcomes, seed, datetime.now(UTC).date()))
         say(f"Report: {output / 'stress.md'}")
     return UNFINISHED if unsound else DONE
+
+
+def bench_accuracy(jobs: int | None, output: Path | None) -> int:
+    """Run the shipped cases at many tolerances, print how the error compares, and write the page if asked.
+
+    Parameters
+    ----------
+    jobs : int or None
+        Scenes at a time; by default one per core.
+    output : Path or None
+        Folder for ``accuracy.md`` and ``images/accuracy.png``.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    workers, scenes = check_jobs(jobs), accuracy_scenes()
+    with Console(stderr=True).status("") as status:
+        results = measure_accuracy(
+            scenes, workers, lambda done: status.update(f"{done} of {len(scenes)} ...")
+        )
+    rows = [
+        (f"error / rtol at {name}", f"{median:.2g}", f"median; at most {largest:.2g}")
+        for name, (_, median, _, largest) in accuracy_quantiles(results).items()
+    ]
+    show_rows(rows)
+    if output is not None:
+        (output / "images").mkdir(parents=True, exist_ok=True)
+        (output / "accuracy.md").write_text(accuracy_page(results, datetime.now(UTC).date()))
+        draw_accuracy(results, output / "images" / PICTURE)
+        say(f"Report: {output / 'accuracy.md'}")
+    return DONE
 
 
 def _print(result: Result) -> None:

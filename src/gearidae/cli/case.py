@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearidae.cli.values import assignments
+from gearidae.errors import SceneError
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -34,7 +35,12 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
         If there is neither, or the scene or a change is not allowed.
     """
     from gearidae.scene import PRESETS, load_case, preset
+    from gearidae.scene.group import did_you_mean
 
-    scene = preset(case) if case in PRESETS and not Path(case).exists() else load_case(case)
+    path = Path(case)
+    meant = "" if path.exists() or path.suffix else did_you_mean(case, PRESETS)
+    if meant and case not in PRESETS:
+        raise SceneError("case", case, f"is neither a file nor a preset; {meant}")
+    scene = preset(case) if case in PRESETS and not path.exists() else load_case(case)
     changes = assignments(settings)
     return scene.replace(changes) if changes else scene

@@ -17,6 +17,12 @@ __all__ = ["check_case"]
 
 Rows = Iterator[tuple[str, str, str]]
 
+_REGIMES = {
+    "jkr": "JKR holds, from about 5 up",
+    "transition": "between DMT, up to about 0.1, and JKR, from about 5 up",
+    "dmt": "DMT holds, up to about 0.1",
+}
+
 
 def check_case(case: str, settings: Sequence[str]) -> int:
     """Check a case and print geometry, contact and estimates.
@@ -116,7 +122,7 @@ def _contact(scene: Scene) -> Rows:
         yield (
             f"{name}: Tabor parameter",
             f"{parameter:.4g}",
-            f"{tabor_regime(parameter)} (JKR from about 5 up)",
+            _REGIMES[tabor_regime(parameter)],
         )
 
 

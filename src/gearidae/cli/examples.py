@@ -17,6 +17,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "plot": (
         "gearidae plot mine.nc",
         "gearidae plot mine.nc --picture power_spectrum -o spectrum.pdf",
+        'gearidae plot mine.nc --picture teeth --from "76 ms" --to "79 ms" -o teeth.gif',
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
     "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
@@ -24,5 +25,5 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset teodorescu2009"),
     "info": ("gearidae info mine.nc",),
-    "bench": ("gearidae bench --quick",),
+    "bench": ("gearidae bench --quick", "gearidae bench --long -o results"),
 }

@@ -1,4 +1,4 @@
-"""``gearidae init``, ``gearidae info`` and ``gearidae plot``: one file in, or out."""
+"""``gearidae init`` and ``gearidae info``: one file in, or out."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.tables import show_account, show_outcomes, show_rows
-from gearidae.cli.values import default_output
 from gearidae.errors import SceneError
 
-__all__ = ["describe", "draw", "write_case"]
+__all__ = ["describe", "write_case"]
 
 
 def write_case(name: str, preset: str) -> int:
@@ -60,58 +59,6 @@ def write_case(name: str, preset: str) -> int:
     return DONE
 
 
-def draw(archive: Path, picture: str | None, output: Path | None, *, overwrite: bool) -> int:
-    """Draw an archive or a coating map into an image file.
-
-    Parameters
-    ----------
-    archive : Path
-        What to draw.
-    picture : str or None
-        Name of a function of `gearidae.plot`; None for the overview, or the map.
-    output : Path or None
-        Image to write, its kind told by its ending (PNG, PDF, SVG); None for the archive's name with
-        ``.png``.
-    overwrite : bool
-        Whether the image may replace a file.
-
-    Returns
-    -------
-    int
-        Exit code.
-
-    Raises
-    ------
-    SceneError
-        If the archive cannot be read, there is no such picture of it, or the image cannot be written.
-    """
-    from matplotlib.figure import Figure
-
-    pictures = [name for name in gd.plot.__all__ if name != "write"]
-    if picture is not None and picture not in pictures:
-        raise SceneError("--picture", picture, f"must be one of {', '.join(pictures)}")
-    ds, usual = _open(archive)
-    target = output or default_output(str(archive), ".png")
-    drawn = getattr(gd.plot, picture or usual)(ds)
-    figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
-    assert figure is not None
-    gd.plot.write(figure, target, overwrite=overwrite)
-    say(f"Picture: {target}")
-    return DONE
-
-
-def _open(archive: Path) -> tuple[xr.Dataset, str]:
-    """Dataset of a file, and the picture that says most about it."""
-    try:
-        return gd.open_archive(archive), "overview"
-    except SceneError:
-        try:
-            return gd.analysis.open_map(archive), "coating_map"
-        except SceneError:
-            pass
-        raise
-
-
 def describe(archive: Path) -> int:
     """Print what an archive holds.
 
@@ -148,8 +95,8 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
     yield "status", str(ended), ""
     for dim in swept_dims(ds):
         yield f"swept: {dim}", _values(ds[dim]), str(ds[dim].attrs["units"])
-    time = ds["time"].values
-    span = f"{len(time)} samples, 0 to {time[-1]:g} s" if len(time) else "no samples"
+    samples = ds.sizes["time"]
+    span = f"{samples} samples, 0 to {float(ds['time'][-1]):g} s" if samples else "no samples"
     yield "time", span, f"asked for {attributes['t_end']:g} s at rtol {attributes['rtol']:g}"
     yield "events", str(ds.sizes["event"]), ""
     for name in ("steps", "residual_evaluations", "jacobian_evaluations", "restarts"):

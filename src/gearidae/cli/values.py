@@ -13,7 +13,7 @@ from gearidae.errors import SceneError
 __all__ = ["assignments", "default_output", "spread", "sweep_values"]
 
 _LONGEST_RANGE = 100_000
-_TAKES_PAIRS = ("--set", "--over")
+_TAKES_PAIRS = ("--set", "--over", "--select")
 
 
 def spread(arguments: Sequence[str]) -> list[str]:
@@ -43,13 +43,17 @@ def spread(arguments: Sequence[str]) -> list[str]:
     return spread_out
 
 
-def assignments(pairs: Sequence[str]) -> dict[str, Any]:
-    """Read the pairs of ``--set``.
+def assignments(
+    pairs: Sequence[str], option: str = "--set", example: str = "coating.sam_fraction=0.5"
+) -> dict[str, Any]:
+    """Read the pairs of ``--set``, or of another option that is written so.
 
     Parameters
     ----------
     pairs : sequence of str
         ``key=value``, the value written as in a case file; texts need no quotes (``mesh.backlash=0.2 um``).
+    option, example : str, optional
+        What errors shall name.
 
     Returns
     -------
@@ -62,9 +66,9 @@ def assignments(pairs: Sequence[str]) -> dict[str, Any]:
     """
     values: dict[str, Any] = {}
     for pair in pairs:
-        key, text = _split(pair, "--set", "coating.sam_fraction=0.5")
+        key, text = _split(pair, option, example)
         if key in values:
-            raise SceneError("--set", key, "stands twice")
+            raise SceneError(option, key, "stands twice")
         values[key] = _literal(text)
     return values
 

@@ -68,7 +68,7 @@ def find_key(model: type[Group], key: str, value: object = "(key)") -> KeyInfo:
     plain = ".".join(part for part in key.split(".") if not part.isdecimal())
     known = {info.key: info for info in keys_of(model)}
     if plain not in known:
-        raise SceneError(str(shorten(key)), shorten(value), _unknown(plain, [*known, *model.model_fields]))
+        raise SceneError(str(shorten(key)), shorten(value), _unknown(key, [*known, *model.model_fields]))
     return known[plain]
 
 
@@ -160,7 +160,18 @@ def _describe(key: str, field: FieldInfo) -> KeyInfo:
 
 def _unknown(key: str, known: list[str]) -> str:
     """Say what an unknown dotted key may have meant."""
+    table, number = _numbered(key)
+    key = key.replace(f"{table}.{number}", table)  # known keys have no numbers of list entries
     last = key.rpartition(".")[2]
     homes = " or ".join(name for name in known if name.rpartition(".")[2] == last)
     question = f"did you mean {homes}?" if homes else did_you_mean(key, known)
+    if number:
+        question = question.replace(f"{table}.", f"{table}.{number}.")
     return f"unknown key; {question or 'gearidae.scene.describe_keys() lists them'}"
+
+
+def _numbered(key: str) -> tuple[str, str]:
+    """Find the list that a key names an entry of, and the entry's number; without one, that is empty."""
+    parts = key.split(".")
+    place = next((place for place, part in enumerate(parts) if part.isdecimal()), len(parts))
+    return ".".join(parts[:place]), "".join(parts[place : place + 1])
