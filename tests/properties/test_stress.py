@@ -66,8 +66,8 @@ def test_ringing_fast_against_the_loads_own_time_is_no_chatter():
             "surface.roughness": 1e-9,
             "coating.sam_fraction": 0.0,
             "contact.model": "asperity",
-            "initial.gap": 6e-9,
-            "run.duration": 8e-5,
+            "initial.gap": 5e-9,
+            "run.duration": 1.4e-5,
             "run.samples": 11,
         }
     )
