@@ -22,6 +22,7 @@ from gearidae.bench.contender import BROKEN, Contender, Outcome
 from gearidae.compiled import compiled_callback
 from gearidae.engine import layout as at
 from gearidae.engine.events import EVENTS_AT_ONCE, accept, handle
+from gearidae.engine.ledger import enter, follow
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import BLOCK_EVENTS
@@ -36,9 +37,11 @@ _COUNT: Any = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
 _LONG = 1 << 40
 
 
-@compiled_callback(types.void(_REALS, types.float64, _REALS))
-def _accept(data, t, y):  # type: ignore[no-untyped-def]
-    accept(carray(data, (_LONG,)), t, carray(y, (4,)))
+@compiled_callback(types.void(_REALS, types.float64, _REALS, _REALS, types.int32))
+def _accept(data, t, y, yp, flag):  # type: ignore[no-untyped-def]
+    d = carray(data, (_LONG,))
+    accept(d, t, carray(y, (4,)))
+    follow(d, t, carray(y, (4,)), carray(yp, (4,)), flag != 0)
 
 
 @compiled_callback(types.int32(_REALS, types.float64, _REALS, _REALS, _COUNT))
@@ -61,6 +64,7 @@ def _start(data, t, y, yp, scale, rtol, longest):  # type: ignore[no-untyped-def
     n = 2 if d[at.KIND] == at.ROLLER else 4
     states, rates = carray(y, (n,)), carray(yp, (n,))
     set_rates(d, t, states, rates)
+    enter(d, t, states, rates)
     return first_step(d, t, states, rates, carray(scale, (n,)), rtol, longest)
 
 

@@ -19,7 +19,7 @@ enum { CONTINUE = 0, RESTART = 1 };
 
 /* Order of gearidae.bench.c_loop.CALLS. */
 typedef struct {
-    void (*accept)(double *d, double t, double *y);
+    void (*accept)(double *d, double t, double *y, double *yp, int32_t flag);
     int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);
     void (*observe)(double *d, double t, double *y, double *row);
     double (*start)(double *d, double t, double *y, double *yp, double *scale, double rtol, double longest);
@@ -65,7 +65,7 @@ int gearidae_loop(const calls_t *call, void *solver, void *yy, void *yyp, void *
             call->observe(d, sample, dky, rows + next * columns);
             next++;
         }
-        call->accept(d, t, y);
+        call->accept(d, t, y, yp, flag);
         if (flag == ROOT_RETURN) {
             if (happened >= room)
                 happened = 0;
