@@ -80,29 +80,6 @@ def _jacobian(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignor
     return 0
 
 
-@compiled_callback(_JACOBIAN)
-def _blocks(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-    d = carray(data, (sun.MANY,))
-    store = carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
-    assemble(d, t, cj, sun.numbers(yy), store)
-    return 0
-
-
-@compiled_callback(types.int32(types.intp, types.intp))
-def _setup(linear, matrix):  # type: ignore[no-untyped-def]
-    return factorise(carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)))
-
-
-@compiled_callback(types.int32(types.intp, types.intp, types.intp, types.intp, types.float64))
-def _solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
-    solve_blocks(
-        carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)),
-        sun.numbers(b),
-        sun.numbers(x),
-    )
-    return 0
-
-
 @compiled_callback(types.int32(types.float64, types.intp, types.intp, _REALS, _REALS))
 def _guard(t, yy, yp, out, data):  # type: ignore[no-untyped-def]
     d = carray(data, (sun.MANY,))
@@ -119,6 +96,30 @@ def _weights(yy, weights, data):  # type: ignore[no-untyped-def]
     return 0
 
 
+@cache
+def _bodies() -> tuple[Any, ...]:
+    """Make the Jacobian of an elastic contact, and set-up and solution of its equations."""
+
+    @compiled_callback(_JACOBIAN)
+    def blocks(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
+        d, store = carray(data, (sun.MANY,)), carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
+        assemble(d, t, cj, sun.numbers(yy), store)
+        return 0
+
+    @compiled_callback(_INT(_PTR, _PTR))
+    def set_up(linear, matrix):  # type: ignore[no-untyped-def]
+        return factorise(carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)))
+
+    @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL))
+    def solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
+        store = carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
+        solve_blocks(store, sun.numbers(b), sun.numbers(x))
+        return 0
+
+    return blocks, set_up, solve
+
+
+@cache
 def _few_steps(n: int) -> tuple[Any, ...]:
     """Make the set-up and solution of n linear equations."""
 
@@ -137,7 +138,7 @@ def _few_steps(n: int) -> tuple[Any, ...]:
 
 @cache
 def callbacks(n: int, elastic: bool) -> Callbacks:
-    """Return the functions for n states; they are made once.
+    """Return the functions for n states; they are made on first use, and once.
 
     Parameters
     ----------
@@ -146,10 +147,6 @@ def callbacks(n: int, elastic: bool) -> Callbacks:
     elastic : bool
         Whether the contact is elastic, and the equations solved by blocks.
     """
-    steps = (_setup, _solve) if elastic else _few_steps(n)
-    model = (_residual, _blocks if elastic else _jacobian, _guard, _weights)
-    _kept.append(steps)
+    slopes, *steps = _bodies() if elastic else (_jacobian, *_few_steps(n))
+    model = (_residual, slopes, _guard, _weights)
     return Callbacks(*(np.array([f.address for f in part], dtype=np.int64) for part in (model, steps)))
-
-
-_kept: list[tuple[Any, ...]] = []  # an address alone would not keep its function alive
