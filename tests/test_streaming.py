@@ -172,7 +172,7 @@ def test_killed_at_fifty_random_instants_and_resumed_is_the_same_run(path):
 def test_start_up_killed_at_random_instants_is_the_same_run(path, monkeypatch):
     """The native driver takes a checkpoint about every fifth of a second, which is compiled in."""
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
-    scene = START_UP.replace({"run.duration": 0.02})
+    scene = START_UP.replace({"run.duration": 0.03})
     assert kill_again_and_again(path, scene, "native", 50, 0.8) > 2
 
 

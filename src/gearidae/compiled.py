@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, cast, overload
 
 import numba
 from platformdirs import user_cache_path
@@ -63,11 +63,37 @@ def _own_cache() -> Iterator[None]:
             config.CACHE_DIR = before
 
 
-def compiled(function: F) -> F:
-    """Compile a numerical function on first use; it runs without the GIL and divides as IEEE 754 says."""
-    with _own_cache():
-        dispatcher: Any = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
-    return cast("F", dispatcher)
+@overload
+def compiled(function: F) -> F: ...
+
+
+@overload
+def compiled(*, makes_arrays: bool = False, inline: bool = False) -> Callable[[F], F]: ...
+
+
+def compiled(
+    function: F | None = None, *, makes_arrays: bool = False, inline: bool = False
+) -> F | Callable[[F], F]:
+    """Compile a numerical function on first use; it runs without the GIL and divides as IEEE 754 says.
+
+    Parameters
+    ----------
+    function : callable
+    makes_arrays : bool
+        Whether the function makes arrays, of its own or from an address. If not, compiled code keeps no count of
+        who refers to the arrays it is given, which otherwise costs a fifth of a run; numba refuses to compile a
+        function that is wrong about it.
+    inline : bool
+        Put the function into whatever calls it: for the few that every step goes through.
+    """
+
+    def declare(function: F) -> F:
+        options: Any = {"_nrt": makes_arrays, "forceinline": inline}  # numba's stubs do not know them all
+        with _own_cache():
+            dispatcher: Any = numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
+        return cast("F", dispatcher)
+
+    return declare if function is None else declare(function)
 
 
 def compiled_callback(signature: Any) -> Callable[[F], Any]:

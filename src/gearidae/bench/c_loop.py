@@ -1,7 +1,8 @@
 """The native driver's loop in C, to learn what the loop in compiled Python costs.
 
 It is built in a temporary folder when a compiler is present, and linked to the very SUNDIALS libraries of the
-scikit-sundae wheel. The solver is opened by the engine's own `open_solver`, so that only the loop differs.
+scikit-sundae wheel. The solver is opened by the engine's own `open_solver`, so that only the loop differs; IDA finds
+the roots, as it would for anybody who writes such a loop.
 """
 
 from __future__ import annotations
@@ -21,12 +22,15 @@ from numpy.typing import NDArray
 from gearidae.bench.contender import BROKEN, Contender, Outcome
 from gearidae.compiled import compiled_callback
 from gearidae.engine import layout as at
-from gearidae.engine.events import EVENTS_AT_ONCE, accept, handle
+from gearidae.engine.events import EVENTS_AT_ONCE, accept, guard, handle
 from gearidae.engine.ledger import enter, follow
+from gearidae.engine.newton import DESK, EVALUATIONS
 from gearidae.engine.observe import observe
+from gearidae.engine.pointers import numbers
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import BLOCK_EVENTS
 from gearidae.engine.start import first_step, set_rates
+from gearidae.engine.sundials import newton_places, places
 
 __all__ = ["c_contenders"]
 
@@ -66,6 +70,12 @@ def _start(data, t, y, yp, scale, rtol, longest):  # type: ignore[no-untyped-def
     set_rates(d, t, states, rates)
     enter(d, t, states, rates)
     return first_step(d, t, states, rates, carray(scale, (n,)), rtol, longest)
+
+
+@compiled_callback(types.int32(types.float64, types.intp, types.intp, _REALS, _REALS))
+def _guard(t, yy, yp, out, data):  # type: ignore[no-untyped-def]
+    carray(out, (1,))[0] = guard(carray(data, (_LONG,)), t, numbers(yy))
+    return 0
 
 
 def _libraries() -> list[Path]:
@@ -118,8 +128,7 @@ def _pointer(array: NDArray[Any]) -> ctypes.c_void_p:
 
 
 def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-    from gearidae.engine import native
-    from gearidae.engine.sundials import places
+    from gearidae.engine import native, opened
 
     d, y = problem.data, problem.start
     yp, dky = np.zeros_like(y), np.zeros_like(y)
@@ -127,15 +136,18 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     known = native.callbacks(y.size, False)
     rows = np.zeros((times.size, max(len(problem.columns), 9)))
     events, counts = np.empty((BLOCK_EVENTS, 5)), np.zeros(2, np.int64)
-    handles = np.zeros(native.HANDLES, np.int64)
-    calls = np.array([f.address for f in (_accept, _handle, _observe, _start)], dtype=np.int64)
+    handles = np.zeros(opened.HANDLES, np.int64)
+    desk = np.zeros(DESK, np.int64)
+    calls = np.array([f.address for f in (_accept, _handle, _observe, _start, _guard)], dtype=np.int64)
+    where = places(), newton_places()
     observe(d, 0.0, y, rows[0])
     try:
-        if native.open_solver(handles, known.model, known.steps, places(), d, y, yp, dky) != 0:
+        own = known.model, known.steps, known.newton
+        if opened.open_solver(handles, *own, *where, desk, d, y, yp, dky) != 0:
             return BROKEN
         flag = _library().gearidae_loop(
             _pointer(calls),
-            *(ctypes.c_void_p(int(handles[k])) for k in (native.SOLVER, native.Y, native.YP, native.DKY)),
+            *(ctypes.c_void_p(int(handles[k])) for k in (opened.SOLVER, opened.Y, opened.YP, opened.DKY)),
             *(_pointer(a) for a in (d, y, yp, dky, problem.tolerance_scale)),
             ctypes.c_double(tolerance),
             ctypes.c_double(problem.end),
@@ -147,12 +159,12 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
             _pointer(counts),
         )
     finally:
-        native.close(handles)
+        opened.close(handles)
     if flag != 0:
         return BROKEN
     names = ("speed", "height") if "height" in problem.columns else ("gear_speed", "transmission_error")
     speed, position = (rows[:, problem.columns.index(name)] for name in names)
-    return Outcome(speed, position, int(counts[0]), int(counts[1]))
+    return Outcome(speed, position, int(counts[0]), int(counts[1] + desk[EVALUATIONS]))
 
 
 def c_contenders() -> tuple[Contender, ...]:

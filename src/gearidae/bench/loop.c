@@ -1,4 +1,4 @@
-/* The native driver's stepping loop once more, in C, to see what the compiled Python costs.
+/* The native driver's stepping loop once more, in C, to see what the compiled Python costs; IDA finds the roots here.
  *
  * It works on the solver that gearidae's own open_solver has set up, calls the same SUNDIALS library, and reaches the
  * same residual, guard, history and output functions through their addresses. Keep it in step with
@@ -11,6 +11,9 @@ extern int IDAGetDky(void *, double, int, void *);
 extern int IDAReInit(void *, double, void *, void *);
 extern int IDASetInitStep(void *, double);
 extern int IDASetStopTime(void *, double);
+extern int IDARootInit(void *, int, int (*)(double, void *, void *, double *, void *));
+extern int IDASetRootDirection(void *, int *);
+extern int IDASetNoInactiveRootWarn(void *);
 extern int IDAGetNumSteps(void *, long *);
 extern int IDAGetNumResEvals(void *, long *);
 
@@ -23,6 +26,7 @@ typedef struct {
     int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);
     void (*observe)(double *d, double t, double *y, double *row);
     double (*start)(double *d, double t, double *y, double *yp, double *scale, double rtol, double longest);
+    int (*guard)(double t, void *yy, void *yyp, double *out, void *d);
 } calls_t;
 
 static int start(const calls_t *call, void *solver, void *yy, void *yyp, double *d, double t, double *y, double *yp,
@@ -52,7 +56,11 @@ int gearidae_loop(const calls_t *call, void *solver, void *yy, void *yyp, void *
     const double spacing = end / (double)(total - 1);
     double t = 0.0;
     int64_t next = 1, happened = 0;
-    int flag = start(call, solver, yy, yyp, d, t, y, yp, scale, rtol, end);
+    int falling = -1;
+    int flag = IDARootInit(solver, 1, call->guard);
+    flag |= IDASetRootDirection(solver, &falling);
+    flag |= IDASetNoInactiveRootWarn(solver);
+    flag |= start(call, solver, yy, yyp, d, t, y, yp, scale, rtol, end);
     while (flag == 0) {
         flag = IDASolve(solver, end, &t, yy, yyp, ONE_STEP);
         if (flag < 0)

@@ -43,7 +43,7 @@ Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 
-@compiled
+@compiled(makes_arrays=True)
 def run_rk4(
     d: Floats, y: Floats, end: float, times: Floats, states: Floats, step: float, counts: Counts
 ) -> None:
@@ -101,7 +101,7 @@ def run_rk4(
     counts[CALLS] = 5 * total
 
 
-@compiled
+@compiled(makes_arrays=True)
 def run_dop853(
     d: Floats, y: Floats, end: float, times: Floats, states: Floats, atol: Floats, land: bool, counts: Counts
 ) -> None:
@@ -199,7 +199,7 @@ def run_dop853(
             break
 
 
-@compiled
+@compiled(makes_arrays=True)
 def run_gauss(
     d: Floats,
     y: Floats,

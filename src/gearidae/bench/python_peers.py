@@ -37,14 +37,14 @@ _ROOT_TRIALS: Final = 60
 _MOST_STEPS: Final = 10_000_000
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _slope(d: Floats, t: float, y: Floats) -> Floats:
     out = np.empty(y.size)
     rates(d, t, y, np.zeros(y.size), out)
     return out
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _slope_jacobian(d: Floats, t: float, y: Floats) -> Floats:
     """Partial derivatives of y' by y, from those of the residual."""
     n = y.size

@@ -56,7 +56,7 @@ def _value(
         gauss_step(d, t, y, theta, scale, k, zero, trial, out)
 
 
-@compiled
+@compiled(makes_arrays=True)
 def find_root(
     method: int,
     d: Floats,

@@ -55,7 +55,7 @@ def store_size(d: Floats) -> int:
     return _FIRST + int(d[at.TOTAL_SLOTS]) * (_RHO + 2 * n + n * n)
 
 
-@compiled
+@compiled(makes_arrays=True)
 def assemble(d: Floats, t: float, cj: float, y: Floats, store: Floats) -> None:
     """Work out the Jacobian ``dF/dy + cj dF/dy'`` by blocks.
 
@@ -107,7 +107,7 @@ def assemble(d: Floats, t: float, cj: float, y: Floats, store: Floats) -> None:
             store[start + _GAMMA + at.PHASE] = sign * slope / d[at.PHASE_RATE]
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _assemble_pair(d: Floats, slot: int, store: Floats) -> int:
     """Fill a pair's block but for beta and gamma, which are set to zero; its offset."""
     n = int(d[at.NODES])
@@ -136,7 +136,7 @@ def _assemble_pair(d: Floats, slot: int, store: Floats) -> int:
     return start
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _invert(a: Floats) -> float:
     """Invert a matrix in place by Gauss-Jordan elimination with pivots; the sign of its determinant, 0 if singular."""
     n = a.shape[0]
@@ -175,7 +175,7 @@ def _invert(a: Floats) -> float:
     return sign
 
 
-@compiled
+@compiled(makes_arrays=True)
 def factorise(store: Floats) -> int:
     """Turn an assembled Jacobian into what `solve_blocks` wants, in place.
 
@@ -217,7 +217,7 @@ def factorise(store: Floats) -> int:
     return 0 if _invert(small) != 0.0 else 1
 
 
-@compiled
+@compiled(makes_arrays=True)
 def solve_blocks(store: Floats, b: Floats, x: Floats) -> None:
     """Solve Newton's equations.
 

@@ -1,4 +1,4 @@
-"""What SUNDIALS calls, as C functions: residual, Jacobian, guard, weights and linear solver."""
+"""What SUNDIALS calls, as C functions: residual, Jacobian, weights, Newton's iteration and linear solver."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled_callback
 from gearidae.engine import layout as at
+from gearidae.engine import pointers as ptr
 from gearidae.engine import small
 from gearidae.engine import sundials as sun
 from gearidae.engine.blocks import assemble, factorise, solve_blocks
-from gearidae.engine.events import guard
+from gearidae.engine.newton import STORE, iterate, keep_set_up
 from gearidae.engine.residual import jacobian, residual
 
 __all__ = ["Callbacks", "callbacks"]
@@ -36,14 +37,17 @@ class Callbacks:
 
     Attributes
     ----------
-    model : ndarray of int64, shape (4,)
-        Residual, Jacobian, guard, error weights.
+    model : ndarray of int64, shape (3,)
+        Residual, Jacobian, error weights.
     steps : ndarray of int64, shape (2,)
         The linear solver's set-up and solution.
+    newton : ndarray of int64, shape (4,) or (0,)
+        What a nonlinear solver answers, see `gearidae.engine.newton`; none where SUNDIALS iterates by itself.
     """
 
     model: Ints
     steps: Ints
+    newton: Ints
 
 
 _JACOBIAN = types.int32(
@@ -62,34 +66,27 @@ _JACOBIAN = types.int32(
 
 @compiled_callback(types.int32(types.float64, types.intp, types.intp, types.intp, _REALS))
 def _residual(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
-    d = carray(data, (sun.MANY,))
+    d = carray(data, (ptr.MANY,))
     residual(
         d,
         t,
-        sun.numbers(yy),
-        sun.numbers(yp),
-        sun.numbers(rr),
+        ptr.numbers(yy),
+        ptr.numbers(yp),
+        ptr.numbers(rr),
     )
     return 0
 
 
 @compiled_callback(_JACOBIAN)
 def _jacobian(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-    d = carray(data, (sun.MANY,))
-    jacobian(d, t, cj, sun.numbers(yy), carray(sun.SUNDenseMatrix_Data(matrix), (16,)))
-    return 0
-
-
-@compiled_callback(types.int32(types.float64, types.intp, types.intp, _REALS, _REALS))
-def _guard(t, yy, yp, out, data):  # type: ignore[no-untyped-def]
-    d = carray(data, (sun.MANY,))
-    carray(out, (1,))[0] = guard(d, t, sun.numbers(yy))
+    d = carray(data, (ptr.MANY,))
+    jacobian(d, t, cj, ptr.numbers(yy), carray(sun.SUNDenseMatrix_Data(matrix), (16,)))
     return 0
 
 
 @compiled_callback(_INT(_PTR, _PTR, _REALS))
 def _weights(yy, weights, data):  # type: ignore[no-untyped-def]
-    d, out = carray(data, (sun.MANY,)), sun.numbers(weights)
+    d, out = carray(data, (ptr.MANY,)), ptr.numbers(weights)
     first = int(d[at.WEIGHTS_AT])
     for i in range(int(d[at.STATES])):
         out[i] = d[first + i]
@@ -102,18 +99,18 @@ def _bodies() -> tuple[Any, ...]:
 
     @compiled_callback(_JACOBIAN)
     def blocks(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-        d, store = carray(data, (sun.MANY,)), carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
-        assemble(d, t, cj, sun.numbers(yy), store)
+        d, store = carray(data, (ptr.MANY,)), carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,))
+        assemble(d, t, cj, ptr.numbers(yy), store)
         return 0
 
     @compiled_callback(_INT(_PTR, _PTR))
     def set_up(linear, matrix):  # type: ignore[no-untyped-def]
-        return factorise(carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)))
+        return factorise(carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,)))
 
     @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL))
     def solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
-        store = carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
-        solve_blocks(store, sun.numbers(b), sun.numbers(x))
+        store = carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,))
+        solve_blocks(store, ptr.numbers(b), ptr.numbers(x))
         return 0
 
     return blocks, set_up, solve
@@ -125,15 +122,61 @@ def _few_steps(n: int) -> tuple[Any, ...]:
 
     @compiled_callback(_INT(_PTR, _PTR))
     def set_up(linear, matrix):  # type: ignore[no-untyped-def]
-        return small.factorise(n, carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,)))
+        return small.factorise(n, carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,)))
 
     @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL))
     def solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
-        store = carray(sun.SUNDenseMatrix_Data(matrix), (sun.MANY,))
-        small.solve(n, store, sun.numbers(b), sun.numbers(x))
+        store = carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,))
+        small.solve(n, store, ptr.numbers(b), ptr.numbers(x))
         return 0
 
     return set_up, solve
+
+
+@cache
+def _newton(n: int, content: int) -> tuple[Any, ...]:
+    """Make the functions of a nonlinear solver for n unknowns, its content at this place of its record."""
+
+    @compiled_callback(_INT(_PTR))
+    def kind(newton):  # type: ignore[no-untyped-def]
+        return 0  # one that finds roots
+
+    @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL, _INT, _PTR))
+    def solve(newton, start, correction, weights, tolerance, renew, solver):  # type: ignore[no-untyped-def]
+        t, predicted, rates, yy, yp, rr, cj, data = ptr.system(solver)
+        desk_at = ptr.words(newton)[content]
+        desk = ptr.words(desk_at)
+        return iterate(
+            n,
+            desk,
+            ptr.reals(desk_at),
+            ptr.reals(desk[STORE]),
+            ptr.reals(data),
+            t,
+            cj,
+            ptr.numbers(predicted),
+            ptr.numbers(rates),
+            ptr.numbers(correction),
+            ptr.numbers(yy),
+            ptr.numbers(yp),
+            ptr.numbers(rr),
+            ptr.numbers(weights),
+            tolerance,
+            renew != 0,
+            desk_at,
+            solver,
+        )
+
+    @compiled_callback(_INT(_PTR, _PTR))
+    def note_equations(newton, function):  # type: ignore[no-untyped-def]
+        return 0  # they are known
+
+    @compiled_callback(_INT(_PTR, _PTR))
+    def note_set_up(newton, function):  # type: ignore[no-untyped-def]
+        keep_set_up(newton, content, function)
+        return 0
+
+    return kind, solve, note_equations, note_set_up
 
 
 @cache
@@ -148,5 +191,8 @@ def callbacks(n: int, elastic: bool) -> Callbacks:
         Whether the contact is elastic, and the equations solved by blocks.
     """
     slopes, *steps = _bodies() if elastic else (_jacobian, *_few_steps(n))
-    model = (_residual, slopes, _guard, _weights)
-    return Callbacks(*(np.array([f.address for f in part], dtype=np.int64) for part in (model, steps)))
+    model = (_residual, slopes, _weights)
+    newton = () if elastic else _newton(n, int(sun.newton_places()[0]))
+    return Callbacks(
+        *(np.array([f.address for f in part], dtype=np.int64) for part in (model, steps, newton))
+    )

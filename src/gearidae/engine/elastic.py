@@ -230,7 +230,7 @@ def _static(
     return grid, kappa, surfaces
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _loading(table: Floats, gaps: Floats) -> Floats:
     """Pressures on the way in and their slopes, one for each gap."""
     out = np.empty((2, gaps.size))

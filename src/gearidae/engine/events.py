@@ -81,7 +81,7 @@ def _kinematics(d: Floats, coast: int, pair: int, y: Floats) -> tuple[float, flo
 # -- the guard -------------------------------------------------------------------------------------------------
 
 
-@compiled
+@compiled(inline=True)
 def guard(d: Floats, t: float, y: Floats) -> float:
     """Root function: falls through zero when the first of all that may happen next does.
 
@@ -142,7 +142,7 @@ def _dry_guard(d: Floats, t: float, y: Floats) -> float:
 # -- histories between events ----------------------------------------------------------------------------------
 
 
-@compiled
+@compiled(inline=True)
 def accept(d: Floats, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     d[at.LAST_TIME] = t
@@ -197,7 +197,7 @@ def _meet(d: Floats, slot: int, pair: int, gap: float, middle: float) -> None:
     d[slot + at.WAY] = 0.0
 
 
-@compiled
+@compiled(makes_arrays=True)
 def begin(d: Floats, t: float, y: Floats) -> None:
     """Set the histories and mesh marks for a start at `y`."""
     for coast in range(1 if d[at.KIND] == at.ROLLER else 2):

@@ -146,7 +146,7 @@ def open_ledger(d: Floats, y: Floats) -> None:
     d[at.START_KINETIC] = d[at.THROUGHPUT] = kinetic_energy(d, y)
 
 
-@compiled
+@compiled(makes_arrays=True)
 def carry_ledger(old: Floats, old_y: Floats, d: Floats, y: Floats) -> None:
     """Go on with a ledger in another model of the same scene, whose contacts store something else."""
     d[at.SUMS : at.LEDGER_END] = old[at.SUMS : at.LEDGER_END]
@@ -251,7 +251,7 @@ def see_radius(d: Floats, t: float, y: Floats) -> None:
     d[at.WAS_RADIUS], d[at.WAS_RADIUS_RATE] = _radius_power(d, t, y, d[at.WAS_W_RATE])
 
 
-@compiled
+@compiled(inline=True)
 def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
     """Book what has been done up to an accepted time; histories and mesh marks must still be those before it.
 

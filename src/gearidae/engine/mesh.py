@@ -82,7 +82,7 @@ def pair_gap(
     return gap, toward + slope * turn, slope, inside
 
 
-@compiled
+@compiled(inline=True)
 def pair_force(
     d: Floats, slot: int, known: bool, t: float, gap: float, rate: float, inside: float
 ) -> tuple[float, float]:

@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine import sundials as sun
-from gearidae.engine.blocks import store_size
 from gearidae.engine.callbacks import callbacks
 from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, handle, pass_knot
 from gearidae.engine.ledger import enter, follow
+from gearidae.engine.newton import DESK, EVALUATIONS, FAILURES
 from gearidae.engine.observe import observe
+from gearidae.engine.opened import DKY, HANDLES, SOLVER, YP, Y, close, open_solver
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import (
     BLOCK_EVENTS,
@@ -26,13 +27,13 @@ from gearidae.engine.run import (
     BLOCK_STEPS,
     CHECKPOINT_STEPS,
     CODES,
-    CONVERGENCE_FAILURES_HIGH,
     Block,
     Ending,
     Tally,
     ending_of_flag,
     sample_time,
 )
+from gearidae.engine.search import CALLS, INTERPOLATE, SEARCH, next_time, start_search
 from gearidae.engine.settle import fold_gap
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
@@ -40,9 +41,6 @@ __all__ = ["callbacks", "run"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-# Handles: addresses of what SUNDIALS has made.
-CONTEXT, SOLVER, Y, YP, DKY, MATRIX, LINEAR, HANDLES = range(8)
 
 # Progress of a run, kept between calls of `advance`.
 (
@@ -68,100 +66,23 @@ COUNTERS = PROGRESS
 CHATTER, BEYOND = CODES
 
 
-@compiled
-def open_solver(
-    handles: Ints,
-    model: Ints,
-    steps: Ints,
-    where: Ints,
-    d: Floats,
-    y: Floats,
-    yp: Floats,
-    dky: Floats,
-) -> int:
-    """Create IDA with a linear solver of our own over the caller's arrays; 0 if all went well.
-
-    Parameters
-    ----------
-    handles : ndarray of int64, shape (HANDLES,)
-        Filled in.
-    model, steps : ndarray of int64
-        See `gearidae.engine.callbacks.Callbacks`.
-    where : ndarray of int64
-        From `gearidae.engine.sundials.places`.
-    d, y, yp, dky : ndarray
-        User data, state, rates and work space: must outlive the solver.
-    """
-    n = y.size
-    flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
-    if flag != 0:
-        return flag
-    context = handles[CONTEXT]
-    sun.SUNContext_ClearErrHandlers(context)
-    handles[Y] = sun.N_VMake_Serial(n, y.ctypes.data, context)
-    handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
-    handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
-    sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
-    # the matrix is a column to keep numbers in, so the dense solver is made for another and its steps replaced
-    handles[MATRIX] = sun.SUNDenseMatrix(1, 1, context)
-    single = sun.N_VMake_Serial(1, y.ctypes.data, context)
-    handles[LINEAR] = sun.SUNLinSol_Dense(single, handles[MATRIX], context)
-    sun.N_VDestroy(single)
-    sun.SUNMatDestroy(handles[MATRIX])
-    handles[MATRIX] = sun.SUNDenseMatrix(store_size(d) if d[at.NODES] > 0.0 else n * (n + 1), 1, context)
-    sun.replace(handles[LINEAR], where, steps)
-    solver = sun.IDACreate(context)
-    handles[SOLVER] = solver
-    flag |= sun.IDAInit(solver, model[0], d[at.LAST_TIME], handles[Y], handles[YP])
-    flag |= sun.IDAWFtolerances(solver, model[3])
-    flag |= sun.IDASetUserData(solver, d.ctypes.data)
-    flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
-    flag |= sun.IDASetJacFn(solver, model[1])
-    flag |= sun.IDASetMaxNumSteps(solver, -1)
-    flag |= sun.IDASetMaxConvFails(solver, CONVERGENCE_FAILURES_HIGH)
-    falling = np.full(1, -1, np.int32)
-    flag |= sun.IDARootInit(solver, 1, model[2])
-    flag |= sun.IDASetRootDirection(solver, falling.ctypes.data)
-    flag |= sun.IDASetNoInactiveRootWarn(solver)
-    return flag
-
-
-@compiled
-def close(handles: Ints) -> None:
-    """Free what `open_solver` has made."""
-    cell = np.empty(1, np.int64)
-    if handles[SOLVER] != 0:
-        cell[0] = handles[SOLVER]
-        sun.IDAFree(cell.ctypes.data)
-    if handles[LINEAR] != 0:
-        sun.SUNLinSolFree(handles[LINEAR])
-    if handles[MATRIX] != 0:
-        sun.SUNMatDestroy(handles[MATRIX])
-    for k in (Y, YP, DKY):
-        if handles[k] != 0:
-            sun.N_VDestroy(handles[k])
-    if handles[CONTEXT] != 0:
-        cell[0] = handles[CONTEXT]
-        sun.SUNContext_Free(cell.ctypes.data)
-    handles[:] = 0
-
-
-@compiled
-def _count(solver: int, progress: Ints) -> None:
-    """Add IDA's counters, which start from zero at each re-initialisation."""
+@compiled(makes_arrays=True)
+def _count(solver: int, desk: Ints, search: Floats, progress: Ints) -> None:
+    """Add IDA's counters, which start from zero at each re-initialisation, the desk's and the search's."""
     cell = np.zeros(1, np.int64)
     sun.IDAGetNumSteps(solver, cell.ctypes.data)
     progress[STEPS] += cell[0]
     sun.IDAGetNumResEvals(solver, cell.ctypes.data)
-    progress[RESIDUALS] += cell[0]
+    progress[RESIDUALS] += cell[0] + desk[EVALUATIONS]
     sun.IDAGetNumJacEvals(solver, cell.ctypes.data)
     progress[JACOBIANS] += cell[0]
     sun.IDAGetNumErrTestFails(solver, cell.ctypes.data)
     progress[ERROR_FAILURES] += cell[0]
     sun.IDAGetNumNonlinSolvConvFails(solver, cell.ctypes.data)
-    progress[CONVERGENCE_FAILURES] += cell[0]
-    sun.IDAGetNumGEvals(solver, cell.ctypes.data)
-    progress[GUARD_CALLS] += cell[0]
+    progress[CONVERGENCE_FAILURES] += cell[0] + desk[FAILURES]
+    progress[GUARD_CALLS] += int(search[CALLS])
+    search[CALLS] = 0.0
+    desk[EVALUATIONS] = desk[FAILURES] = 0
 
 
 @compiled
@@ -175,6 +96,7 @@ def _start(
     scale: Floats,
     rtol: float,
     stop: float,
+    search: Floats,
 ) -> int:
     """Set consistent rates and the first step, and (re-)initialise IDA at t."""
     set_rates(d, t, y, yp)
@@ -182,12 +104,15 @@ def _start(
     flag = sun.IDAReInit(solver, t, handles[Y], handles[YP])
     flag |= sun.IDASetInitStep(solver, first_step(d, t, y, yp, scale, rtol, stop - t))
     flag |= sun.IDASetStopTime(solver, stop)
+    start_search(d, t, y, search)
     return flag
 
 
 @compiled
 def advance(
     handles: Ints,
+    desk: Ints,
+    search: Floats,
     d: Floats,
     y: Floats,
     yp: Floats,
@@ -209,8 +134,10 @@ def advance(
     ----------
     handles : ndarray of int64
         From `open_solver`.
-    d, y, yp, dky : ndarray
+    desk, d, y, yp, dky : ndarray
         The arrays given to `open_solver`.
+    search : ndarray, shape (SEARCH,)
+        See `gearidae.engine.search`.
     clock : ndarray, shape (1,)
         Time reached, over tau.
     scale, rtol, end, knots
@@ -237,11 +164,11 @@ def advance(
     room = events.shape[0] - EVENTS_AT_ONCE
     flag = progress[PENDING] - 1
     if progress[PENDING] < 0:  # a fresh start
-        progress[ERROR] = _start(solver, handles, d, clock[0], y, yp, scale, rtol, stop)
+        progress[ERROR] = _start(solver, handles, d, clock[0], y, yp, scale, rtol, stop, search)
         progress[PENDING] = 0
     while progress[ERROR] == 0 and progress[DONE] == 0 and budget > 0 and progress[EVENTS] < room:
         if progress[PENDING] == 0:
-            flag = sun.IDASolve(solver, end, clock.ctypes.data, handles[Y], handles[YP], sun.IDA_ONE_STEP)
+            flag = next_time(solver, handles[Y], handles[YP], d, y, clock, end, search)
             budget -= 1
             progress[SINCE] += 1
             if flag < 0:
@@ -281,7 +208,7 @@ def advance(
                 progress[DONE] = 1
         checkpoint = progress[SINCE] >= CHECKPOINT_STEPS
         if (restart or checkpoint) and progress[DONE] == 0 and progress[ERROR] == 0:
-            _count(solver, progress)
+            _count(solver, desk, search, progress)
             follow(d, t, y, yp, True)
             rebase(d, y)
             progress[RESTARTS] += 1
@@ -289,14 +216,19 @@ def advance(
                 progress[SINCE] = 0
                 progress[PENDING] = -1
                 break
-            progress[ERROR] = _start(solver, handles, d, t, y, yp, scale, rtol, stop)
+            progress[ERROR] = _start(solver, handles, d, t, y, yp, scale, rtol, stop, search)
     if progress[DONE] != 0 or progress[ERROR] != 0:
-        _count(solver, progress)
+        _count(solver, desk, search, progress)
     return float(clock[0])
 
 
 def run(
-    problem: Problem, rtol: float, total: int, tally: Tally, resume: Floats | None = None
+    problem: Problem,
+    rtol: float,
+    total: int,
+    tally: Tally,
+    resume: Floats | None = None,
+    interpolate: bool = False,
 ) -> Iterator[Block]:
     """Run a problem, block by block.
 
@@ -312,6 +244,9 @@ def run(
         Filled in; complete once the last block is out.
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem, tolerance and sampling, to go on from.
+    interpolate : bool
+        Whether the state at a step's end is IDA's interpolant rather than what its corrector has left: slower, and
+        equal to the portable driver to the last bit.
 
     Yields
     ------
@@ -321,6 +256,8 @@ def run(
     yp, dky = np.zeros_like(y), np.zeros_like(y)
     rows, events = np.empty((BLOCK_ROWS, len(problem.columns))), np.empty((BLOCK_EVENTS, 5))
     handles, progress = np.zeros(HANDLES, np.int64), np.zeros(PROGRESS, np.int64)
+    desk, search = np.zeros(DESK, np.int64), np.zeros(SEARCH)
+    search[INTERPOLATE] = interpolate
     progress[PENDING] = -1
     if resume is not None:
         clock[0] = problem.restore(resume, y, progress)
@@ -332,7 +269,19 @@ def run(
         problem.set_tolerance(rtol)
         elastic = d[at.NODES] > 0.0
         calls = callbacks(y.size, bool(elastic))
-        flag = open_solver(handles, calls.model, calls.steps, sun.places(), d, y, yp, dky)
+        flag = open_solver(
+            handles,
+            calls.model,
+            calls.steps,
+            calls.newton,
+            sun.places(),
+            sun.newton_places(),
+            desk,
+            d,
+            y,
+            yp,
+            dky,
+        )
         if flag != 0:
             tally.ending = Ending.SOLVER_FAILURE
             return
@@ -340,6 +289,8 @@ def run(
         while progress[DONE] == 0 and progress[ERROR] == 0 and not beyond:
             time = advance(
                 handles,
+                desk,
+                search,
                 d,
                 y,
                 yp,

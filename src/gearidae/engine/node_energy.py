@@ -42,7 +42,7 @@ __all__ = ["nodes_joining_loss", "nodes_length_force", "nodes_stored"]
 Floats = NDArray[np.float64]
 
 
-@compiled
+@compiled(makes_arrays=True)
 def nodes_stored(d: Floats, slot: int, t: float, y: Floats, gap: float, rate: float, length: float) -> float:
     """Energy of one pair per length at given deflections.
 
@@ -75,7 +75,7 @@ def nodes_stored(d: Floats, slot: int, t: float, y: Floats, gap: float, rate: fl
     return energy
 
 
-@compiled
+@compiled(makes_arrays=True)
 def nodes_joining_loss(d: Floats, slot: int, y: Floats, gap: float) -> float:
     """What the asperities that a closing contact has joined since its last turning point have lost, per length."""
     weights, gaps = point_weights(d), np.empty(point_count(int(d[at.NODES])))
@@ -95,7 +95,7 @@ def nodes_joining_loss(d: Floats, slot: int, y: Floats, gap: float) -> float:
     return loss
 
 
-@compiled
+@compiled(makes_arrays=True)
 def nodes_length_force(
     d: Floats, slot: int, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> tuple[float, float]:

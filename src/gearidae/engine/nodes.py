@@ -138,7 +138,7 @@ def _to_points(d: Floats, values: Floats, out: Floats) -> None:
         out[k] = total
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _to_nodes(d: Floats, values: Floats, out: Floats) -> None:
     """Add to the nodes what points have, such that both weigh the same."""
     n = out.size
@@ -200,7 +200,7 @@ def node_force(
     return force * length, stiffness * length
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _add_stretched(d: Floats, slot: int, t: float, y: Floats, gap: float, rate: float) -> None:
     """Add the pressure of stretched asperities to that of the nodes, and note its slopes at the points."""
     n, way = int(d[at.NODES]), d[slot + at.WAY]
@@ -275,7 +275,7 @@ def stiffness_matrix(d: Floats, slot: int, out: Floats) -> None:
         out[k, k] += d[slope + k]
 
 
-@compiled
+@compiled(makes_arrays=True)
 def pressure_shares(d: Floats, slot: int, out: Floats) -> None:
     """Slopes of the nodes' pressures in the pair's gap along its last motion, after `node_force`."""
     n = int(d[at.NODES])
@@ -293,7 +293,7 @@ def pressure_shares(d: Floats, slot: int, out: Floats) -> None:
     _to_nodes(d, moved, out)
 
 
-@compiled
+@compiled(makes_arrays=True)
 def influence(d: Floats, length: float, out: Floats) -> None:
     """Influence coefficients, column by column.
 
@@ -318,7 +318,7 @@ def influence(d: Floats, length: float, out: Floats) -> None:
                 out[k, i] = out[k, i] * x + kappa[m, k, i]
 
 
-@compiled
+@compiled(makes_arrays=True)
 def node_residual(d: Floats, y: Floats, out: Floats) -> None:
     """Equations of the nodes, from the pressures that the forces have just left: deflections are those they cause."""
     n, orders = int(d[at.NODES]), int(d[at.ORDERS])
@@ -387,7 +387,7 @@ def follow_nodes(d: Floats, slot: int, y: Floats, gap: float) -> None:
         d[before + i] = h
 
 
-@compiled
+@compiled(makes_arrays=True)
 def join_nodes(d: Floats, slot: int, y: Floats, gap: float) -> None:
     """Take the joined heights at a turning point."""
     points = point_count(int(d[at.NODES]))

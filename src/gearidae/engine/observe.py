@@ -15,7 +15,7 @@ __all__ = ["observe"]
 Floats = NDArray[np.float64]
 
 
-@compiled
+@compiled(makes_arrays=True)
 def observe(d: Floats, t: float, y: Floats, row: Floats) -> None:
     """Write one sample.
 

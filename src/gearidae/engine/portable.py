@@ -266,7 +266,7 @@ class _Trail:
         return _hermite(np.array(times), np.array(states), np.array(rates), t)
 
 
-@compiled
+@compiled(makes_arrays=True)
 def _hermite(times: Floats, states: Floats, rates: Floats, t: float) -> Floats:
     """Newton's divided differences over doubled nodes: states and rates at all of them are met."""
     count, n = states.shape

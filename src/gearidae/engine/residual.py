@@ -50,7 +50,7 @@ def roller_force(d: Floats, t: float, y: Floats) -> tuple[float, float]:
     return pair_force(d, slot, True, t, height, speed, 0.0)
 
 
-@compiled
+@compiled(inline=True)
 def mesh_forces(d: Floats, t: float, y: Floats) -> tuple[float, float, float, float, float, float]:
     """Sum the forces of all pairs within reach, with their slopes; those of an elastic contact at fixed deflection.
 
@@ -106,7 +106,7 @@ def resisting_force(d: Floats, t: float, w: float) -> float:
     return force
 
 
-@compiled
+@compiled(inline=True)
 def residual(d: Floats, t: float, y: Floats, yp: Floats, out: Floats) -> None:
     """F(t, y, y') in scaled states.
 

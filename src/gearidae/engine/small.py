@@ -55,7 +55,7 @@ def factorise(n: int, store: Floats) -> int:
     return 0
 
 
-@compiled
+@compiled(inline=True)
 def solve(n: int, store: Floats, b: Floats, x: Floats) -> None:
     """Solve the equations that `factorise` has left in `store`; x may be b."""
     for i in range(n):

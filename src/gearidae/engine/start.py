@@ -21,7 +21,7 @@ PHASE_HIGH = 16.0
 """Pitches at which whole ones are taken out of the phase: it is held to absolute tolerances, down to 1e-15."""
 
 
-@compiled
+@compiled(makes_arrays=True)
 def set_rates(d: Floats, t: float, y: Floats, yp: Floats) -> None:
     """Solve F(t, y, y') = 0 for y', in place; its derivative in time where the nodes are concerned."""
     out = np.empty(y.size)
@@ -34,7 +34,7 @@ def set_rates(d: Floats, t: float, y: Floats, yp: Floats) -> None:
         node_rates(d, yp)
 
 
-@compiled
+@compiled(makes_arrays=True)
 def first_step(
     d: Floats, t: float, y: Floats, yp: Floats, scale: Floats, rtol: float, longest: float
 ) -> float:

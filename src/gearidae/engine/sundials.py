@@ -14,15 +14,12 @@ from typing import Any, Final
 
 import numpy as np
 from llvmlite import binding
-from numba import carray, types  # type: ignore[attr-defined]
-from numba.extending import intrinsic
+from numba import types
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled
+from gearidae.engine.pointers import SYSTEM
 
-__all__ = ["MANY", "numbers", "places", "replace", "unavailable", "words"]
-
-MANY: Final = 1 << 40  # a view of memory wants a length; nobody looks at it
+__all__ = ["newton_places", "places", "unavailable"]
 
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
@@ -46,11 +43,12 @@ def unavailable() -> str:
         binding.load_library_permanently(_cy_ida.__file__)
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
-    wanted = (*_NAMES, *OF_SOLVERS)
+    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM)
     if missing := [name for name in wanted if binding.address_of_symbol(name) is None]:
         return f"the SUNDIALS library lacks {', '.join(missing)}"
     try:
         places()
+        newton_places()
     except RuntimeError as error:
         return str(error)
     return ""
@@ -58,6 +56,14 @@ def unavailable() -> str:
 
 OF_SOLVERS: Final = ("SUNLinSolSetup_Dense", "SUNLinSolSolve_Dense")
 """Operations of the dense linear solver, which the driver replaces."""
+
+OF_NEWTON: Final = (
+    "SUNNonlinSolGetType_Newton",
+    "SUNNonlinSolSolve_Newton",
+    "SUNNonlinSolSetSysFn_Newton",
+    "SUNNonlinSolSetLSetupFn_Newton",
+)
+"""Operations of the Newton iteration, in whose place the driver puts its own."""
 
 
 @cache
@@ -101,6 +107,42 @@ def places() -> NDArray[np.int64]:
     return np.array([table, *(functions.index(function) for function in wanted)], dtype=np.int64)
 
 
+@cache
+def newton_places() -> NDArray[np.int64]:
+    """Where SUNDIALS keeps a nonlinear solver's content and functions, found like `places`.
+
+    Returns
+    -------
+    ndarray of int64, shape (6,)
+        Places of the content and of the table in a nonlinear solver's record, those of `OF_NEWTON` in the table.
+
+    Raises
+    ------
+    RuntimeError
+        If anything is not where it could be.
+    """
+    one = np.zeros(1)
+    context, address = ctypes.c_int64(), ctypes.c_int64
+    _call("SUNContext_Create", ctypes.c_int(0), ctypes.byref(context))
+    try:
+        vector = _call("N_VMake_Serial", ctypes.c_int32(1), address(one.ctypes.data), context)
+        newton = _call("SUNNonlinSol_Newton", address(vector), context)
+        empty = _call("SUNNonlinSolNewEmpty", context)
+        fields, bare = _words(newton, 4), _words(empty, 4)
+        table = fields.index(context.value) - 1 if context.value in fields[1:] else 0
+        content = next((k for k in range(table) if fields[k] != 0 and bare[k] == 0), table)
+        functions = _words(fields[table], 13) if content < table else []
+        wanted = [binding.address_of_symbol(name) for name in OF_NEWTON]
+        if any(function not in functions for function in wanted):
+            raise RuntimeError("SUNDIALS lays out its nonlinear solvers in an unknown way")
+        _call("SUNNonlinSolFreeEmpty", address(empty))
+        _call("SUNNonlinSolFree_Newton", address(newton))
+        _call("N_VDestroy", address(vector))
+    finally:
+        _call("SUNContext_Free", ctypes.byref(context))
+    return np.array([content, table, *(functions.index(f) for f in wanted)], dtype=np.int64)
+
+
 def _call(name: str, *arguments: Any) -> int:
     """Call a function of SUNDIALS from Python."""
     kinds = [type(a) if isinstance(a, (ctypes.c_int, ctypes.c_int64)) else ctypes.c_void_p for a in arguments]
@@ -110,54 +152,6 @@ def _call(name: str, *arguments: Any) -> int:
 
 def _words(address: int, count: int) -> list[int]:
     return list((ctypes.c_int64 * count).from_address(address))
-
-
-def _to_integers(typing: Any, address: Any) -> Any:
-    """Type of an address taken as a pointer to integers."""
-    return types.CPointer(types.int64)(address), _cast  # type: ignore[no-untyped-call]
-
-
-def _to_reals(typing: Any, address: Any) -> Any:
-    """Type of an address taken as a pointer to real numbers."""
-    return types.CPointer(types.float64)(address), _cast  # type: ignore[no-untyped-call]
-
-
-def _cast(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-    return builder.inttoptr(values[0], context.get_value_type(signature.return_type))
-
-
-_integers_at: Any = intrinsic(_to_integers)
-_reals_at: Any = intrinsic(_to_reals)
-
-
-@compiled
-def words(address: int) -> NDArray[np.int64]:
-    """Look at what lies at an address as pointers."""
-    return carray(_integers_at(address), (MANY,))
-
-
-@compiled
-def numbers(vector: int) -> NDArray[np.float64]:
-    """Look at the numbers of a serial vector, given by its address, without a call."""
-    return carray(_reals_at(words(words(vector)[0])[1]), (MANY,))
-
-
-@compiled
-def replace(record: int, where: NDArray[np.int64], functions: NDArray[np.int64]) -> None:
-    """Give a linear solver other functions.
-
-    Parameters
-    ----------
-    record : int
-        Its address.
-    where : ndarray of int64, shape (n + 1,)
-        From `places`.
-    functions : ndarray of int64, shape (n,)
-        Addresses.
-    """
-    table = words(words(record)[where[0]])
-    for k in range(functions.size):
-        table[where[k + 1]] = functions[k]
 
 
 _PTR = types.intp
@@ -189,6 +183,9 @@ IDAInit = _declare("IDAInit", _INT, _PTR, _PTR, _REAL, _PTR, _PTR)
 IDAReInit = _declare("IDAReInit", _INT, _PTR, _REAL, _PTR, _PTR)
 IDAFree = _declare("IDAFree", types.void, _PTR)
 IDAWFtolerances = _declare("IDAWFtolerances", _INT, _PTR, _PTR)
+SUNNonlinSolNewEmpty = _declare("SUNNonlinSolNewEmpty", _PTR, _PTR)
+SUNNonlinSolFreeEmpty = _declare("SUNNonlinSolFreeEmpty", types.void, _PTR)
+IDASetNonlinearSolver = _declare("IDASetNonlinearSolver", _INT, _PTR, _PTR)
 IDASetUserData = _declare("IDASetUserData", _INT, _PTR, _PTR)
 IDASetLinearSolver = _declare("IDASetLinearSolver", _INT, _PTR, _PTR, _PTR)
 IDASetJacFn = _declare("IDASetJacFn", _INT, _PTR, _PTR)
@@ -196,17 +193,16 @@ IDASetMaxNumSteps = _declare("IDASetMaxNumSteps", _INT, _PTR, types.int64)
 IDASetMaxConvFails = _declare("IDASetMaxConvFails", _INT, _PTR, _INT)
 IDASetInitStep = _declare("IDASetInitStep", _INT, _PTR, _REAL)
 IDASetStopTime = _declare("IDASetStopTime", _INT, _PTR, _REAL)
-IDARootInit = _declare("IDARootInit", _INT, _PTR, _INT, _PTR)
-IDASetRootDirection = _declare("IDASetRootDirection", _INT, _PTR, _PTR)
-IDASetNoInactiveRootWarn = _declare("IDASetNoInactiveRootWarn", _INT, _PTR)
 IDASolve = _declare("IDASolve", _INT, _PTR, _REAL, _PTR, _PTR, _PTR, _INT)
+IDAGetSolution = _declare("IDAGetSolution", _INT, _PTR, _REAL, _PTR, _PTR)
+IDAGetCurrentTime = _declare("IDAGetCurrentTime", _INT, _PTR, _PTR)
+IDAGetCurrentStep = _declare("IDAGetCurrentStep", _INT, _PTR, _PTR)
 IDAGetDky = _declare("IDAGetDky", _INT, _PTR, _REAL, _INT, _PTR)
 IDAGetNumSteps = _declare("IDAGetNumSteps", _INT, _PTR, _PTR)
 IDAGetNumResEvals = _declare("IDAGetNumResEvals", _INT, _PTR, _PTR)
 IDAGetNumJacEvals = _declare("IDAGetNumJacEvals", _INT, _PTR, _PTR)
 IDAGetNumErrTestFails = _declare("IDAGetNumErrTestFails", _INT, _PTR, _PTR)
 IDAGetNumNonlinSolvConvFails = _declare("IDAGetNumNonlinSolvConvFails", _INT, _PTR, _PTR)
-IDAGetNumGEvals = _declare("IDAGetNumGEvals", _INT, _PTR, _PTR)
 
 IDA_ONE_STEP = 2
 IDA_TSTOP_RETURN, IDA_ROOT_RETURN = 1, 2

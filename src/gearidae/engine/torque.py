@@ -42,7 +42,7 @@ def pack_torque(
     return np.array([constant / torque_unit, len(harmonics), len(schedule), passed, *body])
 
 
-@compiled
+@compiled(inline=True)
 def torque_force(d: Floats, law: int, t: float) -> float:
     """Torque over base radius at scaled time t, in units of the reference load.
 

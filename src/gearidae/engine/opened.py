@@ -1,0 +1,108 @@
+"""A solver of SUNDIALS, opened and closed by compiled code."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import carray  # type: ignore[attr-defined]
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+from gearidae.engine import layout as at
+from gearidae.engine import pointers as ptr
+from gearidae.engine import sundials as sun
+from gearidae.engine.blocks import store_size
+from gearidae.engine.newton import STORE, make_solver
+from gearidae.engine.run import CONVERGENCE_FAILURES_HIGH
+
+__all__ = ["DKY", "HANDLES", "SOLVER", "YP", "Y", "close", "open_solver"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+# Handles: addresses of what SUNDIALS has made.
+CONTEXT, SOLVER, Y, YP, DKY, MATRIX, LINEAR, NEWTON, HANDLES = range(9)
+
+
+@compiled(makes_arrays=True)
+def open_solver(
+    handles: Ints,
+    model: Ints,
+    steps: Ints,
+    newton: Ints,
+    where: Ints,
+    newton_where: Ints,
+    desk: Ints,
+    d: Floats,
+    y: Floats,
+    yp: Floats,
+    dky: Floats,
+) -> int:
+    """Create IDA with solvers of our own over the caller's arrays; 0 if all went well.
+
+    Parameters
+    ----------
+    handles : ndarray of int64, shape (HANDLES,)
+        Filled in.
+    model, steps, newton : ndarray of int64
+        See `gearidae.engine.callbacks.Callbacks`.
+    where, newton_where : ndarray of int64
+        From `gearidae.engine.sundials.places` and `newton_places`.
+    desk : ndarray of int64, shape (DESK,)
+        See `gearidae.engine.newton`; must outlive the solver.
+    d, y, yp, dky : ndarray
+        User data, state, rates and work space: must outlive the solver.
+    """
+    n = y.size
+    flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
+    if flag != 0:
+        return flag
+    context = handles[CONTEXT]
+    sun.SUNContext_ClearErrHandlers(context)
+    handles[Y] = sun.N_VMake_Serial(n, y.ctypes.data, context)
+    handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
+    handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
+    sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
+    # the matrix is a column to keep numbers in, so the dense solver is made for another and its steps replaced
+    handles[MATRIX] = sun.SUNDenseMatrix(1, 1, context)
+    single = sun.N_VMake_Serial(1, y.ctypes.data, context)
+    handles[LINEAR] = sun.SUNLinSol_Dense(single, handles[MATRIX], context)
+    sun.N_VDestroy(single)
+    sun.SUNMatDestroy(handles[MATRIX])
+    handles[MATRIX] = sun.SUNDenseMatrix(store_size(d) if d[at.NODES] > 0.0 else n * (n + 1), 1, context)
+    ptr.replace(handles[LINEAR], where, steps)
+    solver = sun.IDACreate(context)
+    handles[SOLVER] = solver
+    flag |= sun.IDAInit(solver, model[0], d[at.LAST_TIME], handles[Y], handles[YP])
+    flag |= sun.IDAWFtolerances(solver, model[2])
+    flag |= sun.IDASetUserData(solver, d.ctypes.data)
+    flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
+    flag |= sun.IDASetJacFn(solver, model[1])
+    if newton.size > 0:
+        desk[STORE] = carray(sun.SUNDenseMatrix_Data(handles[MATRIX]), (1,)).ctypes.data
+        handles[NEWTON] = make_solver(context, desk, newton_where, newton)
+        flag |= sun.IDASetNonlinearSolver(solver, handles[NEWTON])
+    flag |= sun.IDASetMaxNumSteps(solver, -1)
+    flag |= sun.IDASetMaxConvFails(solver, CONVERGENCE_FAILURES_HIGH)
+    return flag
+
+
+@compiled(makes_arrays=True)
+def close(handles: Ints) -> None:
+    """Free what `open_solver` has made."""
+    cell = np.empty(1, np.int64)
+    if handles[SOLVER] != 0:
+        cell[0] = handles[SOLVER]
+        sun.IDAFree(cell.ctypes.data)
+    if handles[NEWTON] != 0:
+        sun.SUNNonlinSolFreeEmpty(handles[NEWTON])
+    if handles[LINEAR] != 0:
+        sun.SUNLinSolFree(handles[LINEAR])
+    if handles[MATRIX] != 0:
+        sun.SUNMatDestroy(handles[MATRIX])
+    for k in (Y, YP, DKY):
+        if handles[k] != 0:
+            sun.N_VDestroy(handles[k])
+    if handles[CONTEXT] != 0:
+        cell[0] = handles[CONTEXT]
+        sun.SUNContext_Free(cell.ctypes.data)
+    handles[:] = 0

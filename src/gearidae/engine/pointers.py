@@ -1,0 +1,105 @@
+"""What lies at an address: SUNDIALS' records, vectors and functions as compiled code sees them."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from llvmlite import ir
+from numba import carray, types  # type: ignore[attr-defined]
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+
+__all__ = ["MANY", "SYSTEM", "numbers", "reals", "replace", "set_up", "system", "words"]
+
+MANY: Final = 1 << 40  # a view of memory wants a length; nobody looks at it
+
+
+def _to_integers(typing: Any, address: Any) -> Any:
+    """Type of an address taken as a pointer to integers."""
+    return types.CPointer(types.int64)(address), _cast  # type: ignore[no-untyped-call]
+
+
+def _to_reals(typing: Any, address: Any) -> Any:
+    """Type of an address taken as a pointer to real numbers."""
+    return types.CPointer(types.float64)(address), _cast  # type: ignore[no-untyped-call]
+
+
+def _cast(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    return builder.inttoptr(values[0], context.get_value_type(signature.return_type))
+
+
+SYSTEM: Final = "IDAGetNonlinearSystemData"
+
+
+def _system(typing: Any, solver: Any) -> Any:
+    """Type of what IDA lets a nonlinear solver see, and the code that asks for it."""
+    kinds = [types.float64, *[types.int64] * 5, types.float64, types.int64]
+
+    def ask(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        cells = [cgutils.alloca_once(builder, context.get_value_type(kind)) for kind in kinds]  # type: ignore[no-untyped-call]
+        word = ir.IntType(64)
+        kind = ir.FunctionType(ir.IntType(32), [word] * (1 + len(cells)))
+        function = cgutils.get_or_insert_function(builder.module, kind, SYSTEM)  # type: ignore[no-untyped-call]
+        builder.call(function, [values[0], *(builder.ptrtoint(cell, word) for cell in cells)])
+        return context.make_tuple(builder, signature.return_type, [builder.load(cell) for cell in cells])
+
+    return types.Tuple(kinds)(solver), ask  # type: ignore[no-untyped-call]
+
+
+def _set_up(typing: Any, function: Any, bad: Any, current: Any, solver: Any) -> Any:
+    """Type of a call to a linear solver's set-up by its address, and its code."""
+
+    def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        number, word = ir.IntType(32), ir.IntType(64)
+        pointer = builder.inttoptr(values[0], ir.FunctionType(number, [number, word, word]).as_pointer())
+        return builder.call(pointer, [builder.trunc(values[1], number), *values[2:]])
+
+    return types.int32(types.int64, types.int64, types.int64, types.int64), call
+
+
+_integers_at: Any = intrinsic(_to_integers)
+_reals_at: Any = intrinsic(_to_reals)
+system: Any = intrinsic(_system)
+"""Time, vectors (predicted state and rates, state, rates, residual), leading coefficient and user data of a solver."""
+set_up: Any = intrinsic(_set_up)
+"""Call a linear solver's set-up by its address, with whether the Jacobian is bad, where to say it is new, and IDA."""
+
+
+@compiled(makes_arrays=True)
+def words(address: int) -> NDArray[np.int64]:
+    """Look at what lies at an address as pointers."""
+    return carray(_integers_at(address), (MANY,))
+
+
+@compiled(makes_arrays=True)
+def reals(address: int) -> NDArray[np.float64]:
+    """Look at what lies at an address as real numbers."""
+    return carray(_reals_at(address), (MANY,))
+
+
+@compiled(makes_arrays=True)
+def numbers(vector: int) -> NDArray[np.float64]:
+    """Look at the numbers of a serial vector, given by its address, without a call."""
+    return reals(words(words(vector)[0])[1])
+
+
+@compiled
+def replace(record: int, where: NDArray[np.int64], functions: NDArray[np.int64]) -> None:
+    """Give a linear solver other functions.
+
+    Parameters
+    ----------
+    record : int
+        Its address.
+    where : ndarray of int64, shape (n + 1,)
+        From `places`.
+    functions : ndarray of int64, shape (n,)
+        Addresses.
+    """
+    table = words(words(record)[where[0]])
+    for k in range(functions.size):
+        table[where[k + 1]] = functions[k]

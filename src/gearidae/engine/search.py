@@ -1,0 +1,160 @@
+"""From one accepted time to the next: a step of IDA, and the first root of the guard in it.
+
+IDA finds roots by itself, and asks for the state twice and for the guard at both ends of each step to do so. Here the
+guard is looked at once, at the state that the step has left; only where it has fallen is the root searched, on IDA's
+interpolant, by the same rule (regula falsi after Illinois, Hiebert and Shampine, SAND80-0180) to the same tolerance.
+The state at a step's end is the one that Newton's iteration has left. IDA's own search looks at its interpolant there,
+which differs by rounding; with INTERPOLATE so does this one, and then all roots and states are IDA's to the last bit.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+from gearidae.engine import sundials as sun
+from gearidae.engine.events import guard
+
+__all__ = ["CALLS", "INTERPOLATE", "SEARCH", "next_time", "start_search"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+LOW: Final = 0  # the guard where the interval to look at begins
+LOW_TIME: Final = 1
+STEP_END: Final = 2  # time at the end of the step
+REST: Final = 3  # 1 after a root: the rest of its step has not been looked at
+STOP: Final = 4  # 1 while a stop waits for the roots before it
+STOP_TIME: Final = 5
+CALLS: Final = 6  # of the guard, so far
+STEP: Final = 7  # room for what IDA says of its step
+INTERPOLATE: Final = 8  # 1 to take the state at a step's end from the interpolant, too
+SEARCH: Final = 9
+
+_ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
+
+
+@compiled
+def _look(d: Floats, t: float, y: Floats, search: Floats) -> float:
+    """Look at the guard."""
+    search[CALLS] += 1.0
+    return guard(d, t, y)
+
+
+@compiled
+def start_search(d: Floats, t: float, y: Floats, search: Floats) -> None:
+    """Begin at a time at which IDA has been started."""
+    search[LOW], search[LOW_TIME] = _look(d, t, y, search), t
+    search[REST] = search[STOP] = 0.0
+
+
+@compiled(inline=True)
+def next_time(
+    solver: int, state: int, rates: int, d: Floats, y: Floats, clock: Floats, end: float, search: Floats
+) -> int:
+    """Go on to the end of the next step, a stop or a root, whichever comes first.
+
+    Parameters
+    ----------
+    solver, state, rates : int
+        Addresses of IDA and of the vectors over `y` and its rates.
+    d : ndarray
+        The scene, see `layout`.
+    y : ndarray
+        State; changed.
+    clock : ndarray, shape (1,)
+        Time over tau; changed.
+    end : float
+        Time in the direction of which to go.
+    search : ndarray, shape (SEARCH,)
+        Where the search stands.
+
+    Returns
+    -------
+    int
+        IDA's flag.
+    """
+    if search[REST] != 0.0:
+        search[LOW], search[LOW_TIME] = _look(d, clock[0], y, search), clock[0]
+        if abs(search[STEP_END] - clock[0]) <= _rounding(solver, search):
+            search[REST] = 0.0
+            if search[STOP] != 0.0:
+                return _stop(solver, state, rates, clock, search)
+    rest = search[REST] != 0.0
+    if rest:
+        clock[0] = search[STEP_END]
+        sun.IDAGetSolution(solver, clock[0], state, rates)
+    elif search[STOP] != 0.0:
+        return _stop(solver, state, rates, clock, search)
+    else:
+        flag = sun.IDASolve(solver, end, clock.ctypes.data, state, rates, sun.IDA_ONE_STEP)
+        if flag < 0:
+            return flag
+        if search[INTERPOLATE] != 0.0:
+            sun.IDAGetSolution(solver, clock[0], state, rates)
+        if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
+            search[STOP], search[STOP_TIME] = 1.0, clock[0]
+            sun.IDAGetCurrentTime(solver, clock.ctypes.data)
+            sun.IDAGetSolution(solver, clock[0], state, rates)
+    high = _look(d, clock[0], y, search)
+    if search[LOW] > 0.0 > high:
+        search[STEP_END] = clock[0]
+        search[REST] = 1.0
+        _find(solver, state, rates, d, y, clock, high, search)
+        return sun.IDA_ROOT_RETURN
+    search[LOW], search[LOW_TIME] = high, clock[0]
+    search[REST] = 0.0
+    if search[STOP] != 0.0 and not rest:
+        return _stop(solver, state, rates, clock, search)
+    return 0
+
+
+@compiled
+def _stop(solver: int, state: int, rates: int, clock: Floats, search: Floats) -> int:
+    """Return at a stop, now that all roots before it are through."""
+    search[STOP] = 0.0
+    clock[0] = search[STOP_TIME]
+    sun.IDAGetSolution(solver, clock[0], state, rates)
+    return sun.IDA_TSTOP_RETURN
+
+
+@compiled
+def _rounding(solver: int, search: Floats) -> float:
+    """What times of this step may differ by."""
+    sun.IDAGetCurrentStep(solver, search[STEP:].ctypes.data)
+    return _ROUNDING * (abs(search[STEP_END]) + abs(search[STEP]))
+
+
+@compiled
+def _find(
+    solver: int, state: int, rates: int, d: Floats, y: Floats, clock: Floats, high: float, search: Floats
+) -> None:
+    """Find when the guard has fallen, which is above zero at the interval's beginning and `high` at its end."""
+    tolerance = _rounding(solver, search)
+    a, b, low = search[LOW_TIME], clock[0], search[LOW]
+    weight = 1.0
+    side, before = 0, -1  # which end has moved: 1 the upper, 2 the lower
+    while abs(b - a) > tolerance:
+        if side == before:
+            weight *= 2.0 if side == 2 else 0.5
+        else:
+            weight = 1.0
+        middle = b - (b - a) * high / (high - weight * low)
+        inward = tolerance / abs(b - a)  # of the interval: how far to stay from its ends
+        inward = 0.1 if inward < 0.2 else 0.5 * inward
+        if abs(middle - a) < 0.5 * tolerance:
+            middle = a + inward * (b - a)
+        if abs(b - middle) < 0.5 * tolerance:
+            middle = b - inward * (b - a)
+        sun.IDAGetSolution(solver, middle, state, rates)
+        value = _look(d, middle, y, search)
+        before = side
+        if value < 0.0:
+            b, high, side = middle, value, 1
+        else:
+            a, low, side = middle, value, 2
+    clock[0] = b
+    sun.IDAGetSolution(solver, b, state, rates)
