@@ -125,7 +125,9 @@ def test_an_archive_without_a_ledger_has_its_work_from_the_samples(braking):
         # samples every microsecond: trapezoids over speeds that tremble some thousandths
         assert getattr(told, name) == pytest.approx(getattr(kept, name), rel=1e-3, abs=0.0)
     assert told.contact_loss == pytest.approx(kept.contact_loss, abs=3.0 * told.uncertainty)
-    assert kept.uncertainty < 1e-2 * told.uncertainty  # steps are some hundred times as fine as samples, of higher order
+    assert (
+        kept.uncertainty < 1e-2 * told.uncertainty
+    )  # steps are some hundred times as fine as samples, of higher order
     assert math.isnan(told.adhesion_loss)
     bare = older.isel(time=slice(0, 0))
     assert math.isnan(account(bare).drive_work)

@@ -96,7 +96,7 @@ def run_stress(
     seed: int,
     jobs: int = 1,
     budget: int = STEP_BUDGET,
-    report: Callable[[int], None] | None = None,
+    report: Callable[[list[Outcome]], None] | None = None,
 ) -> list[Outcome]:
     """Run so many random scenes.
 
@@ -108,7 +108,7 @@ def run_stress(
     budget : int, optional
         Steps after which a scene is left alone.
     report : callable, optional
-        Called now and then with how many are done.
+        Called with the outcomes of each few scenes as they are done: what there is after an interruption.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def run_stress(
         for some in finished:
             outcomes += some
             if report is not None:
-                report(len(outcomes))
+                report(some)
     return sorted(outcomes, key=lambda outcome: outcome.number)
 
 

@@ -82,7 +82,7 @@ def worst(outcomes: Sequence[Outcome]) -> list[Outcome]:
     return sorted(known, key=lambda o: (o.sound, -o.ratio if math.isfinite(o.ratio) else 0.0))[:_LISTED]
 
 
-def page(outcomes: Sequence[Outcome], seed: int, day: date) -> str:
+def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = None) -> str:
     """Write the report.
 
     Parameters
@@ -91,6 +91,8 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date) -> str:
     seed : int
     day : date
         When they were run.
+    runs : int, optional
+        How many were asked for, where not all of them were done.
 
     Returns
     -------
@@ -99,11 +101,12 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date) -> str:
     """
     unsound = [outcome for outcome in outcomes if not outcome.sound]
     times = [outcome.wall_time for outcome in outcomes]
-    command = f"gearidae bench --stress --runs {len(outcomes)} --seed {seed}"
+    command = f"gearidae bench --stress --runs {runs or len(outcomes)} --seed {seed}"
+    done = f"; interrupted after {len(outcomes)} scenes" if runs and runs > len(outcomes) else ""
     lines = [
         "# Stress run",
         "",
-        f"`{command}` on {day.isoformat()}, gearidae {gearidae.__version__}.",
+        f"`{command}` on {day.isoformat()}, gearidae {gearidae.__version__}{done}.",
         "",
         _RANGES,
         "",

@@ -19,7 +19,7 @@ from gearidae.bench.accuracy_report import page as accuracy_page
 from gearidae.bench.accuracy_report import quantiles as accuracy_quantiles
 from gearidae.bench.files import write_result
 from gearidae.bench.long import FEWEST_PASSAGES, long_page, measure_long, sound
-from gearidae.bench.stress import run_stress
+from gearidae.bench.stress import Outcome, run_stress
 from gearidae.bench.stress_report import counts, page, quantiles
 from gearidae.bench.tables import ERRORS, beyond_rows, equal_error_rows
 from gearidae.cli.codes import DONE, UNFINISHED
@@ -100,6 +100,8 @@ def bench_long(passages: int, output: Path | None) -> int:
 def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) -> int:
     """Run random scenes, print how they ended, and write the page about them if asked.
 
+    What is done when Ctrl-C comes is printed and written all the same.
+
     Parameters
     ----------
     runs, seed : int
@@ -117,8 +119,21 @@ def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) ->
     if runs < 1 or seed < 0:
         raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
     workers = check_jobs(jobs)
+    outcomes: list[Outcome] = []
+    interrupted = False
     with Console(stderr=True).status("") as status:
-        outcomes = run_stress(runs, seed, workers, report=lambda done: status.update(f"{done} of {runs} ..."))
+
+        def note(some: list[Outcome]) -> None:
+            outcomes.extend(some)
+            status.update(f"{len(outcomes)} of {runs} ...")
+
+        try:
+            run_stress(runs, seed, workers, report=note)
+        except KeyboardInterrupt:
+            interrupted = True
+    outcomes.sort(key=lambda outcome: outcome.number)
+    if not outcomes:
+        raise KeyboardInterrupt
     rows = [(ending, str(number), "") for ending, number in counts(outcomes).items()]
     rows += [
         (f"error / rtol of {100 * share:g} %", f"{ratio:.2g}", "at most")
@@ -130,8 +145,10 @@ def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) ->
         say(f"scene {outcome.number}: {outcome.status} {outcome.message} {outcome.complaint}")
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
-        (output / "stress.md").write_text(page(outcomes, seed, datetime.now(UTC).date()))
+        (output / "stress.md").write_text(page(outcomes, seed, datetime.now(UTC).date(), runs))
         say(f"Report: {output / 'stress.md'}")
+    if interrupted:
+        raise KeyboardInterrupt(f"{len(outcomes)} of {runs} scenes done")
     return UNFINISHED if unsound else DONE
 
 

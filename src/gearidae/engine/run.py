@@ -44,7 +44,10 @@ class Ending(Enum):
     CHATTER = ("chatter", "event followed event without the time going on")
     STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
     NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
-    TOO_ACCURATE = ("too_accurate", "the tolerance asks for more than double precision can give")
+    TOO_ACCURATE = (
+        "too_accurate",
+        "the tolerance asks for more than double precision can give: raise run.rtol",
+    )
     SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
     FOLD = (
         "fold",
