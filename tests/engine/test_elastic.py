@@ -8,7 +8,7 @@ import pytest
 import gearidae as gd
 from gearidae.contact import asperity_of
 from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve, elastic_line_force
-from gearidae.engine import elastic, problem, solve
+from gearidae.engine import backend, elastic, portable, problem, solve
 from gearidae.engine import layout as at
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.blocks import assemble, dense_jacobian, factorise, solve_blocks, store_size
@@ -340,6 +340,28 @@ def test_nodes_are_laid_out_anew_when_pressed_too_deep(monkeypatch, backend):
     # up to the new layout the nodes at the edge carry 1e-5 of the force
     force = given.samples["force"]
     np.testing.assert_allclose(run.samples["force"], force, rtol=0, atol=3e-5 * force.max())
+
+
+def test_a_run_whose_nodes_are_laid_out_anew_can_be_resumed_before_and_after_that(monkeypatch):
+    monkeypatch.setattr(problem, "deepest_gap", lambda *arguments: 2.0)
+    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 40)
+    deepen, deepened = backend.deepen, []
+    monkeypatch.setattr(backend, "deepen", lambda *given: deepened.append(1) or deepen(*given))
+    scene = roller("roller_fast", **{"run.samples": 201})
+
+    def blocks(resume=None):
+        return list(run_blocks(make_problem(scene), 1e-6, 201, "sksundae", Tally(), resume))
+
+    whole = blocks()
+    rows = np.concatenate([block.rows for block in whole])
+    layouts = set()
+    for k, block in enumerate(whole[:-1]):
+        if block.checkpoint is not None:
+            deepened.clear()
+            rest = [block.rows for block in blocks(block.checkpoint)]
+            layouts.add(len(deepened))  # still to come
+            np.testing.assert_array_equal(np.concatenate([b.rows for b in whole[: k + 1]] + rest), rows)
+    assert layouts >= {0, 1}
 
 
 def test_too_deep_for_the_tables_is_named():

@@ -24,6 +24,7 @@ __all__ = ["Growth", "Start", "measure_growth", "measure_start", "measure_sweep"
 
 STRETCHES: Final = (1, 2, 4, 8)
 SAMPLES_PER_STRETCH: Final = 20_000
+SECOND_SAMPLES: Final = 100_001
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,7 @@ def _timed(work: Callable[[], object], repeats: int) -> float:
 
 
 def measure_growth(name: str = "high_sam") -> list[Growth]:
-    """Run 1, 2, 4 and 8 stretches of a scene, at a constant rate of samples."""
+    """Run 1, 2, 4 and 8 stretches of a scene, at a constant rate of samples, and once a whole second of it."""
     scene = SCENES[name].scene
     results = []
     for stretches in STRETCHES:
@@ -98,6 +99,12 @@ def measure_growth(name: str = "high_sam") -> list[Growth]:
         memory = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         results.append(Growth(longer.run.duration, seconds, steps, memory))
+    second = scene.replace({"run.duration": 1.0, "run.samples": SECOND_SAMPLES})
+    tracemalloc.start()
+    started = time.perf_counter()
+    steps = _drain(second)
+    results.append(Growth(1.0, time.perf_counter() - started, steps, tracemalloc.get_traced_memory()[1]))
+    tracemalloc.stop()
     return results
 
 

@@ -149,11 +149,14 @@ def _potential(pieces: Floats, low: float) -> Floats:
 def _store_partial(law: Floats, end: Floats, table: Floats) -> None:
     """Pieces of e(Z, S) as ``V(Z) + v^2 times a polynomial``, which begins with ``D t(Z, D)``."""
     pieces, limit, first = int(law[H_PIECES]), law[H_STRETCH], int(law[H_PARTIAL])
-    shape = (len(end), pieces * (DEGREE + 1), 8)
-    partial = law[first : first + math.prod(shape)].reshape(shape)
+    n = DEGREE + 1
+    shape = (len(end), pieces, 8, n)
+    size = math.prod(shape)
+    # powers of v in all pieces, then those of u
+    partial = law[first : first + size].reshape(shape).swapaxes(2, 3).reshape(len(end), pieces * n, 8)
     result = 2.0 * limit * np.einsum("ab,jbc->jac", _stretch_integral(pieces), partial, optimize=True)
-    result[:, :: DEGREE + 1] += limit * end[:, None]
-    table[first : first + result.size] = result.ravel()
+    result[:, ::n] += limit * end[:, None]
+    table[first : first + size] = result.reshape(len(end), pieces, n, 8).swapaxes(2, 3).ravel()
 
 
 @lru_cache(maxsize=8)

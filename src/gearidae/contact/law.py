@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.contact.jkr import AsperityLaw, displacement, jkr_load, jkr_root, load
+from gearidae.contact.lanes import eight_powers
 from gearidae.contact.psi import psi_derivatives
 
 __all__ = [
@@ -297,16 +298,16 @@ def _partial_pieces(joined: Floats, end: Floats, stretch_limit: float, pieces: i
 
     Returns
     -------
-    ndarray, shape (n, pieces, DEGREE + 1, 8)
-        Powers of the place in the piece of v, then of u.
+    ndarray, shape (n, pieces, 8, DEGREE + 1)
+        Powers of u, then of the place in the piece of v.
     """
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
-    out = np.empty((len(joined) - 1, pieces, DEGREE + 1, 8))
+    out = np.empty((len(joined) - 1, pieces, 8, DEGREE + 1))
     for piece in range(pieces):
         v = (piece + 0.5 * (nodes + 1.0)) / pieces
         rest = (_stretched_derivatives(joined, stretch_limit, v, kernel) - end) / v**2
-        out[:, piece] = np.moveaxis(_pieces(joined, rest) @ to_powers.T, 1, 2)
+        out[:, piece] = _pieces(joined, rest) @ to_powers.T
     return out
 
 
@@ -441,10 +442,12 @@ def set_branch(table: Floats, joined: float, branch: Floats) -> None:
     branch[B_SHARE] = 1.0 / table[H_STRETCH]
     branch[B_PIECES] = table[H_PIECES]
     branch[B_END] = decay * _power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)
-    size = (DEGREE + 1) * pieces
-    start = int(table[H_PARTIAL]) + 8 * j * size
-    for m in range(size):
-        branch[B_BODY + m] = decay * _power8(table, np.uintp(start + 8 * m), u, u2, u4)
+    start = int(table[H_PARTIAL]) + 8 * (DEGREE + 1) * j * pieces
+    for piece in range(pieces):
+        body = B_BODY + (DEGREE + 1) * piece
+        c = eight_powers(table, np.uintp(start + 8 * (DEGREE + 1) * piece), u)
+        for m in range(DEGREE + 1):
+            branch[body + m] = decay * c[m]
 
 
 @compiled
@@ -481,11 +484,13 @@ def _partial(table: Floats, joined: float, stretch: float) -> tuple[float, float
     piece = min(int(place), pieces - 1)
     r = 2.0 * (place - piece) - 1.0
     start = int(table[H_PARTIAL]) + 8 * (DEGREE + 1) * (j * pieces + piece)
-    f = 0.0
-    d = 0.0
-    for m in range(DEGREE, -1, -1):
-        d = d * r + f
-        f = f * r + _power8(table, np.uintp(start + 8 * m), u, u2, u4)
+    c = eight_powers(table, np.uintp(start), u)
+    r2 = r * r
+    r4 = r2 * r2
+    f = (c[0] + c[1] * r) + (c[2] + c[3] * r) * r2
+    f += ((c[4] + c[5] * r) + (c[6] + c[7] * r) * r2) * r4
+    d = (c[1] + 2.0 * c[2] * r) + (3.0 * c[3] + 4.0 * c[4] * r) * r2
+    d += ((5.0 * c[5] + 6.0 * c[6] * r) + 7.0 * c[7] * r2) * r4
     end = _power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)
     decay = math.exp(-0.5 * joined * joined) if joined > 0.0 else 1.0
     return (end + v * v * f) * decay, -(f + place * d) / limit * decay
