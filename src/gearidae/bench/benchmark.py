@@ -14,7 +14,7 @@ from pathlib import Path
 import gearidae
 from gearidae.bench.c_loop import c_contenders
 from gearidae.bench.contender import Contender, engine_contenders, explicit_contenders
-from gearidae.bench.growth import Growth, Start, measure_growth, measure_start, measure_sweep
+from gearidae.bench.growth import Growth, Start, measure_elastic, measure_growth, measure_start, measure_sweep
 from gearidae.bench.measure import Point, Settings, measure_scene
 from gearidae.bench.python_peers import scipy_contenders, sundials_contenders
 from gearidae.bench.reference import Provenance
@@ -42,6 +42,8 @@ class Result:
     first_calls : dict
         Seconds of each contender's first run, compilation included.
     growth : list of Growth
+    elastic : dict
+        Run time with the elastic contact over that of the asperity model, by SAM fraction.
     sweep_efficiency : float
     start : Start or None
     """
@@ -58,6 +60,7 @@ class Result:
     references: dict[str, Provenance] = field(default_factory=dict)
     first_calls: dict[str, float] = field(default_factory=dict)
     growth: list[Growth] = field(default_factory=list)
+    elastic: dict[str, float] = field(default_factory=dict)
     sweep_efficiency: float = float("nan")
     start: Start | None = None
 
@@ -104,7 +107,7 @@ def run_benchmark(
     contenders : sequence of Contender, optional
         By default `all_contenders`; those that cannot run here are left out, with the reason in the result.
     beyond : bool, optional
-        Whether to measure growth, sweep and start as well.
+        Whether to measure growth, the elastic contact, sweep and start as well.
     report : callable, optional
         Told in words what is being measured.
 
@@ -128,6 +131,8 @@ def run_benchmark(
     if beyond:
         report("growth with simulated time")
         result.growth = measure_growth()
+        report("elastic contact")
+        result.elastic = measure_elastic()
         report("sweep on two cores")
         result.sweep_efficiency = measure_sweep()
         report("start of a new process")

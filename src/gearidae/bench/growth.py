@@ -1,4 +1,4 @@
-"""What a user feels beside the speed of one run: growth with simulated time, memory, two cores, the first second."""
+"""What a user feels beside the time of one run: growth, memory, elastic bodies, two cores, the first second."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from gearidae.engine.problem import make_problem
 from gearidae.engine.run import Tally
 from gearidae.scene import Scene
 
-__all__ = ["Growth", "Start", "measure_growth", "measure_start", "measure_sweep"]
+__all__ = ["Growth", "Start", "measure_elastic", "measure_growth", "measure_start", "measure_sweep"]
 
 STRETCHES: Final = (1, 2, 4, 8)
 SAMPLES_PER_STRETCH: Final = 20_000
@@ -106,6 +106,22 @@ def measure_growth(name: str = "high_sam") -> list[Growth]:
     results.append(Growth(1.0, time.perf_counter() - started, steps, tracemalloc.get_traced_memory()[1]))
     tracemalloc.stop()
     return results
+
+
+def measure_elastic(name: str = "high_sam", repeats: int = 5) -> dict[str, float]:
+    """Time of a run with the elastic contact over that with the asperity model, by SAM fraction; medians."""
+    ratios = {}
+    for fraction in (1.0, 0.5, 0.0):
+        scene = SCENES[name].scene.replace({"coating.sam_fraction": fraction})
+        times: dict[str, list[float]] = {"asperity": [], "elastic": []}
+        for model in times:
+            _drain(scene.replace({"contact.model": model}))
+        for _ in range(repeats):
+            for model, own in times.items():
+                run = scene.replace({"contact.model": model})
+                own.append(_timed(lambda run=run: _drain(run), 1))  # type: ignore[misc]
+        ratios[f"{fraction:g}"] = statistics.median(times["elastic"]) / statistics.median(times["asperity"])
+    return ratios
 
 
 def measure_sweep(runs: int = 8, repeats: int = 5) -> float:

@@ -91,6 +91,8 @@ def beyond_rows(result: Result) -> Iterator[tuple[str, str]]:
                 f"{g.simulated * 1e3:g} ms simulated ({times:g} times)",
                 f"{g.time * 1e3:.1f} ms ({g.time / first.time:.2f} times), {each:.2f} us a step, {memory:.1f} MB",
             )
+    for fraction, ratio in result.elastic.items():
+        yield f"elastic contact, SAM fraction {fraction}", f"{ratio:.1f} times the asperity model's time"
     if not math.isnan(result.sweep_efficiency):
         yield "sweep of 8 runs on two cores", f"{100 * result.sweep_efficiency:.0f} % efficiency"
     if result.start is not None:
