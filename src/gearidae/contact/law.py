@@ -469,7 +469,7 @@ def branch_value(branch: Floats, stretch: float) -> tuple[float, float]:
     return branch[B_END] + v * v * f, -(f + place * d) * share
 
 
-@compiled
+@compiled(inline=True)
 def _partial(table: Floats, joined: float, stretch: float) -> tuple[float, float]:
     """t(Z, S) and its slope in S, where no branch is kept."""
     pieces = int(table[H_PIECES])
@@ -561,7 +561,7 @@ _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 _TOUCH: Final = 4.0 ** (1.0 / 3.0)  # t of an asperity that is not stretched
 
 
-@compiled
+@compiled(inline=True)
 def stretched_value(table: Floats, gap: float, joined: float) -> tuple[float, float]:
     """What stretched asperities add to the loading branch, and its slope while the joined height stays."""
     limit = table[H_STRETCH]
