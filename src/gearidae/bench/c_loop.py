@@ -26,7 +26,7 @@ from gearidae.engine.events import EVENTS_AT_ONCE, accept, guard, handle
 from gearidae.engine.ledger import enter, follow
 from gearidae.engine.newton import DESK, EVALUATIONS
 from gearidae.engine.observe import observe
-from gearidae.engine.pointers import numbers
+from gearidae.engine.pointers import MANY, numbers
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import BLOCK_EVENTS
 from gearidae.engine.start import first_step, set_rates
@@ -38,12 +38,11 @@ Floats = NDArray[np.float64]
 
 _REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _COUNT: Any = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
-_LONG = 1 << 40
 
 
 @compiled_callback(types.void(_REALS, types.float64, _REALS, _REALS, types.int32))
 def _accept(data, t, y, yp, flag):  # type: ignore[no-untyped-def]
-    d = carray(data, (_LONG,))
+    d = carray(data, (MANY,))
     accept(d, t, carray(y, (4,)))
     follow(d, t, carray(y, (4,)), carray(yp, (4,)), flag != 0)
 
@@ -52,19 +51,19 @@ def _accept(data, t, y, yp, flag):  # type: ignore[no-untyped-def]
 def _handle(data, t, y, events, count):  # type: ignore[no-untyped-def]
     number = carray(count, (1,))
     number[0], action = handle(
-        carray(data, (_LONG,)), t, carray(y, (4,)), carray(events, (BLOCK_EVENTS, 5)), number[0]
+        carray(data, (MANY,)), t, carray(y, (4,)), carray(events, (BLOCK_EVENTS, 5)), number[0]
     )
     return action
 
 
 @compiled_callback(types.void(_REALS, types.float64, _REALS, _REALS))
 def _observe(data, t, y, row):  # type: ignore[no-untyped-def]
-    observe(carray(data, (_LONG,)), t, carray(y, (4,)), carray(row, (9,)))
+    observe(carray(data, (MANY,)), t, carray(y, (4,)), carray(row, (9,)))
 
 
 @compiled_callback(types.float64(_REALS, types.float64, _REALS, _REALS, _REALS, types.float64, types.float64))
 def _start(data, t, y, yp, scale, rtol, longest):  # type: ignore[no-untyped-def]
-    d = carray(data, (_LONG,))
+    d = carray(data, (MANY,))
     n = 2 if d[at.KIND] == at.ROLLER else 4
     states, rates = carray(y, (n,)), carray(yp, (n,))
     set_rates(d, t, states, rates)
@@ -74,7 +73,7 @@ def _start(data, t, y, yp, scale, rtol, longest):  # type: ignore[no-untyped-def
 
 @compiled_callback(types.int32(types.float64, types.intp, types.intp, _REALS, _REALS))
 def _guard(t, yy, yp, out, data):  # type: ignore[no-untyped-def]
-    carray(out, (1,))[0] = guard(carray(data, (_LONG,)), t, numbers(yy))
+    carray(out, (1,))[0] = guard(carray(data, (MANY,)), t, numbers(yy))
     return 0
 
 

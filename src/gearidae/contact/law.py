@@ -68,6 +68,7 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
+Eight = tuple[float, float, float, float, float, float, float, float]
 Kernel: TypeAlias = Literal["line", "plane"]
 
 GAP_LOW: Final = -40.0
@@ -384,18 +385,32 @@ def _power8(table: Floats, k: np.uintp, u: float, u2: float, u4: float) -> float
     return low + high * u4
 
 
+@compiled(inline=True)
+def _coefficients(table: Floats, k: np.uintp) -> Eight:
+    """Eight coefficients in succession."""
+    low = table[k], table[k + _A1], table[k + _A2], table[k + _A3]
+    return (*low, table[k + _A4], table[k + _A5], table[k + _A6], table[k + _A7])
+
+
+@compiled(inline=True)
+def _value_and_slope(c: Eight, u: float) -> tuple[float, float]:
+    """Polynomial of eight coefficients and its derivative, their halves evaluated side by side (Estrin's scheme)."""
+    u2 = u * u
+    u4 = u2 * u2
+    low = (c[0] + c[1] * u) + (c[2] + c[3] * u) * u2
+    high = (c[4] + c[5] * u) + (c[6] + c[7] * u) * u2
+    slope = (c[1] + 2.0 * c[2] * u) + (3.0 * c[3] + 4.0 * c[4] * u) * u2
+    slope += ((5.0 * c[5] + 6.0 * c[6] * u) + 7.0 * c[7] * u2) * u4
+    return low + high * u4, slope
+
+
 @compiled
 def _septic(table: Floats, offset: int, x: float, low: float, count: int) -> tuple[float, float]:
     """Value and slope of scaled septic pieces at x."""
     position = (x - low) * KNOTS_PER_SIGMA
     j = min(max(int(position), 0), count - 1)
     u = position - j
-    k = np.uintp(offset + 8 * j)
-    u2 = u * u
-    u4 = u2 * u2
-    f = _power8(table, k, u, u2, u4)
-    d = (table[k + _A1] + 2.0 * table[k + _A2] * u) + (3.0 * table[k + _A3] + 4.0 * table[k + _A4] * u) * u2
-    d += ((5.0 * table[k + _A5] + 6.0 * table[k + _A6] * u) + 7.0 * table[k + _A7] * u2) * u4
+    f, d = _value_and_slope(_coefficients(table, np.uintp(offset + 8 * j)), u)
     d *= KNOTS_PER_SIGMA
     if x > 0.0:
         decay = math.exp(-0.5 * x * x)
@@ -458,14 +473,7 @@ def branch_value(branch: Floats, stretch: float) -> tuple[float, float]:
     place = v * branch[B_PIECES]
     piece = min(int(place), int(branch[B_PIECES]) - 1)
     r = 2.0 * (place - piece) - 1.0
-    r2 = r * r
-    r4 = r2 * r2
-    k = np.uintp(B_BODY + (DEGREE + 1) * piece)
-    f = _power8(branch, k, r, r2, r4)
-    d = (branch[k + _A1] + 2.0 * branch[k + _A2] * r) + (
-        3.0 * branch[k + _A3] + 4.0 * branch[k + _A4] * r
-    ) * r2
-    d += ((5.0 * branch[k + _A5] + 6.0 * branch[k + _A6] * r) + 7.0 * branch[k + _A7] * r2) * r4
+    f, d = _value_and_slope(_coefficients(branch, np.uintp(B_BODY + (DEGREE + 1) * piece)), r)
     return branch[B_END] + v * v * f, -(f + place * d) * share
 
 
@@ -484,13 +492,7 @@ def _partial(table: Floats, joined: float, stretch: float) -> tuple[float, float
     piece = min(int(place), pieces - 1)
     r = 2.0 * (place - piece) - 1.0
     start = int(table[H_PARTIAL]) + 8 * (DEGREE + 1) * (j * pieces + piece)
-    c = eight_powers(table, np.uintp(start), u)
-    r2 = r * r
-    r4 = r2 * r2
-    f = (c[0] + c[1] * r) + (c[2] + c[3] * r) * r2
-    f += ((c[4] + c[5] * r) + (c[6] + c[7] * r) * r2) * r4
-    d = (c[1] + 2.0 * c[2] * r) + (3.0 * c[3] + 4.0 * c[4] * r) * r2
-    d += ((5.0 * c[5] + 6.0 * c[6] * r) + 7.0 * c[7] * r2) * r4
+    f, d = _value_and_slope(eight_powers(table, np.uintp(start), u), r)
     end = _power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)
     decay = math.exp(-0.5 * joined * joined) if joined > 0.0 else 1.0
     return (end + v * v * f) * decay, -(f + place * d) / limit * decay

@@ -163,7 +163,6 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
             ptr.numbers(weights),
             tolerance,
             renew != 0,
-            desk_at,
             solver,
         )
 

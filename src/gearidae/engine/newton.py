@@ -91,7 +91,6 @@ def iterate(
     weights: Floats,
     tolerance: float,
     renew: bool,
-    desk_at: int,
     solver: int,
 ) -> int:
     """Correct a prediction until what is left is below the tolerance.
@@ -117,8 +116,8 @@ def iterate(
     tolerance : float
     renew : bool
         Whether the Jacobian has to be worked out anew.
-    desk_at, solver : int
-        Addresses of the desk and of IDA.
+    solver : int
+        Address of IDA.
 
     Returns
     -------
@@ -130,17 +129,19 @@ def iterate(
     state[LAST_CJ] = cj
     bad = 0
     while True:
-        _evaluate(n, desk, d, t, cj, predicted, predicted_rates, correction, y, yp, delta)
-        if renew:
-            flag = ptr.set_up(desk[SET_UP], bad, desk_at + 8 * NEW, solver)
-            state[SET_UP_CJ], state[GAIN] = cj, GAIN_SET_UP
-            if flag != 0:
-                return flag
-        ratio = cj / state[SET_UP_CJ]
         last = 0.0
         for m in range(MOST):
-            if m > 0:
-                _evaluate(n, desk, d, t, cj, predicted, predicted_rates, correction, y, yp, delta)
+            for i in range(n):
+                y[i] = predicted[i] + correction[i]
+                yp[i] = cj * correction[i] + predicted_rates[i]
+            residual(d, t, y, yp, delta)
+            desk[EVALUATIONS] += 1
+            if m == 0 and renew:
+                flag = ptr.set_up(desk[SET_UP], bad, desk[NEW:].ctypes.data, solver)
+                state[SET_UP_CJ], state[GAIN] = cj, GAIN_SET_UP
+                if flag != 0:
+                    return flag
+            ratio = cj / state[SET_UP_CJ]
             for i in range(n):
                 delta[i] = -delta[i]
             small.solve(n, store, delta, delta)
@@ -170,25 +171,3 @@ def iterate(
         renew, bad = True, 1
         for i in range(n):
             correction[i] = 0.0
-
-
-@compiled(inline=True)
-def _evaluate(
-    n: int,
-    desk: Ints,
-    d: Floats,
-    t: float,
-    cj: float,
-    predicted: Floats,
-    predicted_rates: Floats,
-    correction: Floats,
-    y: Floats,
-    yp: Floats,
-    out: Floats,
-) -> None:
-    """Evaluate the residual at the corrected state."""
-    for i in range(n):
-        y[i] = predicted[i] + correction[i]
-        yp[i] = cj * correction[i] + predicted_rates[i]
-    residual(d, t, y, yp, out)
-    desk[EVALUATIONS] += 1

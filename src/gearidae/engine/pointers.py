@@ -89,14 +89,14 @@ def numbers(vector: int) -> NDArray[np.float64]:
 
 @compiled
 def replace(record: int, where: NDArray[np.int64], functions: NDArray[np.int64]) -> None:
-    """Give a linear solver other functions.
+    """Give a solver other functions.
 
     Parameters
     ----------
     record : int
         Its address.
     where : ndarray of int64, shape (n + 1,)
-        From `places`.
+        Place of the table in the record, and of the functions in the table.
     functions : ndarray of int64, shape (n,)
         Addresses.
     """

@@ -21,7 +21,6 @@ from gearidae.engine.events import guard
 __all__ = ["CALLS", "INTERPOLATE", "SEARCH", "next_time", "start_search"]
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 LOW: Final = 0  # the guard where the interval to look at begins
 LOW_TIME: Final = 1
@@ -81,8 +80,6 @@ def next_time(
         search[LOW], search[LOW_TIME] = _look(d, clock[0], y, search), clock[0]
         if abs(search[STEP_END] - clock[0]) <= _rounding(solver, search):
             search[REST] = 0.0
-            if search[STOP] != 0.0:
-                return _stop(solver, state, rates, clock, search)
     rest = search[REST] != 0.0
     if rest:
         clock[0] = search[STEP_END]

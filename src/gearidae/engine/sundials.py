@@ -8,7 +8,8 @@ call it; no compiler and no second copy of the library are needed.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from typing import Any, Final
 
@@ -84,27 +85,16 @@ def places() -> NDArray[np.int64]:
     RuntimeError
         If anything is not where it could be.
     """
-    one = np.zeros(1)
-    context, address = ctypes.c_int64(), ctypes.c_int64
-    _call("SUNContext_Create", ctypes.c_int(0), ctypes.byref(context))
-    try:
-        vector = _call("N_VMake_Serial", ctypes.c_int32(1), address(one.ctypes.data), context)
+    with _bench() as (context, vector, numbers):
         matrix = _call("SUNDenseMatrix", ctypes.c_int32(1), ctypes.c_int32(1), context)
-        linear = _call("SUNLinSol_Dense", address(vector), address(matrix), context)
-        fields = _words(linear, 4)
-        table = fields.index(context.value) - 1 if context.value in fields[1:] else 0
-        functions = _words(fields[table], 12) if table else []
-        wanted = [binding.address_of_symbol(name) for name in OF_SOLVERS]
-        if any(function not in functions for function in wanted):
-            raise RuntimeError("SUNDIALS lays out its linear solvers in an unknown way")
-        if _words(_words(vector, 1)[0], 2)[1] != one.ctypes.data:
+        linear = _call("SUNLinSol_Dense", vector, _address(matrix), context)
+        table = _table_place(linear, context)
+        functions = _operations(linear, table, 12, OF_SOLVERS, "linear")
+        if _words(_words(vector.value, 1)[0], 2)[1] != numbers.ctypes.data:
             raise RuntimeError("SUNDIALS lays out its vectors in an unknown way")
-        _call("SUNLinSolFree", address(linear))
-        _call("SUNMatDestroy", address(matrix))
-        _call("N_VDestroy", address(vector))
-    finally:
-        _call("SUNContext_Free", ctypes.byref(context))
-    return np.array([table, *(functions.index(function) for function in wanted)], dtype=np.int64)
+        _call("SUNLinSolFree", _address(linear))
+        _call("SUNMatDestroy", _address(matrix))
+    return np.array([table, *functions], dtype=np.int64)
 
 
 @cache
@@ -121,26 +111,49 @@ def newton_places() -> NDArray[np.int64]:
     RuntimeError
         If anything is not where it could be.
     """
-    one = np.zeros(1)
-    context, address = ctypes.c_int64(), ctypes.c_int64
+    with _bench() as (context, vector, _):
+        newton = _call("SUNNonlinSol_Newton", vector, context)
+        empty = _call("SUNNonlinSolNewEmpty", context)
+        table = _table_place(newton, context)
+        functions = _operations(newton, table, 13, OF_NEWTON, "nonlinear")
+        own, bare = _words(newton, table), _words(empty, table)
+        content = next((k for k in range(table) if own[k] != 0 and bare[k] == 0), table)
+        if content == table:
+            raise RuntimeError("SUNDIALS keeps the content of its nonlinear solvers in an unknown place")
+        _call("SUNNonlinSolFreeEmpty", _address(empty))
+        _call("SUNNonlinSolFree_Newton", _address(newton))
+    return np.array([content, table, *functions], dtype=np.int64)
+
+
+@contextmanager
+def _bench() -> Iterator[tuple[ctypes.c_int64, ctypes.c_int64, NDArray[np.float64]]]:
+    """Provide a context and a vector over one number, to make solvers with and look at them."""
+    numbers, context = np.zeros(1), ctypes.c_int64()
     _call("SUNContext_Create", ctypes.c_int(0), ctypes.byref(context))
     try:
-        vector = _call("N_VMake_Serial", ctypes.c_int32(1), address(one.ctypes.data), context)
-        newton = _call("SUNNonlinSol_Newton", address(vector), context)
-        empty = _call("SUNNonlinSolNewEmpty", context)
-        fields, bare = _words(newton, 4), _words(empty, 4)
-        table = fields.index(context.value) - 1 if context.value in fields[1:] else 0
-        content = next((k for k in range(table) if fields[k] != 0 and bare[k] == 0), table)
-        functions = _words(fields[table], 13) if content < table else []
-        wanted = [binding.address_of_symbol(name) for name in OF_NEWTON]
-        if any(function not in functions for function in wanted):
-            raise RuntimeError("SUNDIALS lays out its nonlinear solvers in an unknown way")
-        _call("SUNNonlinSolFreeEmpty", address(empty))
-        _call("SUNNonlinSolFree_Newton", address(newton))
-        _call("N_VDestroy", address(vector))
+        vector = _address(_call("N_VMake_Serial", ctypes.c_int32(1), _address(numbers.ctypes.data), context))
+        yield context, vector, numbers
+        _call("N_VDestroy", vector)
     finally:
         _call("SUNContext_Free", ctypes.byref(context))
-    return np.array([content, table, *(functions.index(f) for f in wanted)], dtype=np.int64)
+
+
+def _table_place(record: int, context: ctypes.c_int64) -> int:
+    """Place of the table of functions in a solver's record: just before the context; 0 if that is not there."""
+    fields = _words(record, 4)
+    return fields.index(context.value) - 1 if context.value in fields[1:] else 0
+
+
+def _operations(record: int, table: int, size: int, names: tuple[str, ...], kind: str) -> list[int]:
+    """Places of these functions in a solver's table of so many."""
+    functions = _words(_words(record, table + 1)[table], size) if table else []
+    wanted = [binding.address_of_symbol(name) for name in names]
+    if any(function not in functions for function in wanted):
+        raise RuntimeError(f"SUNDIALS lays out its {kind} solvers in an unknown way")
+    return [functions.index(function) for function in wanted]
+
+
+_address = ctypes.c_int64
 
 
 def _call(name: str, *arguments: Any) -> int:
