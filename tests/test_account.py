@@ -48,7 +48,10 @@ def test_dry_resistance_stops_the_gear_and_the_books_balance(braking):
     assert told.time_at_rest == pytest.approx(14e-3 - stuck, rel=1e-12, abs=0.0)
     gears = gd.Scene.from_dict(json.loads(braking.attrs["scene"])).gears
     kinetic = 0.5 * (gears.gear_inertia + gears.pinion_inertia * 16.0) * 2898.0**2  # teeth 76 to 19
-    assert told.kinetic_change == pytest.approx(-kinetic, rel=1e-12, abs=0.0)
+    # the pinion still trembles against the tooth that holds it
+    trembling = 0.5 * gears.pinion_inertia * braking.pinion_speed[-1].item() ** 2
+    assert trembling < 1e-9 * kinetic
+    assert told.kinetic_change == pytest.approx(trembling - kinetic, rel=1e-12, abs=0.0)
     # dry resistance of 3e-11 N m over the angle turned
     turned = (braking.gear_angle[-1] - braking.gear_angle[0]).item()
     assert told.dry_loss == pytest.approx(3e-11 * turned, rel=1e-12, abs=0.0)

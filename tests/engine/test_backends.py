@@ -27,7 +27,7 @@ SHORT = {
 @pytest.mark.parametrize("name", SHORT)
 def test_every_case_runs_the_same_in_both(name, monkeypatch):
     """With the state at a step's end from IDA's interpolant, as the portable driver has it."""
-    monkeypatch.setattr(native_driver, "run", partial(native_driver.run, interpolate=True))
+    monkeypatch.setattr(native_driver, "run", partial(native_driver.run, as_ida=True))
     scene = gd.load_case(CASES / f"{name}.toml")
     if name in ("low_speed", "high_speed"):
         scene = scene.replace({"coating.sam_fraction": 0.5})
@@ -93,7 +93,7 @@ def test_the_correctors_state_at_a_steps_end_is_as_good_as_the_interpolant(name,
         scene = scene.replace({"contact.model": "asperity"})
     duration = SHORT[name] or scene.run.duration
     ordinary = solve(scene, backend="native", t_end=duration, samples=501)
-    monkeypatch.setattr(native_driver, "run", partial(native_driver.run, interpolate=True))
+    monkeypatch.setattr(native_driver, "run", partial(native_driver.run, as_ida=True))
     interpolated = solve(scene, backend="native", t_end=duration, samples=501)
     happened = [e.kind[e.kind != EventKind.TURNING_POINT] for e in (ordinary.events, interpolated.events)]
     np.testing.assert_array_equal(*happened)

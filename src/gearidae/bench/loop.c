@@ -1,76 +1,171 @@
-/* The native driver's stepping loop once more, in C, to see what the compiled Python costs; IDA finds the roots here.
+/* The native driver's stepping loop once more, in C, to see what the compiled Python costs.
  *
  * It works on the solver that gearidae's own open_solver has set up, calls the same SUNDIALS library, and reaches the
- * same residual, guard, history and output functions through their addresses. Keep it in step with
- * gearidae.engine.native.advance.
+ * same guard, history, interpolation and output functions through their addresses. Keep it in step with
+ * gearidae.engine.native.advance and gearidae.engine.search.
  */
+#include <math.h>
 #include <stdint.h>
 
 extern int IDASolve(void *, double, double *, void *, void *, int);
-extern int IDAGetDky(void *, double, int, void *);
 extern int IDAReInit(void *, double, void *, void *);
 extern int IDASetInitStep(void *, double);
 extern int IDASetStopTime(void *, double);
-extern int IDARootInit(void *, int, int (*)(double, void *, void *, double *, void *));
-extern int IDASetRootDirection(void *, int *);
-extern int IDASetNoInactiveRootWarn(void *);
+extern int IDAGetCurrentTime(void *, double *);
+extern int IDAGetCurrentStep(void *, double *);
 extern int IDAGetNumSteps(void *, long *);
-extern int IDAGetNumResEvals(void *, long *);
 
 enum { ONE_STEP = 2, TSTOP_RETURN = 1, ROOT_RETURN = 2 };
 enum { CONTINUE = 0, RESTART = 1 };
 
-/* Order of gearidae.bench.c_loop.CALLS. */
+/* Order of the addresses in gearidae.bench.c_loop. */
 typedef struct {
     void (*accept)(double *d, double t, double *y, double *yp, int32_t flag);
     int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);
-    void (*observe)(double *d, double t, double *y, double *row);
-    double (*start)(double *d, double t, double *y, double *yp, double *scale, double rtol, double longest);
-    int (*guard)(double t, void *yy, void *yyp, double *out, void *d);
+    void (*observe)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *row);
+    double (*start)(double *d, double *desk, double t, double *y, double *yp, double *scale, double rtol, double longest);
+    double (*guard)(double *d, double t, double *y);
+    void (*keep)(double *d, double *desk, double t, double *yp);
+    void (*state_at)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp);
 } calls_t;
 
-static int start(const calls_t *call, void *solver, void *yy, void *yyp, double *d, double t, double *y, double *yp,
-                 double *scale, double rtol, double end)
+typedef struct {
+    const calls_t *call;
+    int64_t *handles;
+    void *solver, *yy, *yyp;
+    double *d, *desk, *y, *yp;
+    double low, low_time, step_end, stop_time;
+    int rest, stop;
+} search_t;
+
+static void state_at(search_t *s, double t)
 {
-    double first = call->start(d, t, y, yp, scale, rtol, end - t);
-    int flag = IDAReInit(solver, t, yy, yyp);
-    flag |= IDASetInitStep(solver, first);
-    flag |= IDASetStopTime(solver, end);
+    s->call->state_at(s->d, s->handles, s->desk, t, s->y, s->yp);
+}
+
+static double look(const search_t *s, double t)
+{
+    return s->call->guard(s->d, t, s->y);
+}
+
+static double rounding(const search_t *s)
+{
+    double step = 0.0;
+    IDAGetCurrentStep(s->solver, &step);
+    return 100.0 * 0x1p-52 * (fabs(s->step_end) + fabs(step));
+}
+
+static double find(search_t *s, double high)
+{
+    const double tolerance = rounding(s);
+    double a = s->low_time, b = s->step_end, low = s->low, weight = 1.0;
+    int side = 0, before = -1;
+    while (fabs(b - a) > tolerance) {
+        if (side == before)
+            weight *= side == 2 ? 2.0 : 0.5;
+        else
+            weight = 1.0;
+        double middle = b - (b - a) * high / (high - weight * low);
+        double inward = tolerance / fabs(b - a);
+        inward = inward < 0.2 ? 0.1 : 0.5 * inward;
+        if (fabs(middle - a) < 0.5 * tolerance)
+            middle = a + inward * (b - a);
+        if (fabs(b - middle) < 0.5 * tolerance)
+            middle = b - inward * (b - a);
+        state_at(s, middle);
+        double value = look(s, middle);
+        before = side;
+        if (value < 0.0) {
+            b = middle, high = value, side = 1;
+        } else {
+            a = middle, low = value, side = 2;
+        }
+    }
+    state_at(s, b);
+    return b;
+}
+
+static int at_stop(search_t *s, double *t)
+{
+    s->stop = 0;
+    *t = s->stop_time;
+    state_at(s, *t);
+    return TSTOP_RETURN;
+}
+
+static int next_time(search_t *s, double end, double *t)
+{
+    if (s->rest) {
+        s->low = look(s, *t), s->low_time = *t;
+        if (fabs(s->step_end - *t) <= rounding(s))
+            s->rest = 0;
+    }
+    const int rest = s->rest;
+    if (rest) {
+        *t = s->step_end;
+        state_at(s, *t);
+    } else if (s->stop) {
+        return at_stop(s, t);
+    } else {
+        int flag = IDASolve(s->solver, end, t, s->yy, s->yyp, ONE_STEP);
+        if (flag < 0)
+            return flag;
+        s->call->keep(s->d, s->desk, *t, s->yp);
+        if (flag == TSTOP_RETURN) {
+            s->stop = 1, s->stop_time = *t;
+            IDAGetCurrentTime(s->solver, t);
+            state_at(s, *t);
+        }
+    }
+    const double high = look(s, *t);
+    if (s->low > 0.0 && high < 0.0) {
+        s->step_end = *t;
+        s->rest = 1;
+        *t = find(s, high);
+        return ROOT_RETURN;
+    }
+    s->low = high, s->low_time = *t;
+    s->rest = 0;
+    return s->stop && !rest ? at_stop(s, t) : 0;
+}
+
+static int start(search_t *s, double t, double *scale, double rtol, double end)
+{
+    double first = s->call->start(s->d, s->desk, t, s->y, s->yp, scale, rtol, end - t);
+    int flag = IDAReInit(s->solver, t, s->yy, s->yyp);
+    flag |= IDASetInitStep(s->solver, first);
+    flag |= IDASetStopTime(s->solver, end);
+    s->low = look(s, t), s->low_time = t;
+    s->rest = s->stop = 0;
     return flag;
 }
 
-static void count(void *solver, int64_t *counts)
+static int64_t steps(void *solver)
 {
     long number = 0;
     IDAGetNumSteps(solver, &number);
-    counts[0] += number;
-    IDAGetNumResEvals(solver, &number);
-    counts[1] += number;
+    return number;
 }
 
-/* Run to the end; 0 if all went well. counts: steps, residual evaluations. */
-int gearidae_loop(const calls_t *call, void *solver, void *yy, void *yyp, void *dkyy, double *d, double *y, double *yp,
-                  double *dky, double *scale, double rtol, double end, int64_t total, int64_t columns, double *rows,
-                  double *events, int64_t room, int64_t *counts)
+/* Run to the end; 0 if all went well, and the steps taken. */
+int gearidae_loop(const calls_t *call, int64_t *handles, void *solver, void *yy, void *yyp, double *d, double *desk,
+                  double *y, double *yp, double *dky, double *spare, double *scale, double rtol, double end,
+                  int64_t total, int64_t columns, double *rows, double *events, int64_t room, int64_t *taken)
 {
+    search_t s = {call, handles, solver, yy, yyp, d, desk, y, yp};
     const double spacing = end / (double)(total - 1);
     double t = 0.0;
     int64_t next = 1, happened = 0;
-    int falling = -1;
-    int flag = IDARootInit(solver, 1, call->guard);
-    flag |= IDASetRootDirection(solver, &falling);
-    flag |= IDASetNoInactiveRootWarn(solver);
-    flag |= start(call, solver, yy, yyp, d, t, y, yp, scale, rtol, end);
+    int flag = start(&s, t, scale, rtol, end);
     while (flag == 0) {
-        flag = IDASolve(solver, end, &t, yy, yyp, ONE_STEP);
+        flag = next_time(&s, end, &t);
         if (flag < 0)
             return flag;
         while (next < total) {
             double sample = next < total - 1 ? (double)next * spacing : end;
             if (sample > t)
                 break;
-            IDAGetDky(solver, sample, 0, dkyy);
-            call->observe(d, sample, dky, rows + next * columns);
+            call->observe(d, handles, desk, sample, dky, spare, rows + next * columns);
             next++;
         }
         call->accept(d, t, y, yp, flag);
@@ -80,13 +175,13 @@ int gearidae_loop(const calls_t *call, void *solver, void *yy, void *yyp, void *
             int32_t action = call->handle(d, t, y, events, &happened);
             flag = 0;
             if (action == RESTART) {
-                count(solver, counts);
-                flag = start(call, solver, yy, yyp, d, t, y, yp, scale, rtol, end);
+                *taken += steps(solver);
+                flag = start(&s, t, scale, rtol, end);
             } else if (action != CONTINUE) {
                 return 1;
             }
         } else if (flag == TSTOP_RETURN) {
-            count(solver, counts);
+            *taken += steps(solver);
             return 0;
         }
     }

@@ -25,7 +25,7 @@ from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine.mesh import first_pair, history_slot, last_pair, pair_gap
 from gearidae.engine.nodes import influence, stiffness_matrix
-from gearidae.engine.residual import jacobian
+from gearidae.engine.residual import held, jacobian
 
 __all__ = [
     "assemble",
@@ -89,7 +89,6 @@ def assemble(d: Floats, t: float, cj: float, y: Floats, store: Floats) -> None:
             store[_FIRST + _BETA + at.V] = -d[at.GEAR_SHARE]
             store[_FIRST + _GAMMA + at.U] = 1.0
         return
-    held = d[at.DRY] != 0.0 and d[at.SLIP] == 0.0
     for coast in range(2):
         sign = 1.0 - 2.0 * coast
         if d[at.HALF_BACKLASH] - sign * y[at.U] >= d[at.CUTOFF]:
@@ -101,7 +100,7 @@ def assemble(d: Floats, t: float, cj: float, y: Floats, store: Floats) -> None:
             slot = history_slot(d, coast, pair)
             start = _assemble_pair(d, slot, store)
             store[start + _BETA + at.V] = sign * d[at.PINION_SHARE]
-            if not held:
+            if not held(d):
                 store[start + _BETA + at.W] = -sign * d[at.GEAR_SHARE] * (1.0 + slope)
             store[start + _GAMMA + at.U] = -sign
             store[start + _GAMMA + at.PHASE] = sign * slope / d[at.PHASE_RATE]

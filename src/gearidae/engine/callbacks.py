@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled_callback
 from gearidae.engine import layout as at
 from gearidae.engine import pointers as ptr
-from gearidae.engine import small
 from gearidae.engine import sundials as sun
 from gearidae.engine.blocks import assemble, factorise, solve_blocks
-from gearidae.engine.newton import STORE, iterate, keep_set_up
+from gearidae.engine.newton import iterate
 from gearidae.engine.residual import jacobian, residual
 
 __all__ = ["Callbacks", "callbacks"]
@@ -38,11 +37,11 @@ class Callbacks:
     Attributes
     ----------
     model : ndarray of int64, shape (3,)
-        Residual, Jacobian, error weights.
-    steps : ndarray of int64, shape (2,)
-        The linear solver's set-up and solution.
-    newton : ndarray of int64, shape (4,) or (0,)
-        What a nonlinear solver answers, see `gearidae.engine.newton`; none where SUNDIALS iterates by itself.
+        Residual, Jacobian (0 if nobody asks for it), error weights.
+    steps : ndarray of int64, shape (2,) or (0,)
+        Set-up and solution of a linear solver of ours; none where SUNDIALS has to solve, or nothing is left to.
+    newton : ndarray of int64, shape (3,) or (0,)
+        What a nonlinear solver of ours answers, see `gearidae.engine.newton`; none where SUNDIALS iterates.
     """
 
     model: Ints
@@ -64,24 +63,12 @@ _JACOBIAN = types.int32(
 )
 
 
-@compiled_callback(types.int32(types.float64, types.intp, types.intp, types.intp, _REALS))
-def _residual(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
-    d = carray(data, (ptr.MANY,))
-    residual(
-        d,
-        t,
-        ptr.numbers(yy),
-        ptr.numbers(yp),
-        ptr.numbers(rr),
-    )
-    return 0
+_RESIDUAL = types.int32(types.float64, types.intp, types.intp, types.intp, _REALS)
 
 
-@compiled_callback(_JACOBIAN)
-def _jacobian(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-    d = carray(data, (ptr.MANY,))
-    jacobian(d, t, cj, ptr.numbers(yy), carray(sun.SUNDenseMatrix_Data(matrix), (16,)))
-    return 0
+@compiled_callback(_RESIDUAL)
+def _unasked(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
+    return -1  # IDA wants a residual, but whether it vanishes is asked by Newton's iteration alone
 
 
 @compiled_callback(_INT(_PTR, _PTR, _REALS))
@@ -91,6 +78,31 @@ def _weights(yy, weights, data):  # type: ignore[no-untyped-def]
     for i in range(int(d[at.STATES])):
         out[i] = d[first + i]
     return 0
+
+
+@cache
+def _residual() -> Any:
+    """Make the residual."""
+
+    @compiled_callback(_RESIDUAL)
+    def evaluate(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
+        residual(carray(data, (ptr.MANY,)), t, ptr.numbers(yy), ptr.numbers(yp), ptr.numbers(rr))
+        return 0
+
+    return evaluate
+
+
+@cache
+def _dense() -> Any:
+    """Make the Jacobian of a motion."""
+
+    @compiled_callback(_JACOBIAN)
+    def dense(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
+        d = carray(data, (ptr.MANY,))
+        jacobian(d, t, cj, ptr.numbers(yy), carray(sun.SUNDenseMatrix_Data(matrix), (16,)))
+        return 0
+
+    return dense
 
 
 @cache
@@ -117,23 +129,6 @@ def _bodies() -> tuple[Any, ...]:
 
 
 @cache
-def _few_steps(n: int) -> tuple[Any, ...]:
-    """Make the set-up and solution of n linear equations."""
-
-    @compiled_callback(_INT(_PTR, _PTR))
-    def set_up(linear, matrix):  # type: ignore[no-untyped-def]
-        return small.factorise(n, carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,)))
-
-    @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL))
-    def solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
-        store = carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,))
-        small.solve(n, store, ptr.numbers(b), ptr.numbers(x))
-        return 0
-
-    return set_up, solve
-
-
-@cache
 def _newton(n: int, content: int) -> tuple[Any, ...]:
     """Make the functions of a nonlinear solver for n unknowns, its content at this place of its record."""
 
@@ -144,15 +139,13 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
     @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL, _INT, _PTR))
     def solve(newton, start, correction, weights, tolerance, renew, solver):  # type: ignore[no-untyped-def]
         t, predicted, rates, yy, yp, rr, cj, data = ptr.system(solver)
-        desk_at = ptr.words(newton)[content]
-        desk = ptr.words(desk_at)
         return iterate(
             n,
-            desk,
-            ptr.reals(desk_at),
-            ptr.reals(desk[STORE]),
+            ptr.reals(ptr.words(newton)[content]),
             ptr.reals(data),
             t,
+            ptr.step(solver),
+            ptr.order(solver),
             cj,
             ptr.numbers(predicted),
             ptr.numbers(rates),
@@ -162,24 +155,17 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
             ptr.numbers(rr),
             ptr.numbers(weights),
             tolerance,
-            renew != 0,
-            solver,
         )
 
     @compiled_callback(_INT(_PTR, _PTR))
     def note_equations(newton, function):  # type: ignore[no-untyped-def]
         return 0  # they are known
 
-    @compiled_callback(_INT(_PTR, _PTR))
-    def note_set_up(newton, function):  # type: ignore[no-untyped-def]
-        keep_set_up(newton, content, function)
-        return 0
-
-    return kind, solve, note_equations, note_set_up
+    return kind, solve, note_equations
 
 
 @cache
-def callbacks(n: int, elastic: bool) -> Callbacks:
+def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Callbacks:
     """Return the functions for n states; they are made on first use, and once.
 
     Parameters
@@ -188,10 +174,19 @@ def callbacks(n: int, elastic: bool) -> Callbacks:
         States, those of the nodes included.
     elastic : bool
         Whether the contact is elastic, and the equations solved by blocks.
+    as_ida : bool, optional
+        Whether IDA iterates and solves by itself, where it can.
     """
-    slopes, *steps = _bodies() if elastic else (_jacobian, *_few_steps(n))
-    model = (_residual, slopes, _weights)
-    newton = () if elastic else _newton(n, int(sun.newton_places()[0]))
+    steps: tuple[Any, ...] = ()
+    newton: tuple[Any, ...] = ()
+    if elastic:
+        slopes, set_up, solve = _bodies()
+        model, steps = (_residual(), slopes, _weights), (set_up, solve)
+    elif as_ida:
+        model = (_residual(), _dense(), _weights)
+    else:
+        newton = _newton(n, int(sun.newton_places()[0]))
+        model = (_unasked, None, _weights)
     return Callbacks(
-        *(np.array([f.address for f in part], dtype=np.int64) for part in (model, steps, newton))
+        *(np.array([f.address if f else 0 for f in part], np.int64) for part in (model, steps, newton))
     )

@@ -115,7 +115,8 @@ WAS_LOAD_RATE: Final = 94
 WAS_RADIUS: Final = 95  # power of the changing radius
 WAS_RADIUS_RATE: Final = 96
 LEDGER_END: Final = 97
-LEDGER_SPAN: Final = 97  # time over which steps may be gathered
+LEDGER_SPAN: Final = 97  # time over which steps may be gathered, and how many
+LEDGER_STRIDE: Final = 98
 CONSTANTS: Final = 100
 
 # -- the history of a tooth pair, in the slot `pair mod SLOTS` of its flank ------------------------------------------

@@ -60,9 +60,6 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-STRIDE = 8
-"""Accepted steps near contact that are integrated over at once, unless an event comes between or they are long."""
-
 
 @compiled
 def kinetic_energy(d: Floats, y: Floats) -> float:
@@ -264,12 +261,12 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
     y, yp : ndarray
         State there and its rate.
     now : bool
-        Whether it cannot wait until `STRIDE` steps have gathered.
+        Whether it cannot wait until as many steps as may be have gathered.
     """
     d[at.LEDGER_STEPS] += 1.0
     h = t - d[at.LEDGER_TIME]
     flight = d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
-    if h == 0.0 or not (now or flight or d[at.LEDGER_STEPS] >= STRIDE or h > d[at.LEDGER_SPAN]):
+    if h == 0.0 or not (now or flight or d[at.LEDGER_STEPS] >= d[at.LEDGER_STRIDE] or h > d[at.LEDGER_SPAN]):
         return
     d[at.LEDGER_STEPS] = 0.0
     d[at.LEDGER_TIME] = t

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.engine import adams
 from gearidae.engine import layout as at
 from gearidae.engine import sundials as sun
 from gearidae.engine.callbacks import callbacks
 from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, handle, pass_knot
 from gearidae.engine.ledger import enter, follow
-from gearidae.engine.newton import DESK, EVALUATIONS, FAILURES
 from gearidae.engine.observe import observe
 from gearidae.engine.opened import DKY, HANDLES, SOLVER, YP, Y, close, open_solver
 from gearidae.engine.problem import Problem
@@ -37,7 +37,7 @@ from gearidae.engine.search import CALLS, INTERPOLATE, SEARCH, next_time, start_
 from gearidae.engine.settle import fold_gap
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
-__all__ = ["callbacks", "run"]
+__all__ = ["run", "state_for_sample"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -67,28 +67,33 @@ CHATTER, BEYOND = CODES
 
 
 @compiled(makes_arrays=True)
-def _count(solver: int, desk: Ints, search: Floats, progress: Ints) -> None:
+def _count(solver: int, desk: Floats, search: Floats, progress: Ints) -> None:
     """Add IDA's counters, which start from zero at each re-initialisation, the desk's and the search's."""
     cell = np.zeros(1, np.int64)
     sun.IDAGetNumSteps(solver, cell.ctypes.data)
     progress[STEPS] += cell[0]
-    sun.IDAGetNumResEvals(solver, cell.ctypes.data)
-    progress[RESIDUALS] += cell[0] + desk[EVALUATIONS]
-    sun.IDAGetNumJacEvals(solver, cell.ctypes.data)
-    progress[JACOBIANS] += cell[0]
+    evaluations = int(desk[adams.EVALUATIONS])  # of residual and Jacobian at once
+    progress[RESIDUALS] += evaluations
+    progress[JACOBIANS] += evaluations
+    if desk[adams.OWN] == 0.0:
+        sun.IDAGetNumResEvals(solver, cell.ctypes.data)
+        progress[RESIDUALS] += cell[0]
+        sun.IDAGetNumJacEvals(solver, cell.ctypes.data)
+        progress[JACOBIANS] += cell[0]
     sun.IDAGetNumErrTestFails(solver, cell.ctypes.data)
     progress[ERROR_FAILURES] += cell[0]
     sun.IDAGetNumNonlinSolvConvFails(solver, cell.ctypes.data)
-    progress[CONVERGENCE_FAILURES] += cell[0] + desk[FAILURES]
+    progress[CONVERGENCE_FAILURES] += cell[0] + int(desk[adams.FAILURES])
     progress[GUARD_CALLS] += int(search[CALLS])
     search[CALLS] = 0.0
-    desk[EVALUATIONS] = desk[FAILURES] = 0
+    desk[adams.EVALUATIONS] = desk[adams.FAILURES] = 0.0
 
 
 @compiled
 def _start(
     solver: int,
     handles: Ints,
+    desk: Floats,
     d: Floats,
     t: float,
     y: Floats,
@@ -104,19 +109,31 @@ def _start(
     flag = sun.IDAReInit(solver, t, handles[Y], handles[YP])
     flag |= sun.IDASetInitStep(solver, first_step(d, t, y, yp, scale, rtol, stop - t))
     flag |= sun.IDASetStopTime(solver, stop)
+    if desk[adams.OWN] != 0.0:
+        adams.begin(desk, t, y, yp)
     start_search(d, t, y, search)
     return flag
 
 
 @compiled
+def state_for_sample(handles: Ints, desk: Floats, t: float, dky: Floats, spare: Floats) -> None:
+    """State at a time within the last step, beside that at its end."""
+    if desk[adams.USED] > 0.0:
+        adams.between(desk, t, dky, spare)
+    else:
+        sun.IDAGetDky(handles[SOLVER], t, 0, handles[DKY])
+
+
+@compiled
 def advance(
     handles: Ints,
-    desk: Ints,
+    desk: Floats,
     search: Floats,
     d: Floats,
     y: Floats,
     yp: Floats,
     dky: Floats,
+    spare: Floats,
     clock: Floats,
     scale: Floats,
     rtol: float,
@@ -136,6 +153,8 @@ def advance(
         From `open_solver`.
     desk, d, y, yp, dky : ndarray
         The arrays given to `open_solver`.
+    spare : ndarray, shape (n,)
+        Work space.
     search : ndarray, shape (SEARCH,)
         See `gearidae.engine.search`.
     clock : ndarray, shape (1,)
@@ -164,11 +183,11 @@ def advance(
     room = events.shape[0] - EVENTS_AT_ONCE
     flag = progress[PENDING] - 1
     if progress[PENDING] < 0:  # a fresh start
-        progress[ERROR] = _start(solver, handles, d, clock[0], y, yp, scale, rtol, stop, search)
+        progress[ERROR] = _start(solver, handles, desk, d, clock[0], y, yp, scale, rtol, stop, search)
         progress[PENDING] = 0
     while progress[ERROR] == 0 and progress[DONE] == 0 and budget > 0 and progress[EVENTS] < room:
         if progress[PENDING] == 0:
-            flag = next_time(solver, handles[Y], handles[YP], d, y, clock, end, search)
+            flag = next_time(solver, handles[Y : YP + 1], desk, d, y, yp, clock, end, search)
             budget -= 1
             progress[SINCE] += 1
             if flag < 0:
@@ -177,7 +196,7 @@ def advance(
         t = clock[0]
         sample = sample_time(progress[NEXT_SAMPLE], total, end)
         while sample <= t and progress[ROWS] < rows.shape[0]:
-            sun.IDAGetDky(solver, sample, 0, handles[DKY])
+            state_for_sample(handles, desk, sample, dky, spare)
             observe(d, sample, dky, rows[progress[ROWS]])
             progress[ROWS] += 1
             progress[NEXT_SAMPLE] += 1
@@ -216,7 +235,7 @@ def advance(
                 progress[SINCE] = 0
                 progress[PENDING] = -1
                 break
-            progress[ERROR] = _start(solver, handles, d, t, y, yp, scale, rtol, stop, search)
+            progress[ERROR] = _start(solver, handles, desk, d, t, y, yp, scale, rtol, stop, search)
     if progress[DONE] != 0 or progress[ERROR] != 0:
         _count(solver, desk, search, progress)
     return float(clock[0])
@@ -228,7 +247,7 @@ def run(
     total: int,
     tally: Tally,
     resume: Floats | None = None,
-    interpolate: bool = False,
+    as_ida: bool = False,
 ) -> Iterator[Block]:
     """Run a problem, block by block.
 
@@ -244,20 +263,20 @@ def run(
         Filled in; complete once the last block is out.
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem, tolerance and sampling, to go on from.
-    interpolate : bool
-        Whether the state at a step's end is IDA's interpolant rather than what its corrector has left: slower, and
-        equal to the portable driver to the last bit.
+    as_ida : bool
+        Whether formulas, iteration and the state at a step's end are IDA's own: slower, less accurate, and equal to the
+        portable driver to the last bit.
 
     Yields
     ------
     Block
     """
     d, y, clock = problem.data, problem.start.copy(), np.zeros(1)
-    yp, dky = np.zeros_like(y), np.zeros_like(y)
+    yp, dky, spare = np.zeros_like(y), np.zeros_like(y), np.zeros_like(y)
     rows, events = np.empty((BLOCK_ROWS, len(problem.columns))), np.empty((BLOCK_EVENTS, 5))
     handles, progress = np.zeros(HANDLES, np.int64), np.zeros(PROGRESS, np.int64)
-    desk, search = np.zeros(DESK, np.int64), np.zeros(SEARCH)
-    search[INTERPOLATE] = interpolate
+    desk, search = np.zeros(adams.DESK), np.zeros(SEARCH)
+    search[INTERPOLATE] = as_ida
     progress[PENDING] = -1
     if resume is not None:
         clock[0] = problem.restore(resume, y, progress)
@@ -268,7 +287,7 @@ def run(
     try:
         problem.set_tolerance(rtol)
         elastic = d[at.NODES] > 0.0
-        calls = callbacks(y.size, bool(elastic))
+        calls = callbacks(y.size, bool(elastic), as_ida)
         flag = open_solver(
             handles,
             calls.model,
@@ -295,6 +314,7 @@ def run(
                 y,
                 yp,
                 dky,
+                spare,
                 clock,
                 problem.tolerance_scale,
                 rtol,

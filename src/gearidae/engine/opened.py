@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import carray  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.engine import adams
 from gearidae.engine import layout as at
 from gearidae.engine import pointers as ptr
 from gearidae.engine import sundials as sun
 from gearidae.engine.blocks import store_size
-from gearidae.engine.newton import STORE, make_solver
+from gearidae.engine.newton import make_solver
 from gearidae.engine.run import CONVERGENCE_FAILURES_HIGH
 
 __all__ = ["DKY", "HANDLES", "SOLVER", "YP", "Y", "close", "open_solver"]
@@ -31,7 +31,7 @@ def open_solver(
     newton: Ints,
     where: Ints,
     newton_where: Ints,
-    desk: Ints,
+    desk: Floats,
     d: Floats,
     y: Floats,
     yp: Floats,
@@ -47,8 +47,8 @@ def open_solver(
         See `gearidae.engine.callbacks.Callbacks`.
     where, newton_where : ndarray of int64
         From `gearidae.engine.sundials.places` and `newton_places`.
-    desk : ndarray of int64, shape (DESK,)
-        See `gearidae.engine.newton`; must outlive the solver.
+    desk : ndarray, shape (DESK,)
+        See `gearidae.engine.adams`; must outlive the solver.
     d, y, yp, dky : ndarray
         User data, state, rates and work space: must outlive the solver.
     """
@@ -62,28 +62,40 @@ def open_solver(
     handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
     handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
     sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
-    # the matrix is a column to keep numbers in, so the dense solver is made for another and its steps replaced
-    handles[MATRIX] = sun.SUNDenseMatrix(1, 1, context)
-    single = sun.N_VMake_Serial(1, y.ctypes.data, context)
-    handles[LINEAR] = sun.SUNLinSol_Dense(single, handles[MATRIX], context)
-    sun.N_VDestroy(single)
-    sun.SUNMatDestroy(handles[MATRIX])
-    handles[MATRIX] = sun.SUNDenseMatrix(store_size(d) if d[at.NODES] > 0.0 else n * (n + 1), 1, context)
-    ptr.replace(handles[LINEAR], where, steps)
     solver = sun.IDACreate(context)
     handles[SOLVER] = solver
     flag |= sun.IDAInit(solver, model[0], d[at.LAST_TIME], handles[Y], handles[YP])
     flag |= sun.IDAWFtolerances(solver, model[2])
     flag |= sun.IDASetUserData(solver, d.ctypes.data)
-    flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
-    flag |= sun.IDASetJacFn(solver, model[1])
     if newton.size > 0:
-        desk[STORE] = carray(sun.SUNDenseMatrix_Data(handles[MATRIX]), (1,)).ctypes.data
+        desk[adams.OWN] = 1.0
         handles[NEWTON] = make_solver(context, desk, newton_where, newton)
         flag |= sun.IDASetNonlinearSolver(solver, handles[NEWTON])
+    else:
+        _make_linear_solver(handles, steps, where, d, y)
+        flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
+        flag |= sun.IDASetJacFn(solver, model[1])
     flag |= sun.IDASetMaxNumSteps(solver, -1)
     flag |= sun.IDASetMaxConvFails(solver, CONVERGENCE_FAILURES_HIGH)
     return flag
+
+
+@compiled
+def _make_linear_solver(handles: Ints, steps: Ints, where: Ints, d: Floats, y: Floats) -> None:
+    """Make SUNDIALS' dense solver, or one with set-up and solution of our own."""
+    context = handles[CONTEXT]
+    if steps.size == 0:
+        handles[MATRIX] = sun.SUNDenseMatrix(y.size, y.size, context)
+        handles[LINEAR] = sun.SUNLinSol_Dense(handles[Y], handles[MATRIX], context)
+        return
+    # the matrix is a column to keep numbers in, so the dense solver is made for another and its steps replaced
+    single = sun.N_VMake_Serial(1, y.ctypes.data, context)
+    other = sun.SUNDenseMatrix(1, 1, context)
+    handles[LINEAR] = sun.SUNLinSol_Dense(single, other, context)
+    sun.SUNMatDestroy(other)
+    sun.N_VDestroy(single)
+    handles[MATRIX] = sun.SUNDenseMatrix(store_size(d), 1, context)
+    ptr.replace(handles[LINEAR], where, steps)
 
 
 @compiled(makes_arrays=True)

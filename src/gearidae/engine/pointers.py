@@ -13,7 +13,19 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 
-__all__ = ["MANY", "SYSTEM", "numbers", "reals", "replace", "set_up", "system", "words"]
+__all__ = [
+    "MANY",
+    "ORDER",
+    "STEP",
+    "SYSTEM",
+    "numbers",
+    "order",
+    "reals",
+    "replace",
+    "step",
+    "system",
+    "words",
+]
 
 MANY: Final = 1 << 40  # a view of memory wants a length; nobody looks at it
 
@@ -50,23 +62,36 @@ def _system(typing: Any, solver: Any) -> Any:
     return types.Tuple(kinds)(solver), ask  # type: ignore[no-untyped-call]
 
 
-def _set_up(typing: Any, function: Any, bad: Any, current: Any, solver: Any) -> Any:
-    """Type of a call to a linear solver's set-up by its address, and its code."""
+ORDER: Final = "IDAGetCurrentOrder"
+STEP: Final = "IDAGetCurrentStep"
 
-    def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        number, word = ir.IntType(32), ir.IntType(64)
-        pointer = builder.inttoptr(values[0], ir.FunctionType(number, [number, word, word]).as_pointer())
-        return builder.call(pointer, [builder.trunc(values[1], number), *values[2:]])
 
-    return types.int32(types.int64, types.int64, types.int64, types.int64), call
+def _answer(name: str, kind: Any, cell_type: ir.Type) -> Any:
+    """Make what types and compiles a question to IDA that it answers with one number."""
+
+    def ask(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        word = ir.IntType(64)
+        cell = cgutils.alloca_once(builder, cell_type)  # type: ignore[no-untyped-call]
+        function = cgutils.get_or_insert_function(  # type: ignore[no-untyped-call]
+            builder.module, ir.FunctionType(ir.IntType(32), [word, word]), name
+        )
+        builder.call(function, [values[0], builder.ptrtoint(cell, word)])
+        return builder.load(cell)
+
+    def typed(typing: Any, solver: Any) -> Any:
+        return kind(solver), ask
+
+    return typed
 
 
 _integers_at: Any = intrinsic(_to_integers)
 _reals_at: Any = intrinsic(_to_reals)
 system: Any = intrinsic(_system)
 """Time, vectors (predicted state and rates, state, rates, residual), leading coefficient and user data of a solver."""
-set_up: Any = intrinsic(_set_up)
-"""Call a linear solver's set-up by its address, with whether the Jacobian is bad, where to say it is new, and IDA."""
+order: Any = intrinsic(_answer(ORDER, types.int32, ir.IntType(32)))
+"""Order that IDA tries, or has chosen for the next step."""
+step: Any = intrinsic(_answer(STEP, types.float64, ir.DoubleType()))
+"""Length of the step that IDA tries, or has chosen for the next."""
 
 
 @compiled(makes_arrays=True)

@@ -1,8 +1,8 @@
 """The portable driver: the same residual, Jacobian and guard through scikit-sundae's public API.
 
-Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. Steps, histories
-and events are those of the native driver; between steps it interpolates for itself, because the API has no dense
-output.
+Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. The formulas are
+IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.adams`); histories and events are
+dealt with as in the native driver. Between steps it interpolates for itself, because the API has no dense output.
 """
 
 from __future__ import annotations
@@ -58,6 +58,7 @@ def run(
     """Run a problem, block by block; see `gearidae.engine.native.run`."""
     d, y, t = problem.data, problem.start.copy(), 0.0
     yp = np.zeros_like(y)
+    problem.set_tolerance(rtol)
     counters = np.zeros(COUNTERS, np.int64)
     output = _Output(problem, total)
     if resume is not None:

@@ -30,7 +30,7 @@ from gearidae.engine.mesh import (
 from gearidae.engine.nodes import node_force, node_residual, unload
 from gearidae.engine.torque import torque_force
 
-__all__ = ["jacobian", "mesh_forces", "residual", "resisting_force", "roller_force"]
+__all__ = ["held", "jacobian", "mesh_forces", "motion", "residual", "resisting_force", "roller_force"]
 
 Floats = NDArray[np.float64]
 
@@ -106,7 +106,47 @@ def resisting_force(d: Floats, t: float, w: float) -> float:
     return force
 
 
+@compiled
+def held(d: Floats) -> bool:
+    """Whether dry resistance holds the gear at rest."""
+    return bool(d[at.DRY] != 0.0 and d[at.SLIP] == 0.0)
+
+
 @compiled(inline=True)
+def motion(d: Floats, t: float, y: Floats, yp: Floats, out: Floats) -> tuple[float, float, float, float]:
+    """F(t, y, y') of the motion, in the first places of `out`, and the slopes of its forces.
+
+    Returns
+    -------
+    force_u, force_phase, relief_u, relief_phase : float
+        As `mesh_forces` has them; of a roller, the slope in its height and zeros.
+    """
+    v = y[at.V]
+    out[at.U] = yp[at.U] - v
+    if d[at.KIND] == at.ROLLER:
+        force, slope = roller_force(d, t, y)
+        out[at.V] = yp[at.V] - d[at.GEAR_SHARE] * force
+        return slope, 0.0, 0.0, 0.0
+    u, phase, w = y[at.U], y[at.PHASE], y[at.W]
+    force, relief, force_u, force_phase, relief_u, relief_phase = mesh_forces(d, t, y)
+    force += d[at.DAMPING] * v
+    drive = torque_force(d, int(d[at.DRIVE_AT]), t)
+    if d[at.ERROR_ORDERS] == 0.0:
+        pinion = d[at.PINION_SHARE] * (drive - force)
+    else:
+        _, _, e1, e2 = static_error(d, u, phase)
+        turn = (v + w) / (1.0 - e1)
+        pinion = (1.0 - e1) * d[at.PINION_SHARE] * (drive - (1.0 - e1) * force) - e2 * turn * turn
+    if held(d):
+        out[at.W] = yp[at.W]
+    else:
+        out[at.W] = yp[at.W] - d[at.GEAR_SHARE] * (force + relief - resisting_force(d, t, w))
+    out[at.V] = yp[at.V] + yp[at.W] - pinion
+    out[at.PHASE] = yp[at.PHASE] - d[at.PHASE_RATE] * w
+    return force_u, force_phase, relief_u, relief_phase
+
+
+@compiled
 def residual(d: Floats, t: float, y: Floats, yp: Floats, out: Floats) -> None:
     """F(t, y, y') in scaled states.
 
@@ -119,30 +159,7 @@ def residual(d: Floats, t: float, y: Floats, yp: Floats, out: Floats) -> None:
     y, yp, out : ndarray, shape (4,) or (2,), and the nodes
         State, its rate, and where the residual goes.
     """
-    v = y[at.V]
-    out[at.U] = yp[at.U] - v
-    if d[at.KIND] == at.ROLLER:
-        force, _ = roller_force(d, t, y)
-        out[at.V] = yp[at.V] - d[at.GEAR_SHARE] * force
-        if d[at.NODES] > 0.0:
-            node_residual(d, y, out)
-        return
-    u, phase, w = y[at.U], y[at.PHASE], y[at.W]
-    force, relief, _, _, _, _ = mesh_forces(d, t, y)
-    force += d[at.DAMPING] * v
-    drive = torque_force(d, int(d[at.DRIVE_AT]), t)
-    if d[at.ERROR_ORDERS] == 0.0:
-        pinion = d[at.PINION_SHARE] * (drive - force)
-    else:
-        _, _, e1, e2 = static_error(d, u, phase)
-        turn = (v + w) / (1.0 - e1)
-        pinion = (1.0 - e1) * d[at.PINION_SHARE] * (drive - (1.0 - e1) * force) - e2 * turn * turn
-    if d[at.DRY] != 0.0 and d[at.SLIP] == 0.0:
-        out[at.W] = yp[at.W]
-    else:
-        out[at.W] = yp[at.W] - d[at.GEAR_SHARE] * (force + relief - resisting_force(d, t, w))
-    out[at.V] = yp[at.V] + yp[at.W] - pinion
-    out[at.PHASE] = yp[at.PHASE] - d[at.PHASE_RATE] * w
+    motion(d, t, y, yp, out)
     if d[at.NODES] > 0.0:
         node_residual(d, y, out)
 
@@ -171,13 +188,12 @@ def jacobian(d: Floats, t: float, cj: float, y: Floats, out: Floats) -> None:
     w = y[at.W]
     _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(d, t, y)
     a1, a2, damping = d[at.PINION_SHARE], d[at.GEAR_SHARE], d[at.DAMPING]
-    held = d[at.DRY] != 0.0 and d[at.SLIP] == 0.0
     out[:16] = 0.0
     out[0], out[1] = cj, a1 * force_u
     out[4], out[5] = -1.0, cj + a1 * damping
     out[9], out[10] = a1 * force_phase, cj
     out[13], out[14], out[15] = cj, -d[at.PHASE_RATE], cj
-    if not held:
+    if not held(d):
         out[3] = -a2 * (force_u + relief_u)
         out[7] = -a2 * damping
         out[11] = -a2 * (force_phase + relief_phase)

@@ -1,10 +1,11 @@
 """From one accepted time to the next: a step of IDA, and the first root of the guard in it.
 
 IDA finds roots by itself, and asks for the state twice and for the guard at both ends of each step to do so. Here the
-guard is looked at once, at the state that the step has left; only where it has fallen is the root searched, on IDA's
-interpolant, by the same rule (regula falsi after Illinois, Hiebert and Shampine, SAND80-0180) to the same tolerance.
-The state at a step's end is the one that Newton's iteration has left. IDA's own search looks at its interpolant there,
-which differs by rounding; with INTERPOLATE so does this one, and then all roots and states are IDA's to the last bit.
+guard is looked at once, at the state that the step has left; only where it has fallen is the root searched, between
+the ends of the step, by the same rule (regula falsi after Illinois, Hiebert and Shampine, SAND80-0180) to the same
+tolerance. The state between the ends is that of the formula that the step was made with. Where IDA iterates by itself
+and INTERPOLATE is set, the state is IDA's interpolant at a step's end, too, and roots and states are those that IDA
+finds by itself to the last bit.
 """
 
 from __future__ import annotations
@@ -15,12 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.engine import adams
 from gearidae.engine import sundials as sun
 from gearidae.engine.events import guard
 
-__all__ = ["CALLS", "INTERPOLATE", "SEARCH", "next_time", "start_search"]
+__all__ = ["CALLS", "INTERPOLATE", "SEARCH", "next_time", "start_search", "state_at"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 LOW: Final = 0  # the guard where the interval to look at begins
 LOW_TIME: Final = 1
@@ -30,7 +33,7 @@ STOP: Final = 4  # 1 while a stop waits for the roots before it
 STOP_TIME: Final = 5
 CALLS: Final = 6  # of the guard, so far
 STEP: Final = 7  # room for what IDA says of its step
-INTERPOLATE: Final = 8  # 1 to take the state at a step's end from the interpolant, too
+INTERPOLATE: Final = 8  # 1 to take the state at a step's end from IDA's interpolant
 SEARCH: Final = 9
 
 _ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
@@ -50,20 +53,49 @@ def start_search(d: Floats, t: float, y: Floats, search: Floats) -> None:
     search[REST] = search[STOP] = 0.0
 
 
+@compiled
+def state_at(solver: int, vectors: Ints, desk: Floats, t: float, y: Floats, yp: Floats) -> None:
+    """State and rates at a time within the last step.
+
+    Parameters
+    ----------
+    solver : int
+        Address of IDA.
+    vectors : ndarray of int64, shape (2,)
+        Addresses of the vectors over `y` and `yp`.
+    desk : ndarray, shape (DESK,)
+        See `gearidae.engine.adams`.
+    t : float
+        Time over tau.
+    y, yp : ndarray, shape (n,)
+        Changed.
+    """
+    if desk[adams.USED] > 0.0:
+        adams.between(desk, t, y, yp)
+    else:
+        sun.IDAGetSolution(solver, t, vectors[0], vectors[1])
+
+
 @compiled(inline=True)
 def next_time(
-    solver: int, state: int, rates: int, d: Floats, y: Floats, clock: Floats, end: float, search: Floats
+    solver: int,
+    vectors: Ints,
+    desk: Floats,
+    d: Floats,
+    y: Floats,
+    yp: Floats,
+    clock: Floats,
+    end: float,
+    search: Floats,
 ) -> int:
     """Go on to the end of the next step, a stop or a root, whichever comes first.
 
     Parameters
     ----------
-    solver, state, rates : int
-        Addresses of IDA and of the vectors over `y` and its rates.
+    solver, vectors, desk, y, yp
+        See `state_at`.
     d : ndarray
         The scene, see `layout`.
-    y : ndarray
-        State; changed.
     clock : ndarray, shape (1,)
         Time over tau; changed.
     end : float
@@ -83,38 +115,41 @@ def next_time(
     rest = search[REST] != 0.0
     if rest:
         clock[0] = search[STEP_END]
-        sun.IDAGetSolution(solver, clock[0], state, rates)
+        state_at(solver, vectors, desk, clock[0], y, yp)
     elif search[STOP] != 0.0:
-        return _stop(solver, state, rates, clock, search)
+        return _stop(solver, vectors, desk, y, yp, clock, search)
     else:
-        flag = sun.IDASolve(solver, end, clock.ctypes.data, state, rates, sun.IDA_ONE_STEP)
+        flag = sun.IDASolve(solver, end, clock.ctypes.data, vectors[0], vectors[1], sun.IDA_ONE_STEP)
         if flag < 0:
             return flag
+        adams.keep(desk, clock[0], yp)
         if search[INTERPOLATE] != 0.0:
-            sun.IDAGetSolution(solver, clock[0], state, rates)
+            sun.IDAGetSolution(solver, clock[0], vectors[0], vectors[1])
         if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
             search[STOP], search[STOP_TIME] = 1.0, clock[0]
             sun.IDAGetCurrentTime(solver, clock.ctypes.data)
-            sun.IDAGetSolution(solver, clock[0], state, rates)
+            state_at(solver, vectors, desk, clock[0], y, yp)
     high = _look(d, clock[0], y, search)
     if search[LOW] > 0.0 > high:
         search[STEP_END] = clock[0]
         search[REST] = 1.0
-        _find(solver, state, rates, d, y, clock, high, search)
+        _find(solver, vectors, desk, d, y, yp, clock, high, search)
         return sun.IDA_ROOT_RETURN
     search[LOW], search[LOW_TIME] = high, clock[0]
     search[REST] = 0.0
     if search[STOP] != 0.0 and not rest:
-        return _stop(solver, state, rates, clock, search)
+        return _stop(solver, vectors, desk, y, yp, clock, search)
     return 0
 
 
 @compiled
-def _stop(solver: int, state: int, rates: int, clock: Floats, search: Floats) -> int:
+def _stop(
+    solver: int, vectors: Ints, desk: Floats, y: Floats, yp: Floats, clock: Floats, search: Floats
+) -> int:
     """Return at a stop, now that all roots before it are through."""
     search[STOP] = 0.0
     clock[0] = search[STOP_TIME]
-    sun.IDAGetSolution(solver, clock[0], state, rates)
+    state_at(solver, vectors, desk, clock[0], y, yp)
     return sun.IDA_TSTOP_RETURN
 
 
@@ -127,7 +162,15 @@ def _rounding(solver: int, search: Floats) -> float:
 
 @compiled
 def _find(
-    solver: int, state: int, rates: int, d: Floats, y: Floats, clock: Floats, high: float, search: Floats
+    solver: int,
+    vectors: Ints,
+    desk: Floats,
+    d: Floats,
+    y: Floats,
+    yp: Floats,
+    clock: Floats,
+    high: float,
+    search: Floats,
 ) -> None:
     """Find when the guard has fallen, which is above zero at the interval's beginning and `high` at its end."""
     tolerance = _rounding(solver, search)
@@ -146,7 +189,7 @@ def _find(
             middle = a + inward * (b - a)
         if abs(b - middle) < 0.5 * tolerance:
             middle = b - inward * (b - a)
-        sun.IDAGetSolution(solver, middle, state, rates)
+        state_at(solver, vectors, desk, middle, y, yp)
         value = _look(d, middle, y, search)
         before = side
         if value < 0.0:
@@ -154,4 +197,4 @@ def _find(
         else:
             a, low, side = middle, value, 2
     clock[0] = b
-    sun.IDAGetSolution(solver, b, state, rates)
+    state_at(solver, vectors, desk, b, y, yp)

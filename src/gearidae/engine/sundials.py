@@ -18,7 +18,7 @@ from llvmlite import binding
 from numba import types
 from numpy.typing import NDArray
 
-from gearidae.engine.pointers import SYSTEM
+from gearidae.engine.pointers import ORDER, STEP, SYSTEM
 
 __all__ = ["newton_places", "places", "unavailable"]
 
@@ -44,7 +44,7 @@ def unavailable() -> str:
         binding.load_library_permanently(_cy_ida.__file__)
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
-    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM)
+    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, ORDER, STEP)
     if missing := [name for name in wanted if binding.address_of_symbol(name) is None]:
         return f"the SUNDIALS library lacks {', '.join(missing)}"
     try:
@@ -62,7 +62,6 @@ OF_NEWTON: Final = (
     "SUNNonlinSolGetType_Newton",
     "SUNNonlinSolSolve_Newton",
     "SUNNonlinSolSetSysFn_Newton",
-    "SUNNonlinSolSetLSetupFn_Newton",
 )
 """Operations of the Newton iteration, in whose place the driver puts its own."""
 
@@ -103,7 +102,7 @@ def newton_places() -> NDArray[np.int64]:
 
     Returns
     -------
-    ndarray of int64, shape (6,)
+    ndarray of int64, shape (5,)
         Places of the content and of the table in a nonlinear solver's record, those of `OF_NEWTON` in the table.
 
     Raises

@@ -1,0 +1,96 @@
+"""What the loop in C calls: the engine's own functions as C functions, which need the SUNDIALS library to be loaded."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import carray, types  # type: ignore[attr-defined]
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled, compiled_callback
+from gearidae.engine import adams, opened
+from gearidae.engine import layout as at
+from gearidae.engine.events import accept, guard, handle
+from gearidae.engine.ledger import enter, follow
+from gearidae.engine.native import state_for_sample
+from gearidae.engine.observe import observe
+from gearidae.engine.pointers import MANY
+from gearidae.engine.run import BLOCK_EVENTS
+from gearidae.engine.search import state_at
+from gearidae.engine.start import first_step, set_rates
+
+__all__ = ["addresses"]
+
+Floats = NDArray[np.float64]
+
+_REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+_WORDS: Any = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
+
+
+@compiled_callback(types.void(_REALS, types.float64, _REALS, _REALS, types.int32))
+def _accept(data, t, y, yp, flag):  # type: ignore[no-untyped-def]
+    d = carray(data, (MANY,))
+    accept(d, t, carray(y, (4,)))
+    follow(d, t, carray(y, (4,)), carray(yp, (4,)), flag != 0)
+
+
+@compiled_callback(types.int32(_REALS, types.float64, _REALS, _REALS, _WORDS))
+def _handle(data, t, y, events, count):  # type: ignore[no-untyped-def]
+    number = carray(count, (1,))
+    number[0], action = handle(
+        carray(data, (MANY,)), t, carray(y, (4,)), carray(events, (BLOCK_EVENTS, 5)), number[0]
+    )
+    return action
+
+
+@compiled
+def _count_states(d: Floats) -> int:
+    """Number of states."""
+    return 2 if d[at.KIND] == at.ROLLER else 4
+
+
+@compiled_callback(types.void(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS, _REALS))
+def _observe(data, handles, desk, t, y, yp, row):  # type: ignore[no-untyped-def]
+    d = carray(data, (MANY,))
+    n = _count_states(d)
+    state, rates = carray(y, (n,)), carray(yp, (n,))
+    state_for_sample(carray(handles, (opened.HANDLES,)), carray(desk, (adams.DESK,)), t, state, rates)
+    observe(d, t, state, carray(row, (9,)))
+
+
+@compiled_callback(
+    types.float64(_REALS, _REALS, types.float64, _REALS, _REALS, _REALS, types.float64, types.float64)
+)
+def _start(data, desk, t, y, yp, scale, rtol, longest):  # type: ignore[no-untyped-def]
+    d = carray(data, (MANY,))
+    n = _count_states(d)
+    states, rates = carray(y, (n,)), carray(yp, (n,))
+    set_rates(d, t, states, rates)
+    enter(d, t, states, rates)
+    adams.begin(carray(desk, (adams.DESK,)), t, states, rates)
+    return first_step(d, t, states, rates, carray(scale, (n,)), rtol, longest)
+
+
+@compiled_callback(types.float64(_REALS, types.float64, _REALS))
+def _guard(data, t, y):  # type: ignore[no-untyped-def]
+    return guard(carray(data, (MANY,)), t, carray(y, (4,)))
+
+
+@compiled_callback(types.void(_REALS, _REALS, types.float64, _REALS))
+def _keep(data, desk, t, yp):  # type: ignore[no-untyped-def]
+    adams.keep(carray(desk, (adams.DESK,)), t, carray(yp, (_count_states(carray(data, (MANY,))),)))
+
+
+@compiled_callback(types.void(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS))
+def _state_at(data, handles, desk, t, y, yp):  # type: ignore[no-untyped-def]
+    n = _count_states(carray(data, (MANY,)))
+    known = carray(handles, (opened.HANDLES,))
+    vectors = known[opened.Y : opened.YP + 1]
+    state_at(known[opened.SOLVER], vectors, carray(desk, (adams.DESK,)), t, carray(y, (n,)), carray(yp, (n,)))
+
+
+def addresses() -> NDArray[np.int64]:
+    """Addresses in the order that the loop has them in."""
+    functions = (_accept, _handle, _observe, _start, _guard, _keep, _state_at)
+    return np.array([f.address for f in functions], dtype=np.int64)
