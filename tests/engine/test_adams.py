@@ -96,15 +96,12 @@ def test_where_the_formulas_are_no_good_ida_has_its_own():
     adams.begin(desk, 1.0, np.ones(2), np.ones(2))
     desk[adams.FASTEST] = 4.0
     state, rates, weights = np.array([16.0, 0.1]), np.zeros(2), np.full(2, 1e9)
-    assert adams.reaches(2, desk, 0.5, state, rates, weights)
-    assert not adams.reaches(2, desk, 1.0, state, rates, weights)  # twice the vibration's time
-    assert not adams.reaches(2, desk, 0.5, state, rates, 1e5 * weights)  # a tolerance of three roundings
-    assert not adams.reaches(
-        2, desk, 0.5, np.array([16.0, 1e-8]), rates, weights
-    )  # a swing of ten tolerances
-    assert adams.reaches(
-        2, desk, 0.5, np.array([16.0, 1e-8]), np.array([0.0, 1e-7]), weights
-    )  # where it turns
+    assert adams.reaches(2, desk, 0.2, state, rates, weights)
+    assert not adams.reaches(2, desk, 0.3, state, rates, weights)  # a tenth of the vibration's period
+    assert not adams.reaches(2, desk, 0.2, state, rates, 1e5 * weights)  # a tolerance of three roundings
+    slow = np.array([16.0, 1e-8])  # ten tolerances: at rest, unless it is where the vibration turns
+    assert not adams.reaches(2, desk, 0.2, slow, rates, weights)
+    assert adams.reaches(2, desk, 0.2, slow, np.array([0.0, 1e-7]), weights)
 
 
 @pytest.mark.parametrize(("name", "gain"), [("low_sam", 3.0), ("high_bare", 5.0)])

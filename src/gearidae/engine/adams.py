@@ -44,6 +44,7 @@ __all__ = [
     "FAILURES",
     "FASTEST",
     "GAIN",
+    "LONGER",
     "NEW_RATES",
     "NEW_STATE",
     "NEW_STEP",
@@ -71,7 +72,8 @@ KNOWN: Final = 5  # rates known
 USED: Final = 6  # of them by the last formula; 0 if it was IDA's
 NOW: Final = 7  # the last accepted time
 NEW_STEP: Final = 8  # length of the step that is tried; 0 once it has been accepted
-NEW_STATE: Final = 9
+LONGER: Final = 9  # 1 where IDA has been told to let steps grow sooner
+NEW_STATE: Final = 10
 NEW_RATES: Final = NEW_STATE + WIDTH
 PREDICTED_RATES: Final = NEW_RATES + WIDTH
 STATE: Final = PREDICTED_RATES + WIDTH  # at the last accepted time
@@ -82,7 +84,7 @@ TABLE: Final = VALUE + HIGHEST + 1  # divided differences of the rates, a row fo
 DESK: Final = TABLE + WIDTH * (HIGHEST + 1)
 
 # Where Adams' formulas are used: below, above, below.
-LONGEST: Final = 2.0  # squared step times squared frequency
+LONGEST: Final = 0.25  # squared step times squared frequency
 QUIET: Final = 30.0  # speed of the vibration, or what its acceleration makes of it, over the tolerance
 COARSEST: Final = 0.1 / float(np.finfo(float).eps)  # a state over its tolerance
 

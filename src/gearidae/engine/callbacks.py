@@ -155,6 +155,7 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
             ptr.numbers(rr),
             ptr.numbers(weights),
             tolerance,
+            solver,
         )
 
     @compiled_callback(_INT(_PTR, _PTR))

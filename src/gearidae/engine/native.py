@@ -226,9 +226,10 @@ def advance(
             else:
                 progress[DONE] = 1
         checkpoint = progress[SINCE] >= CHECKPOINT_STEPS
-        if (restart or checkpoint) and progress[DONE] == 0 and progress[ERROR] == 0:
+        afresh = restart or checkpoint
+        if afresh and progress[DONE] == 0 and progress[ERROR] == 0:
             _count(solver, desk, search, progress)
-            follow(d, t, y, yp, True)
+            follow(d, t, y, yp, afresh)
             rebase(d, y)
             progress[RESTARTS] += 1
             if checkpoint:

@@ -45,9 +45,10 @@ def roller_force(d: Floats, t: float, y: Floats) -> tuple[float, float]:
         unload(d)
     if height >= d[at.CUTOFF]:
         return 0.0, 0.0
+    known = d[slot + at.PAIR] == 0.0
     if elastic:
-        return node_force(d, slot, d[slot + at.PAIR] == 0.0, t, y, height, speed, 1.0)
-    return pair_force(d, slot, True, t, height, speed, 0.0)
+        return node_force(d, slot, known, t, y, height, speed, 1.0)
+    return pair_force(d, slot, known, t, height, speed, 0.0)
 
 
 @compiled(inline=True)
