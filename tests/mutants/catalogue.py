@@ -222,6 +222,27 @@ MUTANTS = (
         ("properties/test_event_times.py",),
     ),
     Mutant(
+        "Adams' formulas that take the steps before the last for shorter than they were",
+        "engine/adams.py",
+        "desk[AGO + i] = desk[AGO + i - 1] + step",
+        "desk[AGO + i] = desk[AGO + i - 1] + 0.99 * step",
+        ("engine/test_adams.py",),
+    ),
+    Mutant(
+        "states between the steps by a formula of one order less",
+        "engine/adams.py",
+        "count = min(int(desk[USED]) + 1, int(desk[KNOWN]))",
+        "count = min(int(desk[USED]), int(desk[KNOWN]))",
+        ("engine/test_adams.py",),
+    ),
+    Mutant(
+        "Newton's correction that forgets what tip relief does to the gear",
+        "engine/correction.py",
+        "torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase",
+        "torque_u, torque_phase = force_u, force_phase",
+        ("engine/test_correction.py",),
+    ),
+    Mutant(
         "bodies that give way the wrong way",
         "engine/nodes.py",
         "own[i] -= kappa[m, k, i] * p",

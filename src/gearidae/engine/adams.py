@@ -145,6 +145,17 @@ def _polynomials(desk: Floats, h: float, count: int) -> tuple[float, float]:
 
 
 @compiled(inline=True)
+def _along(desk: Floats, j: int, count: int) -> tuple[float, float]:
+    """A state and its rate by the polynomial through the last rates, where `_polynomials` has been asked for."""
+    state, rate = desk[STATE + j], 0.0
+    for i in range(count):
+        difference = desk[TABLE + WIDTH * i + j]
+        state += difference * desk[AREA + i]
+        rate += difference * desk[VALUE + i]
+    return state, rate
+
+
+@compiled(inline=True)
 def reaches(n: int, desk: Floats, h: float, predicted: Floats, rates: Floats, weights: Floats) -> bool:
     """Whether Adams' formulas are good for a step: neither too long, nor held to rounding, nor at rest."""
     if desk[FASTEST] > 0.0:
@@ -182,11 +193,7 @@ def rates_at_end(n: int, desk: Floats, h: float, order: int, predicted: Floats) 
     value, area = _polynomials(desk, h, count)
     cj = value / area
     for j in range(n):
-        state, rate = desk[STATE + j], 0.0
-        for i in range(count):
-            difference = desk[TABLE + WIDTH * i + j]
-            state += difference * desk[AREA + i]
-            rate += difference * desk[VALUE + i]
+        state, rate = _along(desk, j, count)
         desk[PREDICTED_RATES + j] = rate + cj * (predicted[j] - state)
     return float(cj)
 
@@ -197,9 +204,4 @@ def between(desk: Floats, t: float, y: Floats, yp: Floats) -> None:
     count = min(int(desk[USED]) + 1, int(desk[KNOWN]))
     _polynomials(desk, t - desk[NOW], count)
     for j in range(y.size):
-        state, rate = desk[STATE + j], 0.0
-        for i in range(count):
-            difference = desk[TABLE + WIDTH * i + j]
-            state += difference * desk[AREA + i]
-            rate += difference * desk[VALUE + i]
-        y[j], yp[j] = state, rate
+        y[j], yp[j] = _along(desk, j, count)
