@@ -25,8 +25,8 @@ def test_random_scenes_end_soundly():
     assert [o for o in outcomes if not o.sound] == []
     assert {o.status for o in outcomes} <= NAMED
     assert sum(o.status in ("finished", "budget") for o in outcomes) >= 25
-    # half of all scenes stay within a hundred tolerances up to their third impact
-    assert quantiles(outcomes)[0.5] < 100.0
+    # half of all scenes stay within a few tolerances up to their third impact: 0.3 of two thousand
+    assert quantiles(outcomes)[0.5] < 5.0
 
 
 @pytest.mark.parametrize("number", [115, 257])
