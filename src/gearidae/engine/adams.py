@@ -86,7 +86,7 @@ DESK: Final = TABLE + WIDTH * (HIGHEST + 1)
 # Where Adams' formulas are used: below, above, below.
 LONGEST: Final = 0.25  # squared step times squared frequency
 QUIET: Final = 30.0  # speed of the vibration, or what its acceleration makes of it, over the tolerance
-COARSEST: Final = 0.1 / float(np.finfo(float).eps)  # a state over its tolerance
+COARSEST: Final = 0.2 / float(np.finfo(float).eps)  # a state over its tolerance
 
 _points, _weights = np.polynomial.legendre.leggauss(3)  # exact for the polynomials of degree five
 _X0, _X1, _X2 = (0.5 + 0.5 * float(x) for x in _points)

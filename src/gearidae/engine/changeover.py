@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from gearidae.engine import layout as at
 from gearidae.engine.ledger import carry_ledger
@@ -110,6 +109,9 @@ def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
 
 def _along(source: Floats, d: Floats, profile: int, values: Floats) -> Floats:
     """Carry values from places along the old contact to those along the new one, flat beyond the last."""
+    # takes a sixth of a second to import, and few runs need it
+    from scipy.interpolate import PchipInterpolator
+
     span = slice(profile, profile + values.size)
     here, there = np.sqrt(source[span]), np.sqrt(d[span])
     return np.asarray(PchipInterpolator(here, values)(np.minimum(there, here[-1])))
