@@ -47,11 +47,11 @@ The error of a run is some tens of tolerances in the middle and some hundreds wi
 tolerance: the default of 1e-6 is good to 1e-4 of the fluctuation in most of these runs. Each decade of the tolerance
 takes a decade off the error.
 
-Two kinds of run need more, and do not bear a tolerance of 1e-3. Gears that have been braked to a stop go on bouncing between each other's teeth with next
-to nothing to damp them, and every bounce multiplies the error of the one before. Bare silicon at low speed falls into
-its adhesive well and rings there, a hundred thousand times in these 20 ms; the phase of that ringing is lost first.
-Such a run says how large the ringing is, not where it stands at a given time: ask for 1e-9 if that matters, and
-compare two tolerances.
+Two kinds of run need more, and do not bear a tolerance of 1e-3. Gears that have been braked to a stop go on bouncing
+between each other's teeth with next to nothing to damp them, and every bounce multiplies the error of the one before.
+Bare silicon at low speed falls into its adhesive well and rings there, a hundred thousand times in these 20 ms; the
+phase of that ringing is lost first. Such a run says how large the ringing is, not where it stands at a given time: ask
+for 1e-9 if that matters, and compare two tolerances.
 """
 
 
