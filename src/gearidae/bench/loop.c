@@ -18,7 +18,7 @@ extern int IDAGetNumSteps(void *, long *);
 enum { ONE_STEP = 2, TSTOP_RETURN = 1, ROOT_RETURN = 2 };
 enum { CONTINUE = 0, RESTART = 1 };
 
-/* Order of the addresses in gearidae.bench.c_loop. */
+/* Order of gearidae.bench.c_calls.addresses. */
 typedef struct {
     void (*accept)(double *d, double t, double *y, double *yp, int32_t flag);
     int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);

@@ -261,7 +261,7 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
     y, yp : ndarray
         State there and its rate.
     now : bool
-        Whether it cannot wait until as many steps as may be have gathered.
+        Whether it cannot wait until enough steps have gathered, see `layout.LEDGER_STRIDE`.
     """
     d[at.LEDGER_STEPS] += 1.0
     h = t - d[at.LEDGER_TIME]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine import adams
+from gearidae.engine import pointers as ptr
 from gearidae.engine import sundials as sun
 from gearidae.engine.events import guard
 
@@ -32,9 +33,8 @@ REST: Final = 3  # 1 after a root: the rest of its step has not been looked at
 STOP: Final = 4  # 1 while a stop waits for the roots before it
 STOP_TIME: Final = 5
 CALLS: Final = 6  # of the guard, so far
-STEP: Final = 7  # room for what IDA says of its step
-INTERPOLATE: Final = 8  # 1 to take the state at a step's end from IDA's interpolant
-SEARCH: Final = 9
+INTERPOLATE: Final = 7  # 1 to take the state at a step's end from IDA's interpolant
+SEARCH: Final = 8
 
 _ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
 
@@ -156,8 +156,7 @@ def _stop(
 @compiled
 def _rounding(solver: int, search: Floats) -> float:
     """What times of this step may differ by."""
-    sun.IDAGetCurrentStep(solver, search[STEP:].ctypes.data)
-    return _ROUNDING * (abs(search[STEP_END]) + abs(search[STEP]))
+    return _ROUNDING * (abs(search[STEP_END]) + abs(ptr.step(solver)))
 
 
 @compiled
