@@ -55,7 +55,7 @@ def test_a_resumed_run_is_the_same_run(monkeypatch):
 
 
 def test_a_native_run_resumes_exactly():
-    scene = FAST.replace({"coating.sam_fraction": 0.3, "run.duration": 2.5e-3, "run.samples": 2001})
+    scene = FAST.replace({"coating.sam_fraction": 0.3, "run.duration": 4e-3, "run.samples": 2001})
     tally = Tally()
     rows, events, blocks = collect(run_blocks(make_problem(scene), 1e-6, 2001, "native", tally))
     (stop, *_) = [i for i, b in enumerate(blocks) if b.checkpoint is not None]

@@ -231,9 +231,23 @@ MUTANTS = (
     Mutant(
         "states between the steps by a formula of one order less",
         "engine/adams.py",
-        "count = min(int(desk[USED]) + 1, int(desk[KNOWN]))",
-        "count = min(int(desk[USED]), int(desk[KNOWN]))",
+        "count = int(desk[USED]) + 1",
+        "count = int(desk[USED])",
         ("engine/test_adams.py",),
+    ),
+    Mutant(
+        "steps chosen by the order above the one they are taken with",
+        "engine/pace.py",
+        "return float(twice ** (1.0 / (back + 1.0)))",
+        "return float(twice ** (1.0 / (back + 2.0)))",
+        ("engine/test_pace.py",),
+    ),
+    Mutant(
+        "a small vibration followed by formulas that swing it up",
+        "engine/pace.py",
+        "return min(int(desk[adams.BACK]), CALM)",
+        "return min(int(desk[adams.BACK]), 7)",
+        ("engine/test_adams.py", "engine/test_pace.py"),
     ),
     Mutant(
         "Newton's correction that forgets what tip relief does to the gear",

@@ -12,13 +12,13 @@ from gearidae.compiled import compiled, compiled_callback
 from gearidae.engine import adams, opened
 from gearidae.engine import layout as at
 from gearidae.engine.events import accept, guard, handle
-from gearidae.engine.ledger import enter, follow
-from gearidae.engine.native import state_for_sample
+from gearidae.engine.ledger import follow
+from gearidae.engine.native import restart, state_for_sample
 from gearidae.engine.observe import observe
+from gearidae.engine.pace import change_wanted
 from gearidae.engine.pointers import MANY
 from gearidae.engine.run import BLOCK_EVENTS
 from gearidae.engine.search import state_at
-from gearidae.engine.start import first_step, set_rates
 
 __all__ = ["addresses"]
 
@@ -28,11 +28,19 @@ _REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _WORDS: Any = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
 
 
-@compiled_callback(types.void(_REALS, types.float64, _REALS, _REALS, types.int32))
-def _accept(data, t, y, yp, flag):  # type: ignore[no-untyped-def]
+@compiled
+def _count_states(d: Floats) -> int:
+    """Number of states."""
+    return 2 if d[at.KIND] == at.ROLLER else 4
+
+
+@compiled_callback(types.int32(_REALS, _REALS, types.float64, _REALS, _REALS, types.int32))
+def _accept(data, desk, t, y, yp, flag):  # type: ignore[no-untyped-def]
     d = carray(data, (MANY,))
+    n = _count_states(d)
     accept(d, t, carray(y, (4,)))
     follow(d, t, carray(y, (4,)), carray(yp, (4,)), flag != 0)
+    return change_wanted(carray(desk, (adams.DESK,)), d, carray(y, (n,)), carray(yp, (n,)))
 
 
 @compiled_callback(types.int32(_REALS, types.float64, _REALS, _REALS, _WORDS))
@@ -42,12 +50,6 @@ def _handle(data, t, y, events, count):  # type: ignore[no-untyped-def]
         carray(data, (MANY,)), t, carray(y, (4,)), carray(events, (BLOCK_EVENTS, 5)), number[0]
     )
     return action
-
-
-@compiled
-def _count_states(d: Floats) -> int:
-    """Number of states."""
-    return 2 if d[at.KIND] == at.ROLLER else 4
 
 
 @compiled_callback(types.void(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS, _REALS))
@@ -60,16 +62,14 @@ def _observe(data, handles, desk, t, y, yp, row):  # type: ignore[no-untyped-def
 
 
 @compiled_callback(
-    types.float64(_REALS, _REALS, types.float64, _REALS, _REALS, _REALS, types.float64, types.float64)
+    types.int32(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS, _REALS, types.float64, types.float64)
 )
-def _start(data, desk, t, y, yp, scale, rtol, longest):  # type: ignore[no-untyped-def]
+def _restart(data, handles, desk, t, y, yp, scale, rtol, stop):  # type: ignore[no-untyped-def]
     d = carray(data, (MANY,))
     n = _count_states(d)
-    states, rates = carray(y, (n,)), carray(yp, (n,))
-    set_rates(d, t, states, rates)
-    enter(d, t, states, rates)
-    adams.begin(carray(desk, (adams.DESK,)), t, states, rates)
-    return first_step(d, t, states, rates, carray(scale, (n,)), rtol, longest)
+    known = carray(handles, (opened.HANDLES,))
+    states, rates, scales = carray(y, (n,)), carray(yp, (n,)), carray(scale, (n,))
+    return restart(known, carray(desk, (adams.DESK,)), d, t, states, rates, scales, rtol, stop)
 
 
 @compiled_callback(types.float64(_REALS, types.float64, _REALS))
@@ -92,5 +92,5 @@ def _state_at(data, handles, desk, t, y, yp):  # type: ignore[no-untyped-def]
 
 def addresses() -> NDArray[np.int64]:
     """Addresses in the order that the loop has them in."""
-    functions = (_accept, _handle, _observe, _start, _guard, _keep, _state_at)
+    functions = (_accept, _handle, _observe, _restart, _guard, _keep, _state_at)
     return np.array([f.address for f in functions], dtype=np.int64)

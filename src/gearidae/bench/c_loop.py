@@ -92,6 +92,7 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     events, steps = np.empty((BLOCK_EVENTS, 5)), np.zeros(1, np.int64)
     handles = np.zeros(opened.HANDLES, np.int64)
     desk = np.zeros(adams.DESK)
+    desk[adams.WANTED] = 1.0
     calls = addresses()
     where = places(), newton_places()
     observe(d, 0.0, y, rows[0])

@@ -8,9 +8,6 @@
 #include <stdint.h>
 
 extern int IDASolve(void *, double, double *, void *, void *, int);
-extern int IDAReInit(void *, double, void *, void *);
-extern int IDASetInitStep(void *, double);
-extern int IDASetStopTime(void *, double);
 extern int IDAGetCurrentTime(void *, double *);
 extern int IDAGetCurrentStep(void *, double *);
 extern int IDAGetNumSteps(void *, long *);
@@ -20,10 +17,11 @@ enum { CONTINUE = 0, RESTART = 1 };
 
 /* Order of gearidae.bench.c_calls.addresses. */
 typedef struct {
-    void (*accept)(double *d, double t, double *y, double *yp, int32_t flag);
+    int32_t (*accept)(double *d, double *desk, double t, double *y, double *yp, int32_t flag);
     int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);
     void (*observe)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *row);
-    double (*start)(double *d, double *desk, double t, double *y, double *yp, double *scale, double rtol, double longest);
+    int32_t (*restart)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *scale, double rtol,
+                       double stop);
     double (*guard)(double *d, double t, double *y);
     void (*keep)(double *d, double *desk, double t, double *yp);
     void (*state_at)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp);
@@ -131,10 +129,7 @@ static int next_time(search_t *s, double end, double *t)
 
 static int start(search_t *s, double t, double *scale, double rtol, double end)
 {
-    double first = s->call->start(s->d, s->desk, t, s->y, s->yp, scale, rtol, end - t);
-    int flag = IDAReInit(s->solver, t, s->yy, s->yyp);
-    flag |= IDASetInitStep(s->solver, first);
-    flag |= IDASetStopTime(s->solver, end);
+    int flag = s->call->restart(s->d, s->handles, s->desk, t, s->y, s->yp, scale, rtol, end);
     s->low = look(s, t), s->low_time = t;
     s->rest = s->stop = 0;
     return flag;
@@ -168,21 +163,22 @@ int gearidae_loop(const calls_t *call, int64_t *handles, void *solver, void *yy,
             call->observe(d, handles, desk, sample, dky, spare, rows + next * columns);
             next++;
         }
-        call->accept(d, t, y, yp, flag);
+        int afresh = call->accept(d, desk, t, y, yp, flag);
         if (flag == ROOT_RETURN) {
             if (happened >= room)
                 happened = 0;
             int32_t action = call->handle(d, t, y, events, &happened);
-            flag = 0;
-            if (action == RESTART) {
-                *taken += steps(solver);
-                flag = start(&s, t, scale, rtol, end);
-            } else if (action != CONTINUE) {
+            if (action != RESTART && action != CONTINUE)
                 return 1;
-            }
+            afresh |= action == RESTART;
+            flag = 0;
         } else if (flag == TSTOP_RETURN) {
             *taken += steps(solver);
             return 0;
+        }
+        if (afresh) {
+            *taken += steps(solver);
+            flag = start(&s, t, scale, rtol, end);
         }
     }
     return flag;

@@ -145,7 +145,6 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
             ptr.reals(data),
             t,
             ptr.step(solver),
-            ptr.order(solver),
             cj,
             ptr.numbers(predicted),
             ptr.numbers(rates),
@@ -155,7 +154,6 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
             ptr.numbers(rr),
             ptr.numbers(weights),
             tolerance,
-            solver,
         )
 
     @compiled_callback(_INT(_PTR, _PTR))

@@ -6,6 +6,7 @@ output is full, a budget of steps is used up, or the run is over, and can be cal
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -20,6 +21,7 @@ from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, han
 from gearidae.engine.ledger import enter, follow
 from gearidae.engine.observe import observe
 from gearidae.engine.opened import DKY, HANDLES, SOLVER, YP, Y, close, open_solver
+from gearidae.engine.pace import change_wanted, tell
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import (
     BLOCK_EVENTS,
@@ -37,7 +39,7 @@ from gearidae.engine.search import CALLS, INTERPOLATE, SEARCH, next_time, start_
 from gearidae.engine.settle import fold_gap
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
-__all__ = ["run", "state_for_sample"]
+__all__ = ["restart", "run", "state_for_sample"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -62,6 +64,8 @@ Ints = NDArray[np.int64]
     PROGRESS,
 ) = range(16)
 COUNTERS = PROGRESS
+LEDGER_ORDER = 4  # that of the ledger's quadrature
+FLIGHT_PARTS = 8.0  # of a step in flight, for each step that would be gathered near contact
 # progress[ERROR]: what events, histories and folds may end a run with; negative numbers are IDA's own
 CHATTER, BEYOND = CODES
 
@@ -90,8 +94,7 @@ def _count(solver: int, desk: Floats, search: Floats, progress: Ints) -> None:
 
 
 @compiled
-def _start(
-    solver: int,
+def restart(
     handles: Ints,
     desk: Floats,
     d: Floats,
@@ -101,9 +104,9 @@ def _start(
     scale: Floats,
     rtol: float,
     stop: float,
-    search: Floats,
 ) -> int:
-    """Set consistent rates and the first step, and (re-)initialise IDA at t."""
+    """Set consistent rates and the first step, and (re-)initialise IDA at t; its flag is returned."""
+    solver = handles[SOLVER]
     set_rates(d, t, y, yp)
     enter(d, t, y, yp)
     flag = sun.IDAReInit(solver, t, handles[Y], handles[YP])
@@ -111,7 +114,7 @@ def _start(
     flag |= sun.IDASetStopTime(solver, stop)
     if desk[adams.OWN] != 0.0:
         adams.begin(desk, t, y, yp)
-    start_search(d, t, y, search)
+        flag |= tell(solver, desk)
     return flag
 
 
@@ -122,6 +125,28 @@ def state_for_sample(handles: Ints, desk: Floats, t: float, dky: Floats, spare: 
         adams.between(desk, t, dky, spare)
     else:
         sun.IDAGetDky(handles[SOLVER], t, 0, handles[DKY])
+
+
+@compiled(inline=True)
+def _book(
+    desk: Floats, d: Floats, t: float, y: Floats, yp: Floats, dky: Floats, spare: Floats, now: bool
+) -> None:
+    """Keep the ledger up to an accepted time: in parts of a step that is too long for its quadrature.
+
+    Formulas that look back far take steps for which it is too coarse: in flight, where torques and drag are all that
+    is left to integrate, and at tolerances that leave no step to gather.
+    """
+    parts, start = 1, d[at.LEDGER_TIME]
+    if desk[adams.USED] > LEDGER_ORDER and d[at.KIND] == at.GEARS:
+        flight = d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
+        parts = math.ceil((FLIGHT_PARTS if flight else 1.0) / d[at.LEDGER_STRIDE])
+        start = max(start, desk[adams.NOW] - desk[adams.LAST_STEP])
+    for part in range(1, parts + 1):
+        time, state, rates = t, y, yp
+        if part < parts:
+            time, state, rates = start + (t - start) * part / parts, dky, spare
+            adams.between(desk, time, dky, spare)
+        follow(d, time, state, rates, now or part < parts)
 
 
 @compiled
@@ -183,7 +208,9 @@ def advance(
     room = events.shape[0] - EVENTS_AT_ONCE
     flag = progress[PENDING] - 1
     if progress[PENDING] < 0:  # a fresh start
-        progress[ERROR] = _start(solver, handles, desk, d, clock[0], y, yp, scale, rtol, stop, search)
+        desk[adams.WANTED] = desk[adams.OWN]
+        progress[ERROR] = restart(handles, desk, d, clock[0], y, yp, scale, rtol, stop)
+        start_search(d, clock[0], y, search)
         progress[PENDING] = 0
     while progress[ERROR] == 0 and progress[DONE] == 0 and budget > 0 and progress[EVENTS] < room:
         if progress[PENDING] == 0:
@@ -206,15 +233,16 @@ def advance(
             break
         progress[PENDING] = 0
         accept(d, t, y)
-        follow(d, t, y, yp, flag != 0 or d[at.PASSED] != 0.0)
+        _book(desk, d, t, y, yp, dky, spare, flag != 0 or d[at.PASSED] != 0.0)
         if d[at.PASSED] != 0.0:
             progress[ERROR] = BEYOND
         if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:
             progress[FLIGHT] += 1
-        restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
+        afresh = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
+        afresh |= change_wanted(desk, d, y, yp)
         if flag == sun.IDA_ROOT_RETURN:
             progress[EVENTS], action = handle(d, t, y, events, progress[EVENTS])
-            restart |= action == RESTART
+            afresh |= action == RESTART
             if action == CROWDED:
                 progress[ERROR] = CHATTER
         elif flag == sun.IDA_TSTOP_RETURN:
@@ -222,11 +250,11 @@ def advance(
                 progress[EVENTS] = pass_knot(d, t, events, progress[EVENTS])
                 knot += 1
                 stop = knots[knot] if knot < knots.size else end
-                restart = True
+                afresh = True
             else:
                 progress[DONE] = 1
         checkpoint = progress[SINCE] >= CHECKPOINT_STEPS
-        afresh = restart or checkpoint
+        afresh |= checkpoint
         if afresh and progress[DONE] == 0 and progress[ERROR] == 0:
             _count(solver, desk, search, progress)
             follow(d, t, y, yp, afresh)
@@ -236,7 +264,8 @@ def advance(
                 progress[SINCE] = 0
                 progress[PENDING] = -1
                 break
-            progress[ERROR] = _start(solver, handles, desk, d, t, y, yp, scale, rtol, stop, search)
+            progress[ERROR] = restart(handles, desk, d, t, y, yp, scale, rtol, stop)
+            start_search(d, t, y, search)
     if progress[DONE] != 0 or progress[ERROR] != 0:
         _count(solver, desk, search, progress)
     return float(clock[0])

@@ -20,9 +20,11 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine import adams
+from gearidae.engine import layout as at
 from gearidae.engine import pointers as ptr
 from gearidae.engine import sundials as sun
 from gearidae.engine.correction import correct
+from gearidae.engine.pace import furthest_back, set_pace
 
 __all__ = ["iterate", "make_solver"]
 
@@ -32,13 +34,9 @@ Ints = NDArray[np.int64]
 MOST: Final = 4  # corrections
 SLOWEST: Final = 0.9  # a correction this large, over the last, is called divergence
 NOTHING: Final = 1e-9  # a correction this small, over the tolerance, needs no second
-SHARE: Final = 0.03  # of what IDA would leave
+SHARE: Final = 0.1  # of what IDA would leave
 GROWTH: Final = 1.1  # of the estimate of what is left, per step
 LEAST: Final = 1e-4  # of that estimate
-GROW_IDA: Final = 2.0  # what a step could grow by when IDA lets it
-# The same with Adams' formulas: a tenth fewer steps. Below some 1.2 steps are hardly ever equal for long enough to
-# raise the order.
-GROW_OWN: Final = 1.5
 FAILED: Final = 902  # what SUNDIALS answers with shorter steps
 
 
@@ -71,7 +69,6 @@ def iterate(
     d: Floats,
     t: float,
     step: float,
-    order: int,
     cj: float,
     predicted: Floats,
     rates: Floats,
@@ -81,7 +78,6 @@ def iterate(
     delta: Floats,
     weights: Floats,
     tolerance: float,
-    solver: int,
 ) -> int:
     """Correct a prediction until what is left is far below the tolerance.
 
@@ -95,31 +91,30 @@ def iterate(
         The scene, see `layout`.
     t, step : float
         End and length of the step, over tau. The length is no difference of times, which rounding would spoil.
-    order : int
-        IDA's.
     cj, predicted, rates : float, ndarray of shape (n,)
         IDA's leading coefficient, the state to start from and IDA's rates for it.
     correction, y, yp : ndarray, shape (n,)
         The sum of all corrections, zero at first, and state and rates with it.
-    delta, weights : ndarray, shape (n,)
-        Work space, and the weights of the norm.
+    delta : ndarray, shape (n,)
+        Work space.
+    weights : ndarray, shape (n,)
+        Of the norm; set to those by which IDA is to judge the step, see `gearidae.engine.pace`.
     tolerance : float
-    solver : int
-        Address of IDA.
 
     Returns
     -------
     int
         0, or what SUNDIALS has to be told.
     """
-    own = adams.reaches(n, desk, step, predicted, rates, weights)
-    if own != (desk[adams.LONGER] != 0.0):
-        desk[adams.LONGER] = own
-        sun.IDASetEtaFixedStepBounds(solver, 1.0, GROW_OWN if own else GROW_IDA)
-    if own:
-        cj = adams.rates_at_end(n, desk, step, order, predicted)
+    by_adams = desk[adams.ADAMS] != 0.0
+    if by_adams:
+        first = int(d[at.WEIGHTS_AT])
+        for j in range(n):  # an attempt that has failed has left others
+            weights[j] = d[first + j]
+        cj = adams.rates_at_end(n, desk, step, furthest_back(desk, step), predicted, correction)
     else:
         desk[adams.USED] = 0.0
+        desk[adams.SINCE] += 1.0
         for j in range(n):
             desk[adams.PREDICTED_RATES + j] = rates[j]
     desk[adams.NEW_STEP] = step
@@ -145,6 +140,8 @@ def iterate(
             for j in range(n):
                 desk[adams.NEW_STATE + j] = predicted[j] + correction[j]
                 desk[adams.NEW_RATES + j] = cj * correction[j] + desk[adams.PREDICTED_RATES + j]
+            if by_adams:
+                set_pace(n, desk, step, correction, weights)
             return 0
         last = norm
     desk[adams.FAILURES] += 1.0

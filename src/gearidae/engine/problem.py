@@ -45,7 +45,7 @@ Layout: TypeAlias = tuple[float, int | None]
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
-STRIDE = 8  # accepted steps near contact that the ledger integrates over at once, if nothing happens between
+STRIDE = 3  # accepted steps near contact that the ledger integrates over at once, if nothing happens between
 STRIDE_RTOL = 1e-6  # relative tolerance below which it gathers fewer
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
@@ -96,11 +96,11 @@ class Problem:
         """Let every state's error count in absolute tolerances, `rtol` times its scale.
 
         The ledger gathers fewer steps at tight ones: the error of its quadrature goes with the fourth power of a step,
-        and a step with the sixth root of the tolerance.
+        and a step with no more than the eighth root of the tolerance.
         """
         first = int(self.data[at.WEIGHTS_AT])
         self.data[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
-        self.data[at.LEDGER_STRIDE] = STRIDE * min(1.0, rtol / STRIDE_RTOL) ** (1.0 / 12.0)
+        self.data[at.LEDGER_STRIDE] = STRIDE * min(1.0, rtol / STRIDE_RTOL) ** (1.0 / 8.0)
 
     def ledger(self, time: float, state: Floats, rates: Floats) -> Ledger:
         """The energy ledger at an accepted time.
