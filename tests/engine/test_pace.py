@@ -9,6 +9,8 @@ from numpy.polynomial import Polynomial
 from gearidae.engine import adams, pace
 from gearidae.engine import layout as at
 
+SCENE = np.zeros(at.CONSTANTS)  # nothing that excites, no pair near
+
 
 def growth(back, turned):
     """Largest factor by which a formula on equal steps multiplies an undamped vibration, or an error, in one step."""
@@ -60,10 +62,10 @@ def desk_after(h, back, rates, known=9, n=2):
     return desk
 
 
-def eta(desk, h, tolerance, correction=0.7):
+def eta(desk, h, tolerance, correction=0.7, scene=None):
     """What IDA makes of the weights at order one: its estimate, and by how much the next step is to be longer."""
     weights = np.full(2, 1.0 / tolerance)
-    pace.set_pace(2, desk, h, np.full(2, correction), weights)
+    pace.set_pace(2, desk, SCENE if scene is None else scene, h, np.full(2, correction), weights)
     estimate = correction * weights[0] * h / (2.0 * h)
     return estimate, (2.0 * estimate + 1e-4) ** -0.5
 
@@ -81,7 +83,7 @@ def test_steps_grow_as_the_formulas_error_allows(back, correction):
     adams.set_differences(desk, h)
     # the order above does better: its error is what counts
     error = pace.CAUTION * spread(desk, h, back + 1)
-    for longer in (0.97, 0.8, 1.7, 3.0):
+    for longer in (0.97, 0.8, 1.6, 1.9):
         tolerance = error * 2.0 * longer ** (back + 1.0)
         if pace.CAUTION * spread(desk, h, back) > tolerance:
             continue
@@ -118,14 +120,35 @@ def test_the_order_goes_where_the_error_is_least():
 
 def test_steps_stop_growing_where_the_formulas_would_not_be_stable():
     h = 0.1
-    for turned, longest in ((0.5, math.sqrt(pace.LONGEST / 0.5)), (1e-3, 1e3)):
+    for turned, longest in ((0.5, math.sqrt(pace.LONGEST / 0.5)), (1e-3, pace.GROW_MOST)):
         desk = desk_after(h, 4, np.ones(12))
         desk[adams.FASTEST] = turned / h**2
         _, factor = eta(desk, h, 1.0)
-        assert factor == pytest.approx(
-            min(longest, 100.0), rel=1e-3
-        )  # 100: what IDA makes of no error at all
-        assert desk[adams.HELD] == (longest < 2.0)
+        assert factor == pytest.approx(longest, rel=1e-3)
+
+
+def test_steps_held_back_too_much_are_counted():
+    h = 0.1
+    for turned, held in ((1.2 * pace.LONGEST, 1.0), (0.4 * pace.LONGEST, 0.0)):
+        desk = desk_after(h, 4, np.ones(12))
+        desk[adams.FASTEST] = turned / h**2
+        eta(desk, h, 1.0)
+        assert desk[adams.HELD] == held
+
+
+def test_no_step_is_longer_than_its_excitation_allows():
+    """A sixth of a period, also where nothing of it is seen in the differences."""
+    h, scene = 0.1, SCENE.copy()
+    scene[at.TORQUE_WAVE] = 6.0
+    assert eta(desk_after(h, 4, np.ones(12)), h, 1.0, scene=scene)[1] == pytest.approx(1 / 0.6, rel=1e-3)
+    scene[at.TORQUE_WAVE] = 12.0
+    assert eta(desk_after(h, 4, np.ones(12)), h, 1.0, scene=scene)[1] == pytest.approx(1 / 1.2, rel=1e-3)
+    scene[[at.TORQUE_WAVE, at.MESH_WAVE, at.PHASE_RATE]] = 0.0, 2 * math.pi, 0.5
+    gears = desk_after(h, 4, np.ones(12), n=4)
+    gears[adams.NEW_STATE + at.W] = -2.0
+    assert pace._excitation(gears, scene) == 0.0  # in flight
+    scene[at.NEAR + 1] = 1.0
+    assert pace._excitation(gears, scene) == pytest.approx(2 * math.pi)
 
 
 def test_how_far_back_depends_on_the_step_and_the_swing():

@@ -12,8 +12,7 @@ from gearidae.compiled import compiled, compiled_callback
 from gearidae.engine import adams, opened
 from gearidae.engine import layout as at
 from gearidae.engine.events import accept, guard, handle
-from gearidae.engine.ledger import follow
-from gearidae.engine.native import restart, state_for_sample
+from gearidae.engine.native import book, restart, state_for_sample
 from gearidae.engine.observe import observe
 from gearidae.engine.pace import change_wanted
 from gearidae.engine.pointers import MANY
@@ -34,13 +33,14 @@ def _count_states(d: Floats) -> int:
     return 2 if d[at.KIND] == at.ROLLER else 4
 
 
-@compiled_callback(types.int32(_REALS, _REALS, types.float64, _REALS, _REALS, types.int32))
-def _accept(data, desk, t, y, yp, flag):  # type: ignore[no-untyped-def]
-    d = carray(data, (MANY,))
+@compiled_callback(types.int32(_REALS, _REALS, types.float64, _REALS, _REALS, _REALS, _REALS, types.int32))
+def _accept(data, desk, t, y, yp, dky, spare, flag):  # type: ignore[no-untyped-def]
+    d, known = carray(data, (MANY,)), carray(desk, (adams.DESK,))
     n = _count_states(d)
-    accept(d, t, carray(y, (4,)))
-    follow(d, t, carray(y, (4,)), carray(yp, (4,)), flag != 0)
-    return change_wanted(carray(desk, (adams.DESK,)), d, carray(y, (n,)), carray(yp, (n,)))
+    state, rates = carray(y, (n,)), carray(yp, (n,))
+    accept(d, t, state)
+    book(known, d, t, state, rates, carray(dky, (n,)), carray(spare, (n,)), flag != 0)
+    return change_wanted(known, d, state, rates)
 
 
 @compiled_callback(types.int32(_REALS, types.float64, _REALS, _REALS, _WORDS))

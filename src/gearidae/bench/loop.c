@@ -17,11 +17,12 @@ enum { CONTINUE = 0, RESTART = 1 };
 
 /* Order of gearidae.bench.c_calls.addresses. */
 typedef struct {
-    int32_t (*accept)(double *d, double *desk, double t, double *y, double *yp, int32_t flag);
+    int32_t (*accept)(double *d, double *desk, double t, double *y, double *yp, double *dky, double *spare,
+                      int32_t flag);
     int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);
     void (*observe)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *row);
-    int32_t (*restart)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *scale, double rtol,
-                       double stop);
+    int32_t (*restart)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *scale,
+                       double rtol, double stop);
     double (*guard)(double *d, double t, double *y);
     void (*keep)(double *d, double *desk, double t, double *yp);
     void (*state_at)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp);
@@ -163,7 +164,7 @@ int gearidae_loop(const calls_t *call, int64_t *handles, void *solver, void *yy,
             call->observe(d, handles, desk, sample, dky, spare, rows + next * columns);
             next++;
         }
-        int afresh = call->accept(d, desk, t, y, yp, flag);
+        int afresh = call->accept(d, desk, t, y, yp, dky, spare, flag);
         if (flag == ROOT_RETURN) {
             if (happened >= room)
                 happened = 0;

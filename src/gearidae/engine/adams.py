@@ -62,9 +62,7 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-DEEPEST: Final = (
-    8  # rates that a formula looks back on, at most: with more, only ever shorter steps are stable
-)
+DEEPEST: Final = 8  # rates that a formula looks back on, at most: with more, only short steps are stable
 WIDTH: Final = 4  # states, at most
 
 OWN: Final = 0  # 1 where Newton's iteration is ours

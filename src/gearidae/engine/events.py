@@ -388,8 +388,10 @@ def _cross_mark(d: Floats, t: float, y: Floats, forward: bool, events: Floats, c
             here = mark + math.floor(crossed - mark)
             if not forward:
                 here += 1.0
-        low, high = (
-            (max(low, here), min(high, here + 1.0)) if forward else (max(low, here - 1.0), min(high, here))
-        )
+        # a mark comes out a rounding error before or behind what has been crossed: the phase is on its far side
+        if forward:
+            low, high = max(low, min(here, crossed)), min(high, here + 1.0)
+        else:
+            low, high = max(low, here - 1.0), min(high, max(here, crossed))
     d[at.MARK_LOW], d[at.MARK_HIGH] = low, high
     return count

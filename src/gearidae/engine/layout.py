@@ -116,8 +116,11 @@ WAS_RADIUS: Final = 95  # power of the changing radius
 WAS_RADIUS_RATE: Final = 96
 LEDGER_END: Final = 97
 LEDGER_SPAN: Final = 97  # time over which steps may be gathered, and how many
-LEDGER_STRIDE: Final = 98
-CONSTANTS: Final = 100
+LEDGER_STRIDE: Final = 98  # below one: parts of a step
+# Angular frequencies that the steps have to follow, 0 for none: of torques, scaled, and along the mesh, per pitch.
+TORQUE_WAVE: Final = 99
+MESH_WAVE: Final = 100
+CONSTANTS: Final = 101
 
 # -- the history of a tooth pair, in the slot `pair mod SLOTS` of its flank ------------------------------------------
 PAIR: Final = 0  # number of the pair, counted without TURNS; what the slot is about

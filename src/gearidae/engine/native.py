@@ -39,7 +39,7 @@ from gearidae.engine.search import CALLS, INTERPOLATE, SEARCH, next_time, start_
 from gearidae.engine.settle import fold_gap
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
-__all__ = ["restart", "run", "state_for_sample"]
+__all__ = ["book", "restart", "run", "state_for_sample"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -65,7 +65,9 @@ Ints = NDArray[np.int64]
 ) = range(16)
 COUNTERS = PROGRESS
 LEDGER_ORDER = 4  # that of the ledger's quadrature
-FLIGHT_PARTS = 8.0  # of a step in flight, for each step that would be gathered near contact
+# Parts of a step in flight, and of one near contact, over the number of steps that would be gathered near contact
+FLIGHT_PARTS = 8.0
+CONTACT_PARTS = 0.6
 # progress[ERROR]: what events, histories and folds may end a run with; negative numbers are IDA's own
 CHATTER, BEYOND = CODES
 
@@ -128,7 +130,7 @@ def state_for_sample(handles: Ints, desk: Floats, t: float, dky: Floats, spare: 
 
 
 @compiled(inline=True)
-def _book(
+def book(
     desk: Floats, d: Floats, t: float, y: Floats, yp: Floats, dky: Floats, spare: Floats, now: bool
 ) -> None:
     """Keep the ledger up to an accepted time: in parts of a step that is too long for its quadrature.
@@ -139,7 +141,7 @@ def _book(
     parts, start = 1, d[at.LEDGER_TIME]
     if desk[adams.USED] > LEDGER_ORDER and d[at.KIND] == at.GEARS:
         flight = d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
-        parts = math.ceil((FLIGHT_PARTS if flight else 1.0) / d[at.LEDGER_STRIDE])
+        parts = math.ceil((FLIGHT_PARTS if flight else CONTACT_PARTS) / d[at.LEDGER_STRIDE])
         start = max(start, desk[adams.NOW] - desk[adams.LAST_STEP])
     for part in range(1, parts + 1):
         time, state, rates = t, y, yp
@@ -233,7 +235,7 @@ def advance(
             break
         progress[PENDING] = 0
         accept(d, t, y)
-        _book(desk, d, t, y, yp, dky, spare, flag != 0 or d[at.PASSED] != 0.0)
+        book(desk, d, t, y, yp, dky, spare, flag != 0 or d[at.PASSED] != 0.0)
         if d[at.PASSED] != 0.0:
             progress[ERROR] = BEYOND
         if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:

@@ -141,7 +141,7 @@ def iterate(
                 desk[adams.NEW_STATE + j] = predicted[j] + correction[j]
                 desk[adams.NEW_RATES + j] = cj * correction[j] + desk[adams.PREDICTED_RATES + j]
             if by_adams:
-                set_pace(n, desk, step, correction, weights)
+                set_pace(n, desk, d, step, correction, weights)
             return 0
         last = norm
     desk[adams.FAILURES] += 1.0

@@ -13,6 +13,9 @@ Formulas that look back on six or seven rates swing a vibration up, by some mill
 five damp it by as little. The error of a large vibration is the same either way; a small one that grows would never
 come to rest, so it is given to the latter.
 
+No step is longer than its excitation allows, about a sixth of a period of torques and mesh: seen at steps as long as
+periods, an excitation looks like none, and the estimate of the error is none the wiser.
+
 Three things none of the formulas can do, and there IDA's take over: steps that are long against the fastest vibration,
 for which they are not stable; tolerances so close to rounding that the difference of two states, which IDA's do not
 take, shows it; and the end of a vibration that is down to the tolerance, whose every swing turns its histories, for
@@ -48,10 +51,11 @@ QUIET: Final = 30.0  # swing below which there is nothing to follow
 COARSEST: Final = 0.2 / float(np.finfo(float).eps)  # a state over its tolerance
 HURRY: Final = 4.0  # how much longer a step could be, for its error, that is held back too much
 PATIENCE: Final = 20.0  # steps until formulas are changed
-# By how much IDA lets steps grow at least, or else keeps them, and at most; and its highest order.
+# By how much steps grow at least, or else stay, and at most, and most of all from a start.
 GROW: Final = 1.5  # fewer steps than with IDA's 2, at the same error
-GROW_IDA: Final = 2.0
-GROW_MOST: Final = 8.0
+GROW_MOST: Final = 2.0
+GROW_START: Final = 8.0
+GROW_IDA: Final = 2.0  # both, of IDA's own steps
 IDA_ORDER: Final = 5
 MOST: Final = CAUTION**-2  # squared error of the lower order
 KEPT: Final = (0.8, *(GROW ** (-2.0 * (back + 1.0)) for back in range(1, adams.DEEPEST + 1)))
@@ -63,7 +67,7 @@ def tell(solver: int, desk: Floats) -> int:
     by_adams = desk[adams.ADAMS] != 0.0
     flag = sun.IDASetMaxOrd(solver, 1 if by_adams else IDA_ORDER)
     flag |= sun.IDASetEtaFixedStepBounds(solver, 1.0, GROW if by_adams else GROW_IDA)
-    flag |= sun.IDASetEtaMax(solver, GROW_MOST if by_adams else GROW_IDA)
+    flag |= sun.IDASetEtaMax(solver, GROW_START if by_adams else GROW_IDA)
     return flag
 
 
@@ -110,7 +114,16 @@ def _best(n: int, desk: Floats, h: float, error: float, weights: Floats) -> tupl
 
 
 @compiled(inline=True)
-def set_pace(n: int, desk: Floats, h: float, correction: Floats, weights: Floats) -> None:
+def _excitation(desk: Floats, d: Floats) -> float:
+    """Angular frequency of the fastest torque, or of the mesh where a pair may touch; no step turns it by more."""
+    if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:
+        return float(d[at.TORQUE_WAVE])
+    along = d[at.MESH_WAVE] * d[at.PHASE_RATE] * abs(desk[adams.NEW_STATE + at.W])
+    return float(max(d[at.TORQUE_WAVE], along))
+
+
+@compiled(inline=True)
+def set_pace(n: int, desk: Floats, d: Floats, h: float, correction: Floats, weights: Floats) -> None:
     """Choose how far to look back next, and the weights by which IDA judges this step and chooses the next one.
 
     Parameters
@@ -119,6 +132,8 @@ def set_pace(n: int, desk: Floats, h: float, correction: Floats, weights: Floats
         States.
     desk : ndarray, shape (DESK,)
         See `gearidae.engine.adams`; with the new state and rates.
+    d : ndarray
+        The scene, see `layout`.
     h : float
         Length of the step, over tau.
     correction : ndarray, shape (n,)
@@ -133,11 +148,11 @@ def set_pace(n: int, desk: Floats, h: float, correction: Floats, weights: Floats
     desk[adams.BACK] = back
     desk[adams.SINCE] += 1.0
     shorter = _shorter(least / MOST, min(back, used))
-    bound = h * h * desk[adams.FASTEST] / LONGEST  # no step shall be so much longer that it is not stable
-    held = bound * GROW**2 > 1.0
-    desk[adams.HELD] = desk[adams.HELD] + 1.0 if held and shorter * HURRY**2 < bound else 0.0
-    if held:
-        shorter = max(shorter, bound)
+    unstable = h * h * desk[adams.FASTEST] / LONGEST
+    held = unstable * GROW**2 > 1.0 and shorter * HURRY**2 < unstable
+    desk[adams.HELD] = desk[adams.HELD] + 1.0 if held else 0.0
+    most = GROW_START if desk[adams.KNOWN] == used else GROW_MOST
+    shorter = max(shorter, most**-2.0, unstable, (h * _excitation(desk, d)) ** 2)
     wanted = max(0.5 * shorter, 1.05) if error > MOST else min(0.5 * shorter, 0.99)
     total = 0.0
     for j in range(n):

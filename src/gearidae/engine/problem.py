@@ -47,8 +47,18 @@ FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken 
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
 STRIDE = 3  # accepted steps near contact that the ledger integrates over at once, if nothing happens between
 STRIDE_RTOL = 1e-6  # relative tolerance below which it gathers fewer
+FELT = 0.1  # of the tolerance of a speed
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
+
+
+_LAWS = ((at.DRIVE_AT, at.PINION_SHARE), (at.LOAD_AT, at.GEAR_SHARE))
+
+
+def _harmonics(d: Floats, law: int) -> list[tuple[float, float]]:
+    """Amplitude and angular frequency of a torque law's harmonics."""
+    body = d[law + at.LAW_BODY :][: 3 * int(d[law + at.LAW_HARMONICS])].reshape(-1, 3)
+    return [(float(amplitude), float(frequency)) for amplitude, frequency, _ in body]
 
 
 @dataclass(slots=True)
@@ -96,11 +106,23 @@ class Problem:
         """Let every state's error count in absolute tolerances, `rtol` times its scale.
 
         The ledger gathers fewer steps at tight ones: the error of its quadrature goes with the fourth power of a step,
-        and a step with no more than the eighth root of the tolerance.
+        and a step with no more than the eighth root of the tolerance. Torques that shake a gear by less than a share of
+        the tolerance need not be followed.
         """
-        first = int(self.data[at.WEIGHTS_AT])
-        self.data[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
-        self.data[at.LEDGER_STRIDE] = STRIDE * min(1.0, rtol / STRIDE_RTOL) ** (1.0 / 8.0)
+        d, first = self.data, int(self.data[at.WEIGHTS_AT])
+        d[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
+        d[at.LEDGER_STRIDE] = STRIDE * min(1.0, rtol / STRIDE_RTOL) ** (1.0 / 8.0)
+        if d[at.KIND] == at.ROLLER:
+            return
+        waves = [(share, *wave) for law, share in _LAWS for wave in _harmonics(d, int(d[law]))]
+        felt = [
+            abs(f)
+            for share, a, f in waves
+            if abs(d[share] * a) > FELT * abs(f) * rtol * self.tolerance_scale[at.V]
+        ]
+        d[at.TORQUE_WAVE] = max(felt, default=0.0)
+        orders = d[int(d[at.ERROR_AT]) :][: 3 * int(d[at.ERROR_ORDERS]) : 3]
+        d[at.MESH_WAVE] = 2.0 * math.pi * max(1.0, np.max(orders, initial=0.0) / d[at.PINION_TEETH])
 
     def ledger(self, time: float, state: Floats, rates: Floats) -> Ledger:
         """The energy ledger at an accepted time.
