@@ -8,6 +8,7 @@ from gearidae.bench.scenes import SCENES
 from gearidae.engine import layout as at
 from gearidae.engine.events import _cross_mark, _set_marks
 from gearidae.engine.problem import make_problem
+from gearidae.engine.start import rebase
 
 PROBLEM = make_problem(SCENES["high_sam"].scene)
 
@@ -23,13 +24,12 @@ def test_a_phase_that_has_crossed_a_mark_is_on_its_far_side(path, coast, start, 
     d, y, events = PROBLEM.data.copy(), PROBLEM.start.copy(), np.empty((64, 5))
     d[at.PATH], d[at.COAST_PHASE] = path, coast
     _set_marks(d, start)
-    phase = start
-    for _ in range(60):
-        before = phase
+    y[at.PHASE] = start
+    for _ in range(90):
         phase = np.nextafter(d[at.MARK_HIGH] if way > 0 else d[at.MARK_LOW], way * np.inf)
-        assert way * (phase - before) >= 0.0
+        assert way * (phase - y[at.PHASE]) >= 0.0
         y[at.PHASE] = phase
-        count = _cross_mark(d, 0.0, y, way > 0, events, 0)
-        assert count >= 1
-        assert d[at.MARK_LOW] <= phase <= d[at.MARK_HIGH]
-    assert abs(phase - start) > 9.0  # four marks a pitch, at most
+        assert _cross_mark(d, 0.0, y, way > 0, events, 0) >= 1
+        rebase(d, y)
+        assert d[at.MARK_LOW] < y[at.PHASE] < d[at.MARK_HIGH]
+    assert way * (y[at.PHASE] + d[at.TURNS] - start) > 20.0  # four marks a pitch, at most

@@ -250,6 +250,13 @@ MUTANTS = (
         ("engine/test_adams.py", "engine/test_pace.py"),
     ),
     Mutant(
+        "a mesh mark that rounding may put ahead of the phase that has crossed it",
+        "engine/events.py",
+        "max(low, min(here, crossed))",
+        "max(low, here)",
+        ("engine/test_marks.py",),
+    ),
+    Mutant(
         "Newton's correction that forgets what tip relief does to the gear",
         "engine/correction.py",
         "torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase",

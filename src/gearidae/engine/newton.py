@@ -24,7 +24,7 @@ from gearidae.engine import layout as at
 from gearidae.engine import pointers as ptr
 from gearidae.engine import sundials as sun
 from gearidae.engine.correction import correct
-from gearidae.engine.pace import furthest_back, set_pace
+from gearidae.engine.pace import furthest_back, overshoots, set_pace
 
 __all__ = ["iterate", "make_solver"]
 
@@ -140,6 +140,8 @@ def iterate(
             for j in range(n):
                 desk[adams.NEW_STATE + j] = predicted[j] + correction[j]
                 desk[adams.NEW_RATES + j] = cj * correction[j] + desk[adams.PREDICTED_RATES + j]
+            if overshoots(d, desk):
+                return FAILED
             if by_adams:
                 set_pace(n, desk, d, step, correction, weights)
             return 0

@@ -35,7 +35,7 @@ from gearidae.engine import adams
 from gearidae.engine import layout as at
 from gearidae.engine import sundials as sun
 
-__all__ = ["change_wanted", "furthest_back", "set_pace", "tell"]
+__all__ = ["change_wanted", "furthest_back", "overshoots", "set_pace", "tell"]
 
 Floats = NDArray[np.float64]
 
@@ -57,6 +57,7 @@ GROW_MOST: Final = 2.0
 GROW_START: Final = 8.0
 GROW_IDA: Final = 2.0  # both, of IDA's own steps
 IDA_ORDER: Final = 5
+OVERSHOOT: Final = 0.5  # how far below the lowest gap a step may end
 MOST: Final = CAUTION**-2  # squared error of the lower order
 KEPT: Final = (0.8, *(GROW ** (-2.0 * (back + 1.0)) for back in range(1, adams.DEEPEST + 1)))
 
@@ -79,6 +80,14 @@ def furthest_back(desk: Floats, h: float) -> int:
     turned = h * h * desk[adams.FASTEST]
     most = 8 if turned <= LONGEST_8 else 7 if turned <= LONGEST_7 else 6
     return min(int(desk[adams.BACK]), most)
+
+
+@compiled(inline=True)
+def overshoots(d: Floats, desk: Floats) -> bool:
+    """Whether a step would end far below the lowest gap that the model holds for, where forces are extrapolated."""
+    u = desk[adams.NEW_STATE + at.U]
+    gap = u if d[at.KIND] == at.ROLLER else d[at.HALF_BACKLASH] - abs(u)
+    return bool(gap < d[at.LOWEST_GAP] - OVERSHOOT)
 
 
 @compiled(inline=True)
