@@ -68,10 +68,10 @@ def choose_backend(backend: str = "auto") -> str:
 def ready_driver(backend: str) -> ModuleType:
     """Import a driver and have all of it compiled, or read from disk, by a run of one step.
 
-    The first time on a machine this takes some 50 seconds, which is said.
+    The first time on a machine this takes about a minute, which is said.
     """
     if not any(cache_folder().rglob("*.nbi")):
-        log.warning("compiling the solver for this machine: once, some 50 seconds")
+        log.warning("compiling the solver for this machine: once, about a minute")
     # imported late: the native driver compiles its callbacks when it is imported
     driver = import_module(f"gearidae.engine.{'native' if backend == 'native' else 'portable'}")
     tiny = make_problem(preset("roller_slow").replace({"run.duration": 1e-9, "contact.model": "asperity"}))
