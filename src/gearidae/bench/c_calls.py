@@ -8,7 +8,7 @@ import numpy as np
 from numba import carray, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled, compiled_callback
+from gearidae.compiled import compiled_callback
 from gearidae.engine import adams, opened
 from gearidae.engine import layout as at
 from gearidae.engine.events import accept, guard, handle
@@ -21,22 +21,15 @@ from gearidae.engine.search import state_at
 
 __all__ = ["addresses"]
 
-Floats = NDArray[np.float64]
 
 _REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _WORDS: Any = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
 
 
-@compiled
-def _count_states(d: Floats) -> int:
-    """Number of states."""
-    return 2 if d[at.KIND] == at.ROLLER else 4
-
-
 @compiled_callback(types.int32(_REALS, _REALS, types.float64, _REALS, _REALS, _REALS, _REALS, types.int32))
 def _accept(data, desk, t, y, yp, dky, spare, flag):  # type: ignore[no-untyped-def]
     d, known = carray(data, (MANY,)), carray(desk, (adams.DESK,))
-    n = _count_states(d)
+    n = int(d[at.STATES])
     state, rates = carray(y, (n,)), carray(yp, (n,))
     accept(d, t, state)
     book(known, d, t, state, rates, carray(dky, (n,)), carray(spare, (n,)), flag != 0)
@@ -55,7 +48,7 @@ def _handle(data, t, y, events, count):  # type: ignore[no-untyped-def]
 @compiled_callback(types.void(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS, _REALS))
 def _observe(data, handles, desk, t, y, yp, row):  # type: ignore[no-untyped-def]
     d = carray(data, (MANY,))
-    n = _count_states(d)
+    n = int(d[at.STATES])
     state, rates = carray(y, (n,)), carray(yp, (n,))
     state_for_sample(carray(handles, (opened.HANDLES,)), carray(desk, (adams.DESK,)), t, state, rates)
     observe(d, t, state, carray(row, (9,)))
@@ -66,7 +59,7 @@ def _observe(data, handles, desk, t, y, yp, row):  # type: ignore[no-untyped-def
 )
 def _restart(data, handles, desk, t, y, yp, scale, rtol, stop):  # type: ignore[no-untyped-def]
     d = carray(data, (MANY,))
-    n = _count_states(d)
+    n = int(d[at.STATES])
     known = carray(handles, (opened.HANDLES,))
     states, rates, scales = carray(y, (n,)), carray(yp, (n,)), carray(scale, (n,))
     return restart(known, carray(desk, (adams.DESK,)), d, t, states, rates, scales, rtol, stop)
@@ -79,12 +72,12 @@ def _guard(data, t, y):  # type: ignore[no-untyped-def]
 
 @compiled_callback(types.void(_REALS, _REALS, types.float64, _REALS))
 def _keep(data, desk, t, yp):  # type: ignore[no-untyped-def]
-    adams.keep(carray(desk, (adams.DESK,)), t, carray(yp, (_count_states(carray(data, (MANY,))),)))
+    adams.keep(carray(desk, (adams.DESK,)), t, carray(yp, (int(carray(data, (MANY,))[at.STATES]),)))
 
 
 @compiled_callback(types.void(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS))
 def _state_at(data, handles, desk, t, y, yp):  # type: ignore[no-untyped-def]
-    n = _count_states(carray(data, (MANY,)))
+    n = int(carray(data, (MANY,))[at.STATES])
     known = carray(handles, (opened.HANDLES,))
     vectors = known[opened.Y : opened.YP + 1]
     state_at(known[opened.SOLVER], vectors, carray(desk, (adams.DESK,)), t, carray(y, (n,)), carray(yp, (n,)))

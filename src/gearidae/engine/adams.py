@@ -58,6 +58,7 @@ __all__ = [
     "rates_at_end",
     "set_differences",
     "spread",
+    "squares",
 ]
 
 Floats = NDArray[np.float64]
@@ -82,14 +83,14 @@ LAST_STEP: Final = 13
 NEW_STEP: Final = 14  # length of the step that is tried; 0 once it has been accepted
 SWING: Final = 15  # squared speed of the vibration over the tolerance, and what its acceleration makes of it
 NEW_STATE: Final = 16
-NEW_RATES: Final = NEW_STATE + WIDTH
-PREDICTED_RATES: Final = NEW_RATES + WIDTH
+PREDICTED_RATES: Final = NEW_STATE + WIDTH
 STATE: Final = PREDICTED_RATES + WIDTH  # at the last accepted time
 AGO: Final = STATE + WIDTH  # how long before it the others were, the last first
 AREA: Final = AGO + DEEPEST + 1  # of Newton's polynomials over these times
 VALUE: Final = AREA + DEEPEST + 1
 TABLE: Final = VALUE + DEEPEST + 1  # divided differences of the rates, a row for each order
 NEW_TABLE: Final = TABLE + WIDTH * (DEEPEST + 1)  # with those at the end of the step that is tried
+NEW_RATES: Final = NEW_TABLE
 DESK: Final = NEW_TABLE + WIDTH * (DEEPEST + 1)
 
 _points, _weights = np.polynomial.legendre.leggauss(5)  # exact for the polynomials of degree nine
@@ -201,13 +202,21 @@ def rates_at_end(n: int, desk: Floats, h: float, back: int, predicted: Floats, c
 @compiled(inline=True)
 def set_differences(desk: Floats, h: float) -> None:
     """Set the divided differences with the rates at the end of a step of length h."""
-    for j in range(WIDTH):
-        desk[NEW_TABLE + j] = desk[NEW_RATES + j]
     for i in range(_last_row(desk)):
         share = 1.0 / (h + desk[AGO + i])
         row = WIDTH * i
         for j in range(WIDTH):
             desk[NEW_TABLE + row + WIDTH + j] = (desk[NEW_TABLE + row + j] - desk[TABLE + row + j]) * share
+
+
+@compiled(inline=True)
+def squares(n: int, numbers: Floats, first: int, weights: Floats) -> float:
+    """Sum of the squares of n weighed numbers, from a place on."""
+    total = 0.0
+    for j in range(n):
+        weighed = numbers[first + j] * weights[j]
+        total += weighed * weighed
+    return total
 
 
 @compiled(inline=True)
@@ -218,12 +227,7 @@ def spread(n: int, desk: Floats, h: float, back: int, weights: Floats) -> float:
     :math:`\int (t - t_n) N_{back-1}\,dt`.
     """
     area = desk[AREA + back] - (h + desk[AGO + back - 1]) * desk[AREA + back - 1]
-    row = NEW_TABLE + WIDTH * back
-    total = 0.0
-    for j in range(n):
-        weighed = desk[row + j] * weights[j]
-        total += weighed * weighed
-    return area * area * total / n
+    return area * area * squares(n, desk, NEW_TABLE + WIDTH * back, weights) / n
 
 
 @compiled

@@ -39,6 +39,7 @@ from gearidae.engine.mesh import (
     first_pair,
     footprint,
     history_slot,
+    in_flight,
     last_pair,
     material_stretch,
     pair_gap,
@@ -265,8 +266,9 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
     """
     d[at.LEDGER_STEPS] += 1.0
     h = t - d[at.LEDGER_TIME]
-    flight = d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
-    if h == 0.0 or not (now or flight or d[at.LEDGER_STEPS] >= d[at.LEDGER_STRIDE] or h > d[at.LEDGER_SPAN]):
+    if h == 0.0 or not (
+        now or in_flight(d) or d[at.LEDGER_STEPS] >= d[at.LEDGER_STRIDE] or h > d[at.LEDGER_SPAN]
+    ):
         return
     d[at.LEDGER_STEPS] = 0.0
     d[at.LEDGER_TIME] = t

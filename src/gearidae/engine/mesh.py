@@ -139,6 +139,12 @@ def nearest_gap(d: Floats, coast: int, y: Floats) -> float:
 
 
 @compiled
+def in_flight(d: Floats) -> bool:
+    """Whether both flanks are too far away for any pair to touch."""
+    return bool(d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0)
+
+
+@compiled
 def material_stretch(d: Floats, material: int) -> float:
     """Stretch limit of a material, bare or coated, over sigma; 0 where it has no hysteresis to follow."""
     return d[at.MATERIALS + at.MATERIAL * material + at.M_STRETCH]

@@ -19,6 +19,7 @@ from gearidae.engine import sundials as sun
 from gearidae.engine.callbacks import callbacks
 from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, handle, pass_knot
 from gearidae.engine.ledger import enter, follow
+from gearidae.engine.mesh import in_flight
 from gearidae.engine.observe import observe
 from gearidae.engine.opened import DKY, HANDLES, SOLVER, YP, Y, close, open_solver
 from gearidae.engine.pace import change_wanted, tell
@@ -140,8 +141,7 @@ def book(
     """
     parts, start = 1, d[at.LEDGER_TIME]
     if desk[adams.USED] > LEDGER_ORDER and d[at.KIND] == at.GEARS:
-        flight = d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
-        parts = math.ceil((FLIGHT_PARTS if flight else CONTACT_PARTS) / d[at.LEDGER_STRIDE])
+        parts = math.ceil((FLIGHT_PARTS if in_flight(d) else CONTACT_PARTS) / d[at.LEDGER_STRIDE])
         start = max(start, desk[adams.NOW] - desk[adams.LAST_STEP])
     for part in range(1, parts + 1):
         time, state, rates = t, y, yp
@@ -238,7 +238,7 @@ def advance(
         book(desk, d, t, y, yp, dky, spare, flag != 0 or d[at.PASSED] != 0.0)
         if d[at.PASSED] != 0.0:
             progress[ERROR] = BEYOND
-        if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:
+        if in_flight(d):
             progress[FLIGHT] += 1
         afresh = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
         afresh |= change_wanted(desk, d, y, yp)
@@ -259,7 +259,7 @@ def advance(
         afresh |= checkpoint
         if afresh and progress[DONE] == 0 and progress[ERROR] == 0:
             _count(solver, desk, search, progress)
-            follow(d, t, y, yp, afresh)
+            follow(d, t, y, yp, True)
             rebase(d, y)
             progress[RESTARTS] += 1
             if checkpoint:

@@ -126,12 +126,9 @@ def iterate(
             yp[j] = cj * correction[j] + desk[adams.PREDICTED_RATES + j]
         desk[adams.FASTEST] = correct(d, t, cj, y, yp, delta)
         desk[adams.EVALUATIONS] += 1.0
-        total = 0.0
         for j in range(n):
             correction[j] += delta[j]
-            weighed = delta[j] * weights[j]
-            total += weighed * weighed
-        norm = math.sqrt(total / n)
+        norm = math.sqrt(adams.squares(n, delta, 0, weights) / n)
         if last < math.inf:
             if norm > SLOWEST * last:
                 break

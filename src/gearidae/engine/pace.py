@@ -34,6 +34,7 @@ from gearidae.compiled import compiled
 from gearidae.engine import adams
 from gearidae.engine import layout as at
 from gearidae.engine import sundials as sun
+from gearidae.engine.mesh import in_flight, nearest_gap
 
 __all__ = ["change_wanted", "furthest_back", "overshoots", "set_pace", "tell"]
 
@@ -85,9 +86,8 @@ def furthest_back(desk: Floats, h: float) -> int:
 @compiled(inline=True)
 def overshoots(d: Floats, desk: Floats) -> bool:
     """Whether a step would end far below the lowest gap that the model holds for, where forces are extrapolated."""
-    u = desk[adams.NEW_STATE + at.U]
-    gap = u if d[at.KIND] == at.ROLLER else d[at.HALF_BACKLASH] - abs(u)
-    return bool(gap < d[at.LOWEST_GAP] - OVERSHOOT)
+    y = desk[adams.NEW_STATE :]
+    return bool(min(nearest_gap(d, 0, y), nearest_gap(d, 1, y)) < d[at.LOWEST_GAP] - OVERSHOOT)
 
 
 @compiled(inline=True)
@@ -125,7 +125,7 @@ def _best(n: int, desk: Floats, h: float, error: float, weights: Floats) -> tupl
 @compiled(inline=True)
 def _excitation(desk: Floats, d: Floats) -> float:
     """Angular frequency of the fastest torque, or of the mesh where a pair may touch; no step turns it by more."""
-    if d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0:
+    if in_flight(d):
         return float(d[at.TORQUE_WAVE])
     along = d[at.MESH_WAVE] * d[at.PHASE_RATE] * abs(desk[adams.NEW_STATE + at.W])
     return float(max(d[at.TORQUE_WAVE], along))
@@ -163,13 +163,10 @@ def set_pace(n: int, desk: Floats, d: Floats, h: float, correction: Floats, weig
     most = GROW_START if desk[adams.KNOWN] == used else GROW_MOST
     shorter = max(shorter, most**-2.0, unstable, (h * _excitation(desk, d)) ** 2)
     wanted = max(0.5 * shorter, 1.05) if error > MOST else min(0.5 * shorter, 0.99)
-    total = 0.0
-    for j in range(n):
-        weighed = correction[j] * weights[j]
-        total += weighed * weighed
+    total = adams.squares(n, correction, 0, weights)
     if total > 0.0:
         # IDA's estimate at order one is the norm of the correction, times this step's share of the last two
-        last = h if desk[adams.KNOWN] == 1.0 else desk[adams.AGO + 1]
+        last = h if desk[adams.KNOWN] == 1.0 else desk[adams.LAST_STEP]
         scale = wanted * (h + last) / (h * math.sqrt(total / n))
         for j in range(n):
             weights[j] *= scale

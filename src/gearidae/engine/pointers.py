@@ -15,11 +15,9 @@ from gearidae.compiled import compiled
 
 __all__ = [
     "MANY",
-    "ORDER",
     "STEP",
     "SYSTEM",
     "numbers",
-    "order",
     "reals",
     "replace",
     "step",
@@ -62,35 +60,29 @@ def _system(typing: Any, solver: Any) -> Any:
     return types.Tuple(kinds)(solver), ask  # type: ignore[no-untyped-call]
 
 
-ORDER: Final = "IDAGetCurrentOrder"
 STEP: Final = "IDAGetCurrentStep"
 
 
-def _answer(name: str, kind: Any, cell_type: ir.Type) -> Any:
-    """Make what types and compiles a question to IDA that it answers with one number."""
+def _step(typing: Any, solver: Any) -> Any:
+    """Make what types and compiles the question to IDA for its step."""
 
     def ask(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         word = ir.IntType(64)
-        cell = cgutils.alloca_once(builder, cell_type)  # type: ignore[no-untyped-call]
+        cell = cgutils.alloca_once(builder, ir.DoubleType())  # type: ignore[no-untyped-call]
         function = cgutils.get_or_insert_function(  # type: ignore[no-untyped-call]
-            builder.module, ir.FunctionType(ir.IntType(32), [word, word]), name
+            builder.module, ir.FunctionType(ir.IntType(32), [word, word]), STEP
         )
         builder.call(function, [values[0], builder.ptrtoint(cell, word)])
         return builder.load(cell)
 
-    def typed(typing: Any, solver: Any) -> Any:
-        return kind(solver), ask
-
-    return typed
+    return types.float64(solver), ask
 
 
 _integers_at: Any = intrinsic(_to_integers)
 _reals_at: Any = intrinsic(_to_reals)
 system: Any = intrinsic(_system)
 """Time, vectors (predicted state and rates, state, rates, residual), leading coefficient and user data of a solver."""
-order: Any = intrinsic(_answer(ORDER, types.int32, ir.IntType(32)))
-"""Order that IDA tries, or has chosen for the next step."""
-step: Any = intrinsic(_answer(STEP, types.float64, ir.DoubleType()))
+step: Any = intrinsic(_step)
 """Length of the step that IDA tries, or has chosen for the next."""
 
 

@@ -19,6 +19,7 @@ from gearidae.engine import layout as at
 from gearidae.engine.blocks import dense_jacobian, store_size
 from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, guard, handle, pass_knot
 from gearidae.engine.ledger import enter, follow
+from gearidae.engine.mesh import in_flight
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.residual import jacobian, residual
@@ -87,7 +88,7 @@ def run(
         yield from output.sample(t, y, trail)
         accept(d, t, y)
         follow(d, t, y, yp, flag != 0 or d[at.PASSED] != 0.0)
-        tally.flight_steps += d[at.NEAR] == 0.0 and d[at.NEAR + 1] == 0.0
+        tally.flight_steps += in_flight(d)
         restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
         if flag == _ROOT:
             solver.forget_events()

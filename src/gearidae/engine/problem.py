@@ -51,7 +51,6 @@ FELT = 0.1  # of the tolerance of a speed
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
 
-
 _LAWS = ((at.DRIVE_AT, at.PINION_SHARE), (at.LOAD_AT, at.GEAR_SHARE))
 
 
@@ -112,14 +111,14 @@ class Problem:
         d, first = self.data, int(self.data[at.WEIGHTS_AT])
         d[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
         d[at.LEDGER_STRIDE] = STRIDE * min(1.0, rtol / STRIDE_RTOL) ** (1.0 / 8.0)
-        if d[at.KIND] == at.ROLLER:
-            return
+        if d[at.KIND] == at.GEARS:
+            self._set_waves(rtol * self.tolerance_scale[at.V])
+
+    def _set_waves(self, speed: float) -> None:
+        """Note how fast torques and mesh excite the motion, for this tolerance of a speed."""
+        d = self.data
         waves = [(share, *wave) for law, share in _LAWS for wave in _harmonics(d, int(d[law]))]
-        felt = [
-            abs(f)
-            for share, a, f in waves
-            if abs(d[share] * a) > FELT * abs(f) * rtol * self.tolerance_scale[at.V]
-        ]
+        felt = [abs(f) for share, a, f in waves if abs(d[share] * a) > FELT * abs(f) * speed]
         d[at.TORQUE_WAVE] = max(felt, default=0.0)
         orders = d[int(d[at.ERROR_AT]) :][: 3 * int(d[at.ERROR_ORDERS]) : 3]
         d[at.MESH_WAVE] = 2.0 * math.pi * max(1.0, np.max(orders, initial=0.0) / d[at.PINION_TEETH])

@@ -18,7 +18,7 @@ from llvmlite import binding
 from numba import types
 from numpy.typing import NDArray
 
-from gearidae.engine.pointers import ORDER, STEP, SYSTEM
+from gearidae.engine.pointers import STEP, SYSTEM
 
 __all__ = ["newton_places", "places", "unavailable"]
 
@@ -44,7 +44,7 @@ def unavailable() -> str:
         binding.load_library_permanently(_cy_ida.__file__)
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
-    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, ORDER, STEP)
+    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, STEP)
     if missing := [name for name in wanted if binding.address_of_symbol(name) is None]:
         return f"the SUNDIALS library lacks {', '.join(missing)}"
     try:
