@@ -8,6 +8,7 @@ that went into it: its own sources and the versions of Python, numba, llvmlite a
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
 import sys
 import threading
@@ -21,7 +22,9 @@ from typing import Any, TypeVar, cast, overload
 import numba
 from platformdirs import user_cache_path
 
-__all__ = ["cache_folder", "compiled", "compiled_callback"]
+__all__ = ["cache_folder", "compiled", "compiled_callback", "say_compiling"]
+
+log = logging.getLogger(__name__)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -48,6 +51,16 @@ def cache_folder() -> Path:
 
 
 _declaring = threading.RLock()
+_said: set[str] = set()
+
+
+def say_compiling(module: str, what: str, how_long: str) -> None:
+    """Say that what comes takes a while, and why, if nothing of a module has been compiled on this machine yet."""
+    with _declaring:
+        if module in _said or any(cache_folder().rglob(f"{module}.*.nbi")):
+            return
+        _said.add(module)
+    log.warning("compiling %s for this machine: once, %s", what, how_long)
 
 
 @contextmanager
@@ -88,7 +101,8 @@ def compiled(
     """
 
     def declare(function: F) -> F:
-        options: Any = {"_nrt": makes_arrays, "forceinline": inline}  # numba's stubs do not know them all
+        # numba's stubs do not know them all; nobody calls these functions as C does but through callbacks
+        options: Any = {"_nrt": makes_arrays, "forceinline": inline, "no_cfunc_wrapper": True}
         with _own_cache():
             dispatcher: Any = numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
         return cast("F", dispatcher)

@@ -5,12 +5,9 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from gearidae.account import with_account
-from gearidae.archive import check_target, reached, to_dataset
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.running import early_end, prepare, solve
-from gearidae.streaming import stream
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,13 +82,21 @@ def simulate(
     >>> ds = gd.simulate(scene, archive="low_speed.nc")  # doctest: +SKIP
     """
     scene = prepare(scene, rtol=rtol, t_end=t_end, samples=samples, backend=backend)
+    # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one
     if archive is not None:
+        from gearidae.archive import check_target
+        from gearidae.streaming import stream
+
         target = check_target(archive, overwrite=overwrite or resume)
         return stream(scene, target, backend=backend, progress=progress, resume=resume)
     if resume:
         raise SceneError("resume", resume, "needs the archive to go on from (archive=)")
     with run_progress(progress, scene.run.duration) as report:
         solution = solve(scene, backend, report)
+
+    from gearidae.account import with_account
+    from gearidae.archive import reached, to_dataset
+
     ds = with_account(to_dataset(scene, solution))
     if solution.status == "interrupted":
         raise Interrupted("", ds)

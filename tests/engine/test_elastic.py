@@ -196,9 +196,9 @@ def test_jacobian_is_the_slope_of_the_residual(contact):
     for k in range(4):
         unit = np.zeros(size)
         unit[k] = 1.0
-        residual(d, t, y, unit, by_rate[:, k])
-        by_rate[:, k] -= base
-    differences = by_state + cj * by_rate
+        residual(d, t, y, unit, by_rate[k])
+        by_rate[k] -= base
+    differences = by_state + cj * by_rate.T
     # the radius' own change with the phase is left out of the Jacobian on purpose
     keep = np.ones(size, bool)
     keep[at.PHASE] = False

@@ -13,14 +13,15 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.compiled import cache_folder
+from gearidae.compiled import say_compiling
+from gearidae.engine import layout as at
 from gearidae.engine.changeover import change_over, deepen
 from gearidae.engine.problem import Problem, make_problem
 from gearidae.engine.run import Block, Ending, Tally
 from gearidae.engine.sundials import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Ledger, Solution, Statistics
-from gearidae.scene import Scene, preset
+from gearidae.scene import Scene
 
 __all__ = [
     "Ended",
@@ -28,6 +29,7 @@ __all__ = [
     "choose_backend",
     "follow",
     "ledger_at",
+    "load_driver",
     "outlook",
     "ready_driver",
     "run_blocks",
@@ -36,6 +38,8 @@ __all__ = [
 ]
 
 log = logging.getLogger(__name__)
+
+TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
 
 
 def choose_backend(backend: str = "auto") -> str:
@@ -65,18 +69,34 @@ def choose_backend(backend: str = "auto") -> str:
 
 
 @cache
-def ready_driver(backend: str) -> ModuleType:
-    """Import a driver and have all of it compiled, or read from disk, by a run of one step.
-
-    The first time on a machine this takes about a minute, which is said.
-    """
-    if not any(cache_folder().rglob("*.nbi")):
-        log.warning("compiling the solver for this machine: once, about a minute")
+def load_driver(backend: str) -> ModuleType:
+    """Import a driver; on the first run of all that takes a while, which is said."""
+    module = "native" if backend == "native" else "portable"
+    say_compiling(_COMPILED[module], "the solver", "about half a minute")
     # imported late: the native driver compiles its callbacks when it is imported
-    driver = import_module(f"gearidae.engine.{'native' if backend == 'native' else 'portable'}")
-    tiny = make_problem(preset("roller_slow").replace({"run.duration": 1e-9, "contact.model": "asperity"}))
-    for _ in driver.run(tiny, 1e-3, 2, Tally()):
-        pass
+    return import_module(f"gearidae.engine.{module}")
+
+
+_COMPILED = {"native": "native", "portable": "residual"}  # a module that goes with the driver
+
+_ready: set[tuple[str, int, bool]] = set()
+
+
+def ready_driver(backend: str, problem: Problem) -> ModuleType:
+    """Load a driver and have all that it needs for this kind of problem compiled, or read from disk, by a tiny run."""
+    driver = load_driver(backend)
+    kind = (backend, len(problem.columns), bool(problem.data[at.NODES] > 0.0))
+    if kind not in _ready:
+        tiny = replace(
+            problem,
+            data=problem.data.copy(),
+            start=problem.start.copy(),
+            end=min(problem.end, TINY),
+            knots=np.zeros(0),
+        )
+        for _ in driver.run(tiny, 1e-3, 2, Tally()):
+            pass
+        _ready.add(kind)
     return driver
 
 
@@ -104,7 +124,7 @@ def run_blocks(
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to go on from.
     """
-    driver = ready_driver(backend)
+    driver = ready_driver(backend, problem)
     if problem.elastic is None:
         yield from _run_bodies(problem, rtol, samples, driver, tally, resume)
         return
@@ -236,8 +256,9 @@ def follow(
     skipped: dict[str, int] = {}
     started = time.perf_counter()
     try:
-        ready_driver(name)
+        load_driver(name)
         problem = make_problem(scene)
+        ready_driver(name, problem)
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
         for block in run_blocks(
@@ -351,7 +372,7 @@ def outlook(
         If the scene is beyond what the engine can do.
     """
     problem = make_problem(scene)
-    counters = ready_driver(backend).COUNTERS
+    counters = load_driver(backend).COUNTERS
     if checkpoint is not None and not problem.fits(checkpoint, counters):
         problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
     size = problem.checkpoint(0.0, problem.start, np.zeros(counters, np.int64)).size
@@ -374,7 +395,7 @@ def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Le
     SceneError
         If the checkpoint is not of this scene.
     """
-    counters = np.zeros(ready_driver(backend).COUNTERS, np.int64)
+    counters = np.zeros(load_driver(backend).COUNTERS, np.int64)
     problem = make_problem(scene)
     if problem.elastic is not None and not problem.fits(checkpoint, counters.size):
         problem = problem.elastic()

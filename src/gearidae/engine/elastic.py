@@ -224,7 +224,8 @@ def _static(
     for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
         if share > 0.0:
             tip = asperity_of(surface)
-            table = law_table(tip.stretch_limit / sigma, scene.contact.asperity, "plane")
+            # a copy: numba compiles everything a second time for arrays that are read-only
+            table = law_table(tip.stretch_limit / sigma, scene.contact.asperity, "plane").copy()
             scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
             surfaces.append((table, scale))
     return grid, kappa, surfaces

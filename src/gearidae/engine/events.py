@@ -26,7 +26,8 @@ from gearidae.engine.mesh import (
     pair_gap,
     set_joined,
 )
-from gearidae.engine.nodes import follow_nodes, join_nodes, meet_nodes, middle_gap
+from gearidae.engine.node_calls import follow_nodes, join_nodes, meet_nodes
+from gearidae.engine.nodes import middle_gap
 from gearidae.engine.residual import mesh_forces
 from gearidae.engine.torque import torque_force
 from gearidae.records import EventKind, Flank

@@ -45,7 +45,7 @@ from gearidae.engine.mesh import (
     pair_gap,
     static_error,
 )
-from gearidae.engine.node_energy import nodes_joining_loss, nodes_length_force, nodes_stored
+from gearidae.engine.node_calls import nodes_joining_loss, nodes_length_force, nodes_stored
 from gearidae.engine.torque import torque_force, torque_rate
 
 __all__ = [

@@ -30,6 +30,7 @@ from gearidae.engine.elastic import DEPTH_HIGH, Footing, deepest_gap, node_grid,
 from gearidae.engine.events import begin
 from gearidae.engine.ledger import follow, kinetic_energy, open_ledger, stored_energy
 from gearidae.engine.mesh import footprint, material_stretch
+from gearidae.engine.node_calls import service
 from gearidae.engine.nodes import history_size
 from gearidae.engine.settle import settle_nodes
 from gearidae.engine.torque import pack_torque
@@ -453,7 +454,8 @@ def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest:
                 surface.roughness,
                 f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
             )
-        table = law_table(limit, scene.contact.asperity, kernel) if share > 0.0 else np.zeros(HEADER)
+        # a copy: numba compiles everything a second time for arrays that are read-only
+        table = law_table(limit, scene.contact.asperity, kernel).copy() if share > 0.0 else np.zeros(HEADER)
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * footprint / head[at.FORCE]
         record = at.MATERIALS + at.MATERIAL * material
@@ -501,7 +503,10 @@ def _assemble(
         head[at.HISTORY] = at.BRANCHES + 2 * head[at.BRANCH]
     histories = np.zeros(int(head[at.HISTORY]) * flanks * slots)
     head[at.STATES] = (2 if head[at.KIND] == at.ROLLER else 4) + head[at.NODES] * head[at.TOTAL_SLOTS]
-    parts = [head, histories, errors, drive, load, *contact, grid, np.zeros(int(head[at.STATES]))]
+    weights, address = np.zeros(int(head[at.STATES])), np.zeros(1)
+    if head[at.NODES] > 0.0:
+        address[0] = service()
+    parts = [head, histories, errors, drive, load, *contact, grid, weights, address]
     starts = np.cumsum([0] + [part.size for part in parts])
     head[[at.HISTORIES, at.ERROR_AT, at.DRIVE_AT, at.LOAD_AT, at.LOADING_AT]] = starts[1:6]
     for material in range(2):

@@ -27,7 +27,8 @@ from gearidae.engine.mesh import (
     pair_gap,
     static_error,
 )
-from gearidae.engine.nodes import node_force, node_residual, unload
+from gearidae.engine.node_calls import node_force, node_residual
+from gearidae.engine.nodes import unload
 from gearidae.engine.torque import torque_force
 
 __all__ = ["held", "jacobian", "mesh_forces", "motion", "residual", "resisting_force", "roller_force"]

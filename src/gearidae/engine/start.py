@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine.mesh import nearest_gap
-from gearidae.engine.nodes import node_rates
+from gearidae.engine.node_calls import node_rates
 from gearidae.engine.residual import residual
 
 __all__ = ["first_step", "rebase", "set_rates"]
@@ -25,9 +25,11 @@ PHASE_HIGH = 16.0
 def set_rates(d: Floats, t: float, y: Floats, yp: Floats) -> None:
     """Solve F(t, y, y') = 0 for y', in place; its derivative in time where the nodes are concerned."""
     out = np.empty(y.size)
-    yp[:] = 0.0
+    for i in range(y.size):  # numba takes seconds to compile what a slice of numbers could be set to
+        yp[i] = 0.0
     residual(d, t, y, yp, out)
-    yp[:] = -out
+    for i in range(y.size):
+        yp[i] = -out[i]
     if d[at.KIND] == at.GEARS:
         yp[at.V] -= yp[at.W]
     if d[at.NODES] > 0.0:
@@ -59,8 +61,10 @@ def first_step(
     for i in range(y.size):
         speed = max(speed, abs(yp[i]) / scale[i])
     probe = min(1e-5 / speed, 1e-3 * longest)
-    later = np.empty(y.size)
-    set_rates(d, t + probe, y + probe * yp, later)
+    ahead, later = np.empty(y.size), np.empty(y.size)
+    for i in range(y.size):
+        ahead[i] = y[i] + probe * yp[i]
+    set_rates(d, t + probe, ahead, later)
     curvature = 1e-9
     for i in range(y.size):
         curvature = max(curvature, abs(later[i] - yp[i]) / (probe * scale[i]))
@@ -72,9 +76,9 @@ def first_step(
             step = min(step, 0.25 * abs(yp[at.W]) / change)
     for coast in range(1 if d[at.KIND] == at.ROLLER else 2):
         # free flight has no curvature, and the flank at its end comes without warning
-        ahead = nearest_gap(d, coast, y) - d[at.CUTOFF]
-        if ahead > 0.0:
-            step = min(step, 0.5 * max(ahead, 1.0) / max(abs(y[at.V]), 1e-9))
+        apart = nearest_gap(d, coast, y) - d[at.CUTOFF]
+        if apart > 0.0:
+            step = min(step, 0.5 * max(apart, 1.0) / max(abs(y[at.V]), 1e-9))
     return float(step)
 
 
