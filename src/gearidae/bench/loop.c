@@ -14,6 +14,7 @@ extern int IDAGetNumSteps(void *, long *);
 
 enum { ONE_STEP = 2, TSTOP_RETURN = 1, ROOT_RETURN = 2 };
 enum { CONTINUE = 0, RESTART = 1 };
+#define SHARPNESS 0.01 /* that of gearidae.engine.search */
 
 /* Order of gearidae.bench.c_calls.addresses. */
 typedef struct {
@@ -33,7 +34,7 @@ typedef struct {
     int64_t *handles;
     void *solver, *yy, *yyp;
     double *d, *desk, *y, *yp;
-    double low, low_time, step_end, stop_time;
+    double low, low_time, step_end, stop_time, sharp;
     int rest, stop;
 } search_t;
 
@@ -54,33 +55,39 @@ static double rounding(const search_t *s)
     return 100.0 * 0x1p-52 * (fabs(s->step_end) + fabs(step));
 }
 
+static double inverse(double a, double at_a, double b, double at_b, double c, double at_c)
+{
+    return a * at_b * at_c / ((at_a - at_b) * (at_a - at_c)) + b * at_a * at_c / ((at_b - at_a) * (at_b - at_c))
+           + c * at_a * at_b / ((at_c - at_a) * (at_c - at_b));
+}
+
 static double find(search_t *s, double high)
 {
-    const double tolerance = rounding(s);
-    double a = s->low_time, b = s->step_end, low = s->low, weight = 1.0;
-    int side = 0, before = -1;
-    while (fabs(b - a) > tolerance) {
-        if (side == before)
-            weight *= side == 2 ? 2.0 : 0.5;
-        else
-            weight = 1.0;
-        double middle = b - (b - a) * high / (high - weight * low);
-        double inward = tolerance / fabs(b - a);
-        inward = inward < 0.2 ? 0.1 : 0.5 * inward;
-        if (fabs(middle - a) < 0.5 * tolerance)
-            middle = a + inward * (b - a);
-        if (fabs(b - middle) < 0.5 * tolerance)
-            middle = b - inward * (b - a);
-        state_at(s, middle);
-        double value = look(s, middle);
-        before = side;
+    double a = s->low_time, b = s->step_end, low = s->low, c = a, left = low, here = b, wide = b - a;
+    const double tolerance = fmax(rounding(s), s->sharp * (b - a));
+    int tries = 0;
+    while (b - a > tolerance && (b - a) * high < tolerance * (high - low)) {
+        here = b - (b - a) * high / (high - low);
+        if (left != low && left != high)
+            here = inverse(a, low, b, high, c, left);
+        here += 0.5 * tolerance;
+        if (++tries % 3 == 0) {
+            const int slow = b - a > 0.5 * wide;
+            wide = b - a;
+            if (slow)
+                here = 0.5 * (a + b);
+        }
+        here = fmin(fmax(here, a + 0.25 * tolerance), b - 0.25 * tolerance);
+        state_at(s, here);
+        const double value = look(s, here);
         if (value < 0.0) {
-            b = middle, high = value, side = 1;
+            c = b, left = high, b = here, high = value;
         } else {
-            a = middle, low = value, side = 2;
+            c = a, left = low, a = here, low = value;
         }
     }
-    state_at(s, b);
+    if (here != b)
+        state_at(s, b);
     return b;
 }
 
@@ -149,6 +156,7 @@ int gearidae_loop(const calls_t *call, int64_t *handles, void *solver, void *yy,
                   int64_t total, int64_t columns, double *rows, double *events, int64_t room, int64_t *taken)
 {
     search_t s = {call, handles, solver, yy, yyp, d, desk, y, yp};
+    s.sharp = SHARPNESS * rtol;
     const double spacing = end / (double)(total - 1);
     double t = 0.0;
     int64_t next = 1, happened = 0;

@@ -36,7 +36,7 @@ from gearidae.engine.run import (
     ending_of_flag,
     sample_time,
 )
-from gearidae.engine.search import CALLS, INTERPOLATE, SEARCH, next_time, start_search
+from gearidae.engine.search import AS_IDA, CALLS, SEARCH, SHARP, SHARPNESS, next_time, start_search
 from gearidae.engine.settle import fold_gap
 from gearidae.engine.start import PHASE_HIGH, first_step, rebase, set_rates
 
@@ -259,7 +259,7 @@ def advance(
         afresh |= checkpoint
         if afresh and progress[DONE] == 0 and progress[ERROR] == 0:
             _count(solver, desk, search, progress)
-            follow(d, t, y, yp, True)
+            follow(d, t, y, yp, afresh)
             rebase(d, y)
             progress[RESTARTS] += 1
             if checkpoint:
@@ -308,7 +308,7 @@ def run(
     rows, events = np.empty((BLOCK_ROWS, len(problem.columns))), np.empty((BLOCK_EVENTS, 5))
     handles, progress = np.zeros(HANDLES, np.int64), np.zeros(PROGRESS, np.int64)
     desk, search = np.zeros(adams.DESK), np.zeros(SEARCH)
-    search[INTERPOLATE] = as_ida
+    search[AS_IDA], search[SHARP] = as_ida, SHARPNESS * rtol
     progress[PENDING] = -1
     if resume is not None:
         clock[0] = problem.restore(resume, y, progress)

@@ -2,10 +2,12 @@
 
 IDA finds roots by itself, and asks for the state twice and for the guard at both ends of each step to do so. Here the
 guard is looked at once, at the state that the step has left; only where it has fallen is the root searched, between
-the ends of the step, by the same rule (regula falsi after Illinois, Hiebert and Shampine, SAND80-0180) to the same
-tolerance. The state between the ends is that of the formula that the step was made with. Where IDA iterates by itself
-and INTERPOLATE is set, the state is IDA's interpolant at a step's end, too, and roots and states are those that IDA
-finds by itself to the last bit.
+the ends of the step. The state between the ends is that of the formula that the step was made with.
+
+A root is found by inverse interpolation, and no more sharply than the states are known: `SHARPNESS` times the
+relative tolerance of a step. Most take two looks at the guard. Where IDA iterates by itself and AS_IDA is set, the
+search is IDA's (regula falsi after Illinois down to rounding, Hiebert and Shampine, SAND80-0180), the state at a
+step's end is its interpolant, and roots and states are those that IDA finds by itself to the last bit.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from gearidae.engine import pointers as ptr
 from gearidae.engine import sundials as sun
 from gearidae.engine.events import guard
 
-__all__ = ["CALLS", "INTERPOLATE", "SEARCH", "next_time", "start_search", "state_at"]
+__all__ = ["AS_IDA", "CALLS", "SEARCH", "SHARP", "SHARPNESS", "next_time", "start_search", "state_at"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -33,8 +35,13 @@ REST: Final = 3  # 1 after a root: the rest of its step has not been looked at
 STOP: Final = 4  # 1 while a stop waits for the roots before it
 STOP_TIME: Final = 5
 CALLS: Final = 6  # of the guard, so far
-INTERPOLATE: Final = 7  # 1 to take the state at a step's end from IDA's interpolant
-SEARCH: Final = 8
+AS_IDA: Final = 7  # 1 to search as IDA does, and take the state at a step's end from its interpolant
+SHARP: Final = 8  # how sharply to find a root, over the length of the interval
+SEARCH: Final = 9
+
+SHARPNESS: Final = 0.01
+"""Of the relative tolerance; a tenth of it changes no number of steps beyond scatter, ten times as much some."""
+TRIES: Final = 3  # by which the interval has to be halved, or is halved
 
 _ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
 
@@ -123,7 +130,7 @@ def next_time(
         if flag < 0:
             return flag
         adams.keep(desk, clock[0], yp)
-        if search[INTERPOLATE] != 0.0:
+        if search[AS_IDA] != 0.0:
             sun.IDAGetSolution(solver, clock[0], vectors[0], vectors[1])
         if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
             search[STOP], search[STOP_TIME] = 1.0, clock[0]
@@ -133,7 +140,10 @@ def next_time(
     if search[LOW] > 0.0 > high:
         search[STEP_END] = clock[0]
         search[REST] = 1.0
-        _find(solver, vectors, desk, d, y, yp, clock, high, search)
+        if search[AS_IDA] != 0.0:
+            _find_as_ida(solver, vectors, desk, d, y, yp, clock, high, search)
+        else:
+            _find(solver, vectors, desk, d, y, yp, clock, high, search)
         return sun.IDA_ROOT_RETURN
     search[LOW], search[LOW_TIME] = high, clock[0]
     search[REST] = 0.0
@@ -160,6 +170,16 @@ def _rounding(solver: int, search: Floats) -> float:
 
 
 @compiled
+def _inverse(a: float, at_a: float, b: float, at_b: float, c: float, at_c: float) -> float:
+    """Root by inverse interpolation: where the parabola through (value, place) of three points has value zero."""
+    return (
+        a * at_b * at_c / ((at_a - at_b) * (at_a - at_c))
+        + b * at_a * at_c / ((at_b - at_a) * (at_b - at_c))
+        + c * at_a * at_b / ((at_c - at_a) * (at_c - at_b))
+    )
+
+
+@compiled
 def _find(
     solver: int,
     vectors: Ints,
@@ -172,6 +192,47 @@ def _find(
     search: Floats,
 ) -> None:
     """Find when the guard has fallen, which is above zero at the interval's beginning and `high` at its end."""
+    a, b, low = search[LOW_TIME], clock[0], search[LOW]
+    tolerance = max(_rounding(solver, search), search[SHARP] * (b - a))
+    c, left, here = a, low, b  # what was an end before, the guard there, and where the state is taken
+    tries, wide = 0, b - a
+    # near the root the chord shows how far it is: there is no need to close in on it from both sides
+    while b - a > tolerance and (b - a) * high < tolerance * (high - low):
+        here = b - (b - a) * high / (high - low)
+        if left != low and left != high:
+            here = _inverse(a, low, b, high, c, left)
+        here += 0.5 * tolerance  # to be past the root, if it lies there
+        tries += 1
+        if tries % TRIES == 0:
+            slow = b - a > 0.5 * wide
+            wide = b - a
+            if slow:
+                here = 0.5 * (a + b)
+        here = min(max(here, a + 0.25 * tolerance), b - 0.25 * tolerance)
+        state_at(solver, vectors, desk, here, y, yp)
+        value = _look(d, here, y, search)
+        if value < 0.0:
+            c, left, b, high = b, high, here, value
+        else:
+            c, left, a, low = a, low, here, value
+    clock[0] = b
+    if here != b:
+        state_at(solver, vectors, desk, b, y, yp)
+
+
+@compiled
+def _find_as_ida(
+    solver: int,
+    vectors: Ints,
+    desk: Floats,
+    d: Floats,
+    y: Floats,
+    yp: Floats,
+    clock: Floats,
+    high: float,
+    search: Floats,
+) -> None:
+    """Find the same as IDA does."""
     tolerance = _rounding(solver, search)
     a, b, low = search[LOW_TIME], clock[0], search[LOW]
     weight = 1.0
