@@ -137,6 +137,9 @@ def test_the_page_counts_and_lists():
     assert "Unsound: 1" in text
     assert "2026-01-02" in text
     assert "force is off" in text
+    assert "| refused | 1: 3 |" in text
+    many = page([Outcome(k, "finished", rtol=1e-6) for k in range(8)], 7, date(2026, 1, 2))
+    assert "| finished | 8 |" in many
     assert math.isnan(outcomes[3].ratio)
 
 

@@ -54,11 +54,20 @@ _FURTHER = (
 )
 _SHARES = (0.1, 0.5, 0.9, 0.97, 0.99, 1.0)
 _LISTED = 10
+_NAMED = 7
+"""Scenes of one ending that are given by their numbers."""
 
 
 def counts(outcomes: Sequence[Outcome]) -> dict[str, int]:
     """How many ended in which way, the most frequent first."""
     return dict(Counter(outcome.status for outcome in outcomes).most_common())
+
+
+def _scenes(outcomes: Sequence[Outcome], status: str, count: int) -> str:
+    """How many scenes ended so; which, if they are few."""
+    if count > _NAMED:
+        return str(count)
+    return f"{count}: " + ", ".join(str(o.number) for o in outcomes if o.status == status)
 
 
 def quantiles(outcomes: Sequence[Outcome]) -> dict[float, float]:
@@ -116,7 +125,10 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "",
         "| ending | scenes | meaning |",
         "|---|---|---|",
-        *(f"| {status} | {n} | {_MEANINGS.get(status, '')} |" for status, n in counts(outcomes).items()),
+        *(
+            f"| {status} | {_scenes(outcomes, status, n)} | {_MEANINGS.get(status, '')} |"
+            for status, n in counts(outcomes).items()
+        ),
         "",
         "## Error against tolerance",
         "",
