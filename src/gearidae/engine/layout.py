@@ -131,7 +131,7 @@ TOUCHING: Final = 4  # 1 between onset and separation
 JOINED: Final = 5  # per material, height above which asperities are joined at the last turning point
 TORN: Final = 7  # per material, 1 once full stretch has been reached on the way apart
 BOOKED: Final = 9  # per material, energy of the asperities above JOINED that joining takes (asperity model)
-BRANCHES: Final = 11  # per material, the force law's branch at JOINED
+BRANCHES: Final = 11  # per material, the force law's branch at JOINED; then those of the stored energy
 # An elastic contact has these in place of the branches, then rows of one number per node, and per point between nodes:
 LOADED: Final = 11  # 1 if the last evaluation found the pair within reach
 LENGTH: Final = 12  # length of its footprint, sqrt(radius / pitch)

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.contact.energy import stretched_energy
-from gearidae.contact.law import loading_value
+from gearidae.contact.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine import layout as at
 from gearidae.engine.mesh import (
     first_pair,
@@ -89,8 +89,17 @@ def _joined_energy(d: Floats, slot: int, gap: float) -> tuple[float, float]:
         if stretch <= 0.0:
             energy += scale * d[slot + at.BOOKED + material]
             continue
-        table = d[int(d[at.ENERGIES + at.ENERGY * material + at.E_TABLE]) :]
-        e, de = stretched_energy(table, d[slot + at.BOOKED + material], gap, d[slot + at.JOINED + material])
+        table, joined = (
+            d[int(d[at.ENERGIES + at.ENERGY * material + at.E_TABLE]) :],
+            d[slot + at.JOINED + material],
+        )
+        if stretch < limit and d[at.BRANCH] > 0.0 and branch_length(table) > 0:
+            branch = d[slot + at.BRANCHES + (2 + material) * int(d[at.BRANCH]) :]
+            if branch[B_PIECES] == 0.0:
+                set_branch(table, joined, branch)
+            e, de = branch_value(branch, stretch)
+        else:
+            e, de = stretched_energy(table, d[slot + at.BOOKED + material], gap, joined)
         energy += scale * e
         slope += scale * de
     return energy, slope

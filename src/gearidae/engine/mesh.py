@@ -160,6 +160,9 @@ def set_joined(d: Floats, slot: int, material: int, joined: float) -> None:
     # a law that is integrated when asked for keeps no branches, nor does an elastic contact
     if d[at.BRANCH] > 0.0 and branch_length(table) > 0:
         set_branch(table, joined, d[slot + at.BRANCHES + material * int(d[at.BRANCH]) :])
+        d[slot + at.BRANCHES + (2 + material) * int(d[at.BRANCH]) + B_PIECES] = (
+            0.0  # the ledger sets it if it comes there
+        )
 
 
 @compiled

@@ -91,11 +91,13 @@ def overshoots(d: Floats, desk: Floats) -> bool:
 
 
 @compiled(inline=True)
-def _shorter(error: float, back: int) -> float:
-    """Squared factor by which the next step is to be shorter, for a squared error over the greatest allowed."""
+def _shorter(error: float, back: int, least: float) -> float:
+    """Squared factor to shorten the next step by, no less than `least`, for a squared error over the greatest."""
     twice = 4.0 * error
     if KEPT[back] < twice < 1.0:
-        return KEPT[0]  # as good as any by which IDA keeps the step
+        return max(KEPT[0], least)  # as good as any by which IDA keeps the step
+    if twice <= least ** (back + 1):
+        return least
     return float(twice ** (1.0 / (back + 1.0)))
 
 
@@ -156,12 +158,13 @@ def set_pace(n: int, desk: Floats, d: Floats, h: float, correction: Floats, weig
     back, least = _best(n, desk, h, error, weights)
     desk[adams.BACK] = back
     desk[adams.SINCE] += 1.0
-    shorter = _shorter(least / MOST, min(back, used))
+    looking = min(back, used)
     unstable = h * h * desk[adams.FASTEST] / LONGEST
-    held = unstable * GROW**2 > 1.0 and shorter * HURRY**2 < unstable
-    desk[adams.HELD] = desk[adams.HELD] + 1.0 if held else 0.0
+    hurried = 4.0 * least / MOST < (unstable / HURRY**2) ** (looking + 1)
+    desk[adams.HELD] = desk[adams.HELD] + 1.0 if hurried and unstable * GROW**2 > 1.0 else 0.0
     most = GROW_START if desk[adams.KNOWN] == used else GROW_MOST
-    shorter = max(shorter, most**-2.0, unstable, (h * _excitation(desk, d)) ** 2)
+    bound = max(most**-2.0, unstable, (h * _excitation(desk, d)) ** 2)
+    shorter = _shorter(least / MOST, looking, bound)
     wanted = max(0.5 * shorter, 1.05) if error > MOST else min(0.5 * shorter, 0.99)
     total = adams.squares(n, correction, 0, weights)
     if total > 0.0:

@@ -500,7 +500,7 @@ def _assemble(
         head[at.HISTORY] = history_size(int(head[at.NODES]))
     else:
         head[at.BRANCH] = max(branch_length(table) for table in contact[1:3])
-        head[at.HISTORY] = at.BRANCHES + 2 * head[at.BRANCH]
+        head[at.HISTORY] = at.BRANCHES + 4 * head[at.BRANCH]
     histories = np.zeros(int(head[at.HISTORY]) * flanks * slots)
     head[at.STATES] = (2 if head[at.KIND] == at.ROLLER else 4) + head[at.NODES] * head[at.TOTAL_SLOTS]
     weights, address = np.zeros(int(head[at.STATES])), np.zeros(1)
