@@ -53,6 +53,8 @@ def ripple(share):
         (1.5 * np.abs(1.0 - 2.0 * AT), "sticks"),  # at rest for an instant
         (np.zeros(201), "sticks"),  # never gets going
         (np.where(AT < 0.01, 0.0, 1.5), "turns smoothly"),  # starts from rest
+        (np.where(AT < 0.04, 20 * AT * np.cos(80 * np.pi * AT), 1.5), "turns smoothly"),  # and bounces there
+        (np.where(AT < 0.04, 20 * AT, 1.5 - 2.0 * AT), "sticks"),  # from rest, and comes to rest again
     ],
 )
 def test_gear_verdicts(speed, verdict):

@@ -31,12 +31,12 @@ class GearOutcome:
     status : str
         ``finished``, or why the solver ended early.
     verdict : str
-        - ``sticks``: the gear's speed falls to zero or below, or never rises above it.
+        - ``sticks``: the gear's speed falls to zero or below (if it starts from rest: after the `START_UP`), or never
+          rises above it.
         - ``irregular``: it never does, but after the `START_UP` the speeds spread over more than
           `IRREGULAR_ABOVE` of their mean.
         - ``turns smoothly``: neither.
-        - ``runs`` or ``stops``: where a torque follows a schedule, changing speed and coming to rest are what
-        was
+        - ``runs`` or ``stops``: where a torque follows a schedule, changing speed and coming to rest are what was
           asked for; judged is then only whether the gear turns during the last twentieth of the run.
         - ``unfinished``: the solver ended early and the gear had not stuck until then.
     min_speed, max_speed : float
@@ -139,7 +139,9 @@ def _gear_verdict(speed: xr.DataArray, extent: Spread, status: str, scheduled: b
         if status != "finished":
             return "unfinished"
         return "runs" if spread(speed, end - max(1, end // 20), end).low > 0.0 else "stops"
-    started = first_above(speed, 0.0)  # a gear that starts from rest has not stuck there
+    started = first_above(speed, 0.0)
+    if started > 0:  # a gear that starts from rest has not stuck there, nor where it bounces first
+        started = max(started, int(START_UP * end))
     if spread(speed, started, end).low <= 0.0:
         return "sticks"
     if status != "finished":
