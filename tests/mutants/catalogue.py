@@ -270,4 +270,25 @@ MUTANTS = (
         "own[i] += kappa[m, k, i] * p",
         ("engine/test_elastic.py",),
     ),
+    Mutant(
+        "a branch of the stored energy kept beyond the turning point that ends it",
+        "engine/mesh.py",
+        "+ B_PIECES] = 0.0",
+        "+ B_PIECES] *= 1.0",
+        ("engine/test_ledger.py",),
+    ),
+    Mutant(
+        "a root taken for found a hundred times too far away",
+        "engine/search.py",
+        "(b - a) * high < tolerance * (high - low)",
+        "(b - a) * high < 100.0 * tolerance * (high - low)",
+        ("engine/test_search.py",),
+    ),
+    Mutant(
+        "energy of an elastic contact asked for in the place of its force",
+        "engine/node_calls.py",
+        "_ask(_address(d), FORCE,",
+        "_ask(_address(d), STORED,",
+        ("engine/test_elastic.py",),
+    ),
 )

@@ -77,15 +77,15 @@ def load_driver(backend: str) -> ModuleType:
     return import_module(f"gearidae.engine.{module}")
 
 
-_COMPILED = {"native": "native", "portable": "residual"}  # a module that goes with the driver
+_COMPILED = {"native": "native", "portable": "residual"}  # a module that is compiled with each driver
 
-_ready: set[tuple[str, int, bool]] = set()
+_ready: set[tuple[str, float, bool]] = set()
 
 
 def ready_driver(backend: str, problem: Problem) -> ModuleType:
     """Load a driver and have all that it needs for this kind of problem compiled, or read from disk, by a tiny run."""
     driver = load_driver(backend)
-    kind = (backend, len(problem.columns), bool(problem.data[at.NODES] > 0.0))
+    kind = (backend, float(problem.data[at.KIND]), bool(problem.data[at.NODES] > 0.0))
     if kind not in _ready:
         tiny = replace(
             problem,

@@ -36,6 +36,7 @@ from gearidae.contact.energy import stretched_energy
 from gearidae.contact.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine import layout as at
 from gearidae.engine.mesh import (
+    energy_branch,
     first_pair,
     footprint,
     history_slot,
@@ -89,12 +90,10 @@ def _joined_energy(d: Floats, slot: int, gap: float) -> tuple[float, float]:
         if stretch <= 0.0:
             energy += scale * d[slot + at.BOOKED + material]
             continue
-        table, joined = (
-            d[int(d[at.ENERGIES + at.ENERGY * material + at.E_TABLE]) :],
-            d[slot + at.JOINED + material],
-        )
+        table = d[int(d[at.ENERGIES + at.ENERGY * material + at.E_TABLE]) :]
+        joined = d[slot + at.JOINED + material]
         if stretch < limit and d[at.BRANCH] > 0.0 and branch_length(table) > 0:
-            branch = d[slot + at.BRANCHES + (2 + material) * int(d[at.BRANCH]) :]
+            branch = d[energy_branch(d, slot, material) :]
             if branch[B_PIECES] == 0.0:
                 set_branch(table, joined, branch)
             e, de = branch_value(branch, stretch)

@@ -25,6 +25,7 @@ from gearidae.contact.law import (
 from gearidae.engine import layout as at
 
 __all__ = [
+    "energy_branch",
     "first_pair",
     "footprint",
     "history_slot",
@@ -109,7 +110,7 @@ def pair_force(
             stretch = gap - joined
             if stretch <= 0.0:
                 continue
-            first = slot + at.BRANCHES + material * int(d[at.BRANCH])
+            first = force_branch(d, slot, material)
             kept = d[at.BRANCH] > 0.0 and d[first + B_PIECES] > 0.0
             if stretch < limit and not turned and kept:
                 q, dq = branch_value(d[first:], stretch)
@@ -159,10 +160,20 @@ def set_joined(d: Floats, slot: int, material: int, joined: float) -> None:
     table = d[int(d[at.MATERIALS + at.MATERIAL * material + at.M_TABLE]) :]
     # a law that is integrated when asked for keeps no branches, nor does an elastic contact
     if d[at.BRANCH] > 0.0 and branch_length(table) > 0:
-        set_branch(table, joined, d[slot + at.BRANCHES + material * int(d[at.BRANCH]) :])
-        d[slot + at.BRANCHES + (2 + material) * int(d[at.BRANCH]) + B_PIECES] = (
-            0.0  # the ledger sets it if it comes there
-        )
+        set_branch(table, joined, d[force_branch(d, slot, material) :])
+        d[energy_branch(d, slot, material) + B_PIECES] = 0.0  # to be worked out if the ledger comes there
+
+
+@compiled
+def force_branch(d: Floats, slot: int, material: int) -> int:
+    """Offset of a material's branch of the force law at its joined height."""
+    return slot + at.BRANCHES + material * int(d[at.BRANCH])
+
+
+@compiled
+def energy_branch(d: Floats, slot: int, material: int) -> int:
+    """Offset of a material's branch of the stored energy there."""
+    return slot + at.BRANCHES + (2 + material) * int(d[at.BRANCH])
 
 
 @compiled

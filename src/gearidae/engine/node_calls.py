@@ -1,10 +1,10 @@
 """The nodes of an elastic contact as the rest of the engine calls them: at an address.
 
-What `gearidae.engine.nodes` and `gearidae.engine.node_energy` do is half of all that there is to compile, and is
+What `gearidae.engine.nodes` and `gearidae.engine.node_energy` do is a third of all that there is to compile, and is
 needed by a scene of elastic contacts only. Called as compiled functions call each other, it would be compiled into
-every one of its callers, for every scene. So it is compiled on its own (`gearidae.engine.node_service`), when a scene
-first needs it, and called where the scene's numbers say that it lies. The functions here have the names and arguments
-of those that they call.
+every one of its callers besides, for every scene. So it is compiled on its own (`gearidae.engine.node_service`), when
+a scene first needs it, and called where the scene's numbers say that it lies. The functions here have the names and
+arguments of those that they call.
 """
 
 from __future__ import annotations
