@@ -6,16 +6,18 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from gearidae.bench.random_scenes import random_scene
 from gearidae.contact import asperity_of
 from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve, elastic_line_force
-from gearidae.engine import backend, elastic, portable, problem, solve
+from gearidae.engine import backend, elastic, native, portable, problem, solve
 from gearidae.engine import layout as at
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.blocks import assemble, dense_jacobian, factorise, solve_blocks, store_size
+from gearidae.engine.changeover import change_over
 from gearidae.engine.nodes import point_count, row
 from gearidae.engine.problem import make_problem
 from gearidae.engine.residual import mesh_forces, residual
-from gearidae.engine.run import Tally
+from gearidae.engine.run import Ending, Tally
 from gearidae.engine.settle import settle_nodes
 from gearidae.records import EventKind
 
@@ -340,6 +342,34 @@ def test_nodes_are_laid_out_anew_when_pressed_too_deep(monkeypatch, backend):
     # up to the new layout the nodes at the edge carry 1e-5 of the force
     force = given.samples["force"]
     np.testing.assert_allclose(run.samples["force"], force, rtol=0, atol=3e-5 * force.max())
+
+
+def test_a_change_of_model_begins_in_equilibrium():
+    """With asperities stretched, which goes with the gaps along the contact, and these with the pressures."""
+    scene = random_scene(1, 1283)
+    rigid, tally = make_problem(scene), Tally()
+    resume = [block.checkpoint for block in native.run(rigid, scene.run.rtol, 0, tally)][-1]
+    assert tally.ending is Ending.DEFLECTION
+    bodies = rigid.elastic()
+    y, counters = np.empty(bodies.start.size), np.empty(native.COUNTERS, np.int64)
+    resume = change_over(rigid, bodies, resume)
+    time = bodies.restore(resume, y, counters)
+    d, out = bodies.data, np.empty(y.size)
+    slots = [int(d[at.HISTORIES] + d[at.HISTORY] * k) for k in range(int(d[at.TOTAL_SLOTS]))]
+    assert any(d[slot + at.STRETCHED] for slot in slots)
+    residual(d, time, y, np.zeros(y.size), out)
+    assert np.abs(out[4:]).max() < 1e-11
+    # and that is a start from which steps can be made
+    blocks = native.run(bodies, scene.run.rtol, 0, tally, resume)
+    assert next(blocks).time > 1.001 * time * bodies.time_unit
+    blocks.close()
+
+
+def test_a_start_beyond_a_fold_is_one():
+    """Teeth set down at no gap whose bodies would have jumped together from some roughnesses away."""
+    run = solve(random_scene(1, 468))
+    assert (run.status, run.statistics.steps) == ("fold", 0)
+    assert "at a gap of 0 m" in run.message
 
 
 def test_a_run_whose_nodes_are_laid_out_anew_can_be_resumed_before_and_after_that(monkeypatch):

@@ -21,6 +21,7 @@ _STRIDE = 0.25  # longest step of Newton's, in roughnesses
 _NUDGE = 1e-6  # of a deflection, for differences
 _AHEAD = (1e-4, 1e-3)  # roughnesses to look on for a fold
 _FOLLOWED = 1e-9
+_ASIDE = 0.1  # roughnesses; deflections so far from an equilibrium never were in one: a start beyond a fold
 _FOLD_SHARE = 30.0
 """A node that moves so many times as fast as the bodies is about to jump: the static curve folds."""
 
@@ -72,7 +73,8 @@ def fold_gap(d: Floats, t: float) -> float:
     """Gap of a pair whose static contact does not go on the way it was going, at the last accepted time; NaN if none.
 
     A pair is moved on a little with the bodies' deflections following. Where these no longer do, or move many times as
-    fast as the pair, or the equations of its nodes have a determinant that is not positive, the static curve folds.
+    fast as the pair, or the equations of its nodes have a determinant that is not positive, the static curve folds. So
+    it does where a run begins with a contact for which no equilibrium was found.
 
     Parameters
     ----------
@@ -92,7 +94,10 @@ def fold_gap(d: Floats, t: float) -> float:
         gap, way, before = float(d[slot + at.LAST_GAP]), float(d[slot + at.WAY]), row(d, slot, at.ROW_GAP)
         if math.isnan(d[slot + at.PAIR]) or gap >= d[at.CUTOFF] or d[slot + at.LENGTH] == 0.0:
             continue
-        here = _follow(d, t, slot, d[before : before + n] - gap - d[grid : grid + n], gap)
+        kept = d[before : before + n] - gap - d[grid : grid + n]
+        here = _follow(d, t, slot, kept, gap)
+        if here is not None and np.max(np.abs(here - kept)) > _ASIDE:
+            return gap
         for ahead in _AHEAD:
             there = None if here is None else _follow(d, t, slot, here, gap + way * ahead)
             if here is None or there is None or np.max(np.abs(there - here)) > _FOLD_SHARE * ahead:
