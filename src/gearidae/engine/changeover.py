@@ -56,9 +56,8 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
         slot = history_slot(d, coast, int(source[start + at.PAIR]))
         d[slot : slot + at.BRANCHES] = source[start : start + at.BRANCHES]
     d[at.LAST_TIME] = time
-    for _ in range(
-        _ROUNDS
-    ):  # what is joined goes with the gaps along the contact, and these with its pressures
+    # what is joined goes with the gaps along the contact, and these with the pressures of what is joined
+    for _ in range(_ROUNDS):
         before = y.copy()
         _join(d, y)
         settle_nodes(d, time, y)

@@ -130,8 +130,11 @@ def _pair_guard(d: Floats, slot: int, gap: float, rate: float, middle: float) ->
 
 
 @compiled(inline=True)
-def _slip_guard(d: Floats, y: Floats) -> float:
-    """Slip speed; one too slow to be told from rest may turn back a little before it is called a slip."""
+def _dry_guard(d: Floats, t: float, y: Floats) -> float:
+    """Slip speed, or what is left of the dry resistance of a gear held at rest."""
+    if d[at.SLIP] == 0.0:
+        return _hold_guard(d, t, y)
+    # a slip too slow to be told from rest may turn back a little before it is called one
     return y[at.W] * d[at.SLIP] + (0.0 if d[at.MOVING] != 0.0 else 2.0 * d[at.REST_SPEED])
 
 
@@ -141,12 +144,6 @@ def _hold_guard(d: Floats, t: float, y: Floats) -> float:
     force, relief, _, _, _, _ = mesh_forces(d, t, y)
     push = force + d[at.DAMPING] * y[at.V] + relief
     return max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + 2.0 * _NO_FORCE - abs(push)
-
-
-@compiled(inline=True)
-def _dry_guard(d: Floats, t: float, y: Floats) -> float:
-    """Slip speed, or what is left of the dry resistance of a gear held at rest."""
-    return _slip_guard(d, y) if d[at.SLIP] != 0.0 else _hold_guard(d, t, y)
 
 
 # -- histories between events ----------------------------------------------------------------------------------
