@@ -106,9 +106,9 @@ def test_a_step_that_was_not_accepted_leaves_no_trace():
         np.testing.assert_array_equal(desk[part], before[part])
 
 
-@pytest.mark.parametrize("name", ["low_sam", "high_bare"])
-def test_the_same_tolerance_means_a_smaller_error(name):
-    """Than with IDA's own formulas, in half the steps: measured 3 to 27 times smaller at 1e-4 to 1e-10."""
+@pytest.mark.parametrize(("name", "gain"), [("low_sam", 3.0), ("high_bare", 4.0)])
+def test_the_same_tolerance_means_a_smaller_error(name, gain):
+    """Than with IDA's own formulas, in half the steps: measured 3 to 30 times smaller at 1e-4 to 1e-10."""
     reference = load_reference(REFERENCES / f"{name}.npz")
     errors, steps = {}, {}
     for as_ida in (False, True):
@@ -118,7 +118,7 @@ def test_the_same_tolerance_means_a_smaller_error(name):
         speed, position = (rows[:, problem.columns.index(c)] for c in ("gear_speed", "transmission_error"))
         errors[as_ida] = run_error(reference.speed, reference.position, speed, position, reference.length)
         steps[as_ida] = tally.steps
-    assert 2.0 * errors[False] < errors[True]
+    assert gain * errors[False] < errors[True]
     assert steps[False] < 0.6 * steps[True]
 
 

@@ -23,6 +23,7 @@ from gearidae.engine.events import EVENTS_AT_ONCE
 from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import BLOCK_EVENTS
+from gearidae.engine.search import SHARPNESS
 from gearidae.engine.sundials import newton_places, places
 
 __all__ = ["c_contenders"]
@@ -106,6 +107,7 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
             *(ctypes.c_void_p(int(handles[k])) for k in (opened.SOLVER, opened.Y, opened.YP)),
             *(_pointer(a) for a in (d, desk, y, yp, dky, spare, problem.tolerance_scale)),
             ctypes.c_double(tolerance),
+            ctypes.c_double(SHARPNESS * tolerance),
             ctypes.c_double(problem.end),
             ctypes.c_int64(times.size),
             ctypes.c_int64(rows.shape[1]),

@@ -14,7 +14,7 @@ extern int IDAGetNumSteps(void *, long *);
 
 enum { ONE_STEP = 2, TSTOP_RETURN = 1, ROOT_RETURN = 2 };
 enum { CONTINUE = 0, RESTART = 1 };
-#define SHARPNESS 0.01 /* that of gearidae.engine.search */
+enum { TRIES = 3 }; /* that of gearidae.engine.search */
 
 /* Order of gearidae.bench.c_calls.addresses. */
 typedef struct {
@@ -71,7 +71,7 @@ static double find(search_t *s, double high)
         if (left != low && left != high)
             here = inverse(a, low, b, high, c, left);
         here += 0.5 * tolerance;
-        if (++tries % 3 == 0) {
+        if (++tries % TRIES == 0) {
             const int slow = b - a > 0.5 * wide;
             wide = b - a;
             if (slow)
@@ -152,11 +152,12 @@ static int64_t steps(void *solver)
 
 /* Run to the end; 0 if all went well, and the steps taken. */
 int gearidae_loop(const calls_t *call, int64_t *handles, void *solver, void *yy, void *yyp, double *d, double *desk,
-                  double *y, double *yp, double *dky, double *spare, double *scale, double rtol, double end,
-                  int64_t total, int64_t columns, double *rows, double *events, int64_t room, int64_t *taken)
+                  double *y, double *yp, double *dky, double *spare, double *scale, double rtol, double sharp,
+                  double end, int64_t total, int64_t columns, double *rows, double *events, int64_t room,
+                  int64_t *taken)
 {
     search_t s = {call, handles, solver, yy, yyp, d, desk, y, yp};
-    s.sharp = SHARPNESS * rtol;
+    s.sharp = sharp;
     const double spacing = end / (double)(total - 1);
     double t = 0.0;
     int64_t next = 1, happened = 0;

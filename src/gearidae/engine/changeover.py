@@ -12,14 +12,13 @@ from gearidae.engine.ledger import carry_ledger
 from gearidae.engine.mesh import history_slot
 from gearidae.engine.nodes import book_points, first_unknown, meet_nodes, point_count, point_weights, row
 from gearidae.engine.problem import Problem
-from gearidae.engine.settle import settle_nodes
+from gearidae.engine.settle import SETTLED, settle_nodes
 
 __all__ = ["change_over", "deepen"]
 
 Floats = NDArray[np.float64]
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
-_SETTLED = 1e-12  # roughnesses
 
 
 def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
@@ -61,7 +60,7 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
         before = y.copy()
         _join(d, y)
         settle_nodes(d, time, y)
-        if np.max(np.abs(y - before)) <= _SETTLED:
+        if np.max(np.abs(y - before)) <= SETTLED:
             break
     carry_ledger(source, state, d, y)
     return new.checkpoint(time, y, counters)

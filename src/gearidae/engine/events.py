@@ -141,9 +141,14 @@ def _dry_guard(d: Floats, t: float, y: Floats) -> float:
 @compiled
 def _hold_guard(d: Floats, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
+    return max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + 2.0 * _NO_FORCE - abs(_push(d, t, y))
+
+
+@compiled
+def _push(d: Floats, t: float, y: Floats) -> float:
+    """Force on a gear at rest, from the mesh."""
     force, relief, _, _, _, _ = mesh_forces(d, t, y)
-    push = force + d[at.DAMPING] * y[at.V] + relief
-    return max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + 2.0 * _NO_FORCE - abs(push)
+    return force + d[at.DAMPING] * y[at.V] + relief
 
 
 # -- histories between events ----------------------------------------------------------------------------------
@@ -329,8 +334,7 @@ def _stick_or_slip(d: Floats, t: float, y: Floats, events: Floats, count: int) -
     before = kinetic_energy(d, y)
     y[at.W] = d[at.MOVING] = 0.0
     d[at.DRY_LOSS] += before - kinetic_energy(d, y)
-    force, relief, _, _, _, _ = mesh_forces(d, t, y)
-    push = force + d[at.DAMPING] * y[at.V] + relief
+    push = _push(d, t, y)
     slipping = d[at.SLIP] != 0.0
     if slipping and abs(push) <= max(torque_force(d, int(d[at.LOAD_AT]), t), 0.0) + _NO_FORCE:
         d[at.SLIP] = 0.0

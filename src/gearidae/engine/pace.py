@@ -91,9 +91,8 @@ def overshoots(d: Floats, desk: Floats) -> bool:
 
 
 @compiled(inline=True)
-def _shorter(error: float, back: int, least: float) -> float:
-    """Squared factor to shorten the next step by, no less than `least`, for a squared error over the greatest."""
-    twice = 4.0 * error
+def _shorter(twice: float, back: int, least: float) -> float:
+    """Squared factor to shorten the next step by, no less than `least`, for the square of twice the error."""
     if KEPT[back] < twice < 1.0:
         return max(KEPT[0], least)  # as good as any by which IDA keeps the step
     if twice <= least ** (back + 1):
@@ -160,11 +159,12 @@ def set_pace(n: int, desk: Floats, d: Floats, h: float, correction: Floats, weig
     desk[adams.SINCE] += 1.0
     looking = min(back, used)
     unstable = h * h * desk[adams.FASTEST] / LONGEST
-    hurried = 4.0 * least / MOST < (unstable / HURRY**2) ** (looking + 1)
+    twice = 4.0 * least / MOST  # squared, over the greatest error allowed
+    hurried = twice < (unstable / HURRY**2) ** (looking + 1)
     desk[adams.HELD] = desk[adams.HELD] + 1.0 if hurried and unstable * GROW**2 > 1.0 else 0.0
     most = GROW_START if desk[adams.KNOWN] == used else GROW_MOST
     bound = max(most**-2.0, unstable, (h * _excitation(desk, d)) ** 2)
-    shorter = _shorter(least / MOST, looking, bound)
+    shorter = _shorter(twice, looking, bound)
     wanted = max(0.5 * shorter, 1.05) if error > MOST else min(0.5 * shorter, 0.99)
     total = adams.squares(n, correction, 0, weights)
     if total > 0.0:

@@ -11,11 +11,11 @@ from gearidae.engine import layout as at
 from gearidae.engine.nodes import first_unknown, influence, node_force, row, stiffness_matrix
 from gearidae.engine.residual import residual
 
-__all__ = ["fold_gap", "settle_nodes"]
+__all__ = ["SETTLED", "fold_gap", "settle_nodes"]
 
 Floats = NDArray[np.float64]
 
-_SETTLED = 1e-12  # roughnesses
+SETTLED = 1e-12  # roughnesses
 _TRIES = 60
 _STRIDE = 0.25  # longest step of Newton's, in roughnesses
 _NUDGE = 1e-6  # of a deflection, for differences
@@ -64,7 +64,7 @@ def settle_nodes(d: Floats, t: float, y: Floats) -> bool:
         if not math.isfinite(largest):
             return False
         y[-pairs * n :] -= (change * min(1.0, _STRIDE / max(largest, _STRIDE))).ravel()
-        if largest <= _SETTLED:
+        if largest <= SETTLED:
             return True
     return False
 
