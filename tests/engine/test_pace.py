@@ -181,7 +181,7 @@ def test_where_the_formulas_are_no_good_ida_has_its_own():
     data[at.CONSTANTS :] = 1e14  # a tolerance of three roundings
     assert changed(desk, data, state, rates)
     data[at.CONSTANTS :] = 1e9
-    slow = np.array([16.0, 1e-8])  # ten tolerances: at rest, unless it is where the vibration turns
+    slow = np.array([16.0, 0.9e-9 * pace.QUIET])  # at rest, unless it is where the vibration turns
     assert changed(desk, data, slow, rates)
     assert not changed(desk, data, slow, np.array([0.0, 1e-7]))
 
@@ -197,4 +197,6 @@ def test_they_come_back_where_they_are_some_good_again():
         other = desk.copy()
         other[place] = value
         assert not changed(other, data, state, rates)
-    assert not changed(desk, data, np.array([16.0, 4e-8]), rates)  # hardly more than where they are given up
+    assert not changed(
+        desk, data, np.array([16.0, 1.5e-9 * pace.QUIET]), rates
+    )  # hardly more than where they are given up

@@ -47,8 +47,8 @@ LONGEST: Final = 0.64
 LONGEST_7: Final = 0.3
 LONGEST_8: Final = 0.1
 CALM: Final = 5  # rates that those which damp look back on, at most
-LOUD: Final = 1e4  # swing from which any formula will do, over the tolerance
-QUIET: Final = 30.0  # swing below which there is nothing to follow
+LOUD: Final = 1e3  # swing from which any formula will do, over the tolerance
+QUIET: Final = 10.0  # swing below which there is nothing to follow
 COARSEST: Final = 0.2 / float(np.finfo(float).eps)  # a state over its tolerance
 HURRY: Final = 4.0  # how much longer a step could be, for its error, that is held back too much
 PATIENCE: Final = 20.0  # steps until formulas are changed
@@ -60,7 +60,10 @@ GROW_IDA: Final = 2.0  # both, of IDA's own steps
 IDA_ORDER: Final = 5
 OVERSHOOT: Final = 0.5  # how far below the lowest gap a step may end
 MOST: Final = CAUTION**-2  # squared error of the lower order
-KEPT: Final = (0.8, *(GROW ** (-2.0 * (back + 1.0)) for back in range(1, adams.DEEPEST + 1)))
+LEAST_CUT: Final = 0.9  # IDA's own, where it shortens a step at all
+# Squares of twice the error between which a step is kept or cut by that, by rates looked back on.
+KEPT: Final = tuple(GROW ** (-2.0 * (back + 1.0)) for back in range(adams.DEEPEST + 1))
+EASED: Final = tuple(LEAST_CUT ** (-2.0 * (back + 1.0)) for back in range(adams.DEEPEST + 1))
 
 
 @compiled
@@ -93,8 +96,10 @@ def overshoots(d: Floats, desk: Floats) -> bool:
 @compiled(inline=True)
 def _shorter(twice: float, back: int, least: float) -> float:
     """Squared factor to shorten the next step by, no less than `least`, for the square of twice the error."""
-    if KEPT[back] < twice < 1.0:
-        return max(KEPT[0], least)  # as good as any by which IDA keeps the step
+    if (
+        KEPT[back] < twice < EASED[back]
+    ):  # as good as any by which IDA keeps the step, or makes it a tenth shorter
+        return max(0.8 if twice < 1.0 else 1.2, least)
     if twice <= least ** (back + 1):
         return least
     return float(twice ** (1.0 / (back + 1.0)))
