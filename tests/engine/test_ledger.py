@@ -15,8 +15,11 @@ from gearidae.contact.energy import JOINING
 from gearidae.contact.jkr import S_FOLD, jkr_root
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
+from gearidae.engine import layout as at
+from gearidae.engine import ledger as ledger_kernel
 from gearidae.engine import native as native_driver
 from gearidae.engine.problem import make_problem
+from gearidae.engine.run import Tally
 from gearidae.mesh import curvature_radii
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -294,6 +297,48 @@ def test_both_backends_keep_the_same_ledger(monkeypatch):
         assert getattr(portable, name) == pytest.approx(
             getattr(native, name), rel=1e-6, abs=1e-9 * native.throughput
         )
+
+
+# -- where it looks --------------------------------------------------------------------------------------------------
+
+
+def error_of_cubes(deviation, h):
+    """Error of the ledger's integral over h of the cube of a speed about 3, root mean square over where it starts."""
+    x, w = np.polynomial.legendre.leggauss(12)
+    errors = []
+    for start in np.linspace(0.0, 2.0 * math.pi, 9)[:-1]:
+        ends = np.array([start, start + h])
+        speeds, rates = 3.0 + deviation * np.cos(ends), -deviation * np.sin(ends)
+        travel = 3.0 * h + deviation * np.diff(np.sin(ends))[0]
+        exact = 0.5 * h * w @ (3.0 + deviation * np.cos(start + 0.5 * h * (1.0 + x))) ** 3
+        errors.append(ledger_kernel._cubes(h, travel, speeds[0], rates[0], speeds[1], rates[1]) - exact)
+    return np.sqrt(np.mean(np.square(errors)))
+
+
+def test_drag_knows_the_mean_speed():
+    error = error_of_cubes(0.3, 0.4)
+    assert error / error_of_cubes(0.3, 0.2) == pytest.approx(32.0, rel=0.1)  # of fifth order
+    # of second order in the deviation; the rule without the mean is of first
+    assert error / error_of_cubes(0.03, 0.4) == pytest.approx(100.0, rel=0.1)
+
+
+def test_drag_of_a_speed_that_turns_round():
+    # |x|^3 from -0.1 to 1, which has a corner in its third derivative
+    assert ledger_kernel._cubes(1.1, 0.495, -0.1, 1.0, 1.0, 1.0) == pytest.approx(0.25, rel=0.05, abs=0)
+
+
+def test_pairs_that_turn_round_between_two_looks():
+    """Steps and losses are the same wherever the ledger looks, and the work of the radius nearly so."""
+    scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.model": "asperity"})
+    often, seldom = make_problem(scene), make_problem(scene)
+    often.data[at.LEDGER_SPAN] = 0.0  # at every step and every root
+    ledgers = [
+        [block.ledger for block in native_driver.run(problem, 1e-8, 2, Tally())][-1]
+        for problem in (often, seldom)
+    ]
+    assert ledgers[0].adhesion_loss == ledgers[1].adhesion_loss
+    # 3e-8 if a loss were booked at the turning point, and taken from the power no sooner than the next look
+    assert abs(ledgers[0].radius_work - ledgers[1].radius_work) < 1e-9 * ledgers[0].throughput
 
 
 # -- a long run in pieces ---------------------------------------------------------------------------------------------

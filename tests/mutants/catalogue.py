@@ -278,6 +278,20 @@ MUTANTS = (
         ("engine/test_ledger.py",),
     ),
     Mutant(
+        "a joining loss booked at the turning point, and taken from the radius's power at the next look",
+        "engine/ledger.py",
+        "        _book_before(d, coast, pair, loss, length)",
+        "        pass",
+        ("engine/test_ledger.py",),
+    ),
+    Mutant(
+        "drag's loss without the square of the speed's deviation",
+        "engine/ledger.py",
+        "(3.0 * mean + b) * b * b",
+        "b * b * b",
+        ("engine/test_ledger.py",),
+    ),
+    Mutant(
         "a root taken for found a hundred times too far away",
         "engine/search.py",
         "(b - a) * high < tolerance * (high - low)",

@@ -32,7 +32,7 @@ def _accept(data, desk, t, y, yp, dky, spare, flag):  # type: ignore[no-untyped-
     n = int(d[at.STATES])
     state, rates = carray(y, (n,)), carray(yp, (n,))
     accept(d, t, state)
-    book(known, d, t, state, rates, carray(dky, (n,)), carray(spare, (n,)), flag != 0)
+    book(known, d, t, state, rates, carray(dky, (n,)), carray(spare, (n,)), flag)
     return change_wanted(known, d, state, rates)
 
 

@@ -20,6 +20,7 @@ from gearidae.engine.ledger import book_joining, kinetic_energy, see_radius
 from gearidae.engine.mesh import (
     first_pair,
     history_slot,
+    in_flight,
     last_pair,
     material_stretch,
     nearest_gap,
@@ -41,6 +42,7 @@ __all__ = [
     "begin",
     "guard",
     "handle",
+    "ledger_can_wait",
     "pass_knot",
 ]
 
@@ -264,7 +266,7 @@ def handle(d: Floats, t: float, y: Floats, events: Floats, count: int) -> tuple[
             slot = history_slot(d, coast, pair)
             if d[slot + at.PAIR] == pair:
                 count = _handle_pair(d, t, y, coast, pair, slot, events, count)
-    if d[at.KIND] == at.GEARS and (crossed or d[at.ADHESION_LOSS] != lost):
+    if crossed or (d[at.NODES] > 0.0 and d[at.KIND] == at.GEARS and d[at.ADHESION_LOSS] != lost):
         see_radius(d, t, y)
     if t - d[at.LAST_ROOT] > d[at.ROOT_SPACING] * (1.0 + t):
         d[at.ROOTS] = 0.0
@@ -273,6 +275,42 @@ def handle(d: Floats, t: float, y: Floats, events: Floats, count: int) -> tuple[
     if d[at.ROOTS] > d[at.ROOT_LIMIT]:
         action = CROWDED
     return count, action
+
+
+@compiled
+def ledger_can_wait(d: Floats, t: float, y: Floats) -> bool:
+    """Whether the ledger has no need to look at a root, before `handle` is there.
+
+    That is so where gears' pairs touch, part or turn round and nothing else happens: up to their third derivative the
+    powers know nothing of it.
+    """
+    if d[at.KIND] == at.ROLLER or d[at.NODES] > 0.0 or d[at.PASSED] != 0.0:
+        return False
+    if in_flight(d) or t - d[at.LEDGER_TIME] > d[at.LEDGER_SPAN]:
+        return False
+    if not d[at.MARK_LOW] <= y[at.PHASE] < d[at.MARK_HIGH]:
+        return False
+    if d[at.DRY] != 0.0 and _dry_guard(d, t, y) <= 0.0:
+        return False
+    for coast in range(2):
+        if d[at.NEAR + coast] == 0.0:
+            continue
+        first, last = _pairs(d, coast, y)
+        for pair in range(first, last + 1):
+            slot = history_slot(d, coast, pair)
+            if d[slot + at.PAIR] == pair:
+                gap, _ = _kinematics(d, coast, pair, y)
+                if _stretched(d, slot, 0, gap) or _stretched(d, slot, 1, gap):
+                    return False
+    return True
+
+
+@compiled
+def _stretched(d: Floats, slot: int, material: int, middle: float) -> bool:
+    """Whether a material's asperities have been stretched in full since that was last recorded."""
+    limit = material_stretch(d, material)
+    waiting = limit > 0.0 and d[slot + at.WAY] > 0.0 and d[slot + at.TORN + material] == 0.0
+    return bool(waiting and d[slot + at.JOINED + material] + limit <= middle)
 
 
 @compiled
@@ -307,9 +345,7 @@ def _handle_pair(
     way = d[slot + at.WAY]
     middle = middle_gap(d, slot, y, gap)
     for material in range(2):
-        limit = material_stretch(d, material)
-        waiting = limit > 0.0 and way > 0.0 and d[slot + at.TORN + material] == 0.0
-        if waiting and d[slot + at.JOINED + material] + limit <= middle:
+        if _stretched(d, slot, material, middle):
             d[slot + at.TORN + material] = 1.0
             count = _record(events, count, d, t, _FULL_STRETCH, pair, coast, rate)
     if way != 0.0 and way * rate <= 0.0:

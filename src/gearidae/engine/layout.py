@@ -106,21 +106,30 @@ WAS_GAIN: Final = 85
 WAS_GEAR: Final = 86  # the gear's
 WAS_W: Final = 87
 WAS_W_RATE: Final = 88
-WAS_V: Final = 89
-WAS_V_RATE: Final = 90
-WAS_DRIVE: Final = 91  # torques over base radius
-WAS_DRIVE_RATE: Final = 92
-WAS_LOAD: Final = 93
-WAS_LOAD_RATE: Final = 94
-WAS_RADIUS: Final = 95  # power of the changing radius
-WAS_RADIUS_RATE: Final = 96
-LEDGER_END: Final = 97
-LEDGER_SPAN: Final = 97  # time over which steps may be gathered, and how many
-LEDGER_STRIDE: Final = 98  # below one: parts of a step
+WAS_DRIVE: Final = 89  # torques over base radius
+WAS_DRIVE_RATE: Final = 90
+WAS_LOAD: Final = 91
+WAS_LOAD_RATE: Final = 92
+WAS_RADIUS: Final = 93  # power of the changing radius
+WAS_RADIUS_RATE: Final = 94
+WAS_BOOKED: Final = 95  # work of the radius on what joining losses booked since then have taken
+# Time up to which drag and damping are kept, and what their powers were made of there.
+RESIST_TIME: Final = 96
+RESIST_GEAR: Final = 97
+RESIST_W: Final = 98
+RESIST_W_RATE: Final = 99
+RESIST_V: Final = 100
+RESIST_V_RATE: Final = 101
+LEDGER_END: Final = 102
+LEDGER_SPAN: Final = (
+    102  # time over which steps may be gathered, how many, and into how many parts one in flight goes
+)
+LEDGER_STRIDE: Final = 103
+LEDGER_PARTS: Final = 104
 # Angular frequencies that the steps have to follow, 0 for none: of torques, scaled, and along the mesh, per pitch.
-TORQUE_WAVE: Final = 99
-MESH_WAVE: Final = 100
-CONSTANTS: Final = 101
+TORQUE_WAVE: Final = 105
+MESH_WAVE: Final = 106
+CONSTANTS: Final = 107
 
 # -- the history of a tooth pair, in the slot `pair mod SLOTS` of its flank ------------------------------------------
 PAIR: Final = 0  # number of the pair, counted without TURNS; what the slot is about

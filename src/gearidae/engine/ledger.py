@@ -1,8 +1,10 @@
 r"""The energy ledger of a run, kept at every accepted step without evaluating a force.
 
-The works of drive, drag, dry resistance and mesh damping need torques and speeds only. A torque that is constant over a
-step does exactly torque times angle; the rest is integrated step by step with the powers and their rates at both ends
-(corrected trapezoidal rule, an error of fifth order in the step).
+The works of drive, drag, dry resistance and mesh damping need torques and speeds only. A torque that is constant
+does exactly torque times angle, and the drag of a mean speed likewise; the rest is integrated with the powers and their
+rates at both ends (corrected trapezoidal rule, an error of fifth order in the length). Drag and damping vary most and
+cost least to look at, so they are integrated step by step. The others are over several steps at once, and a pair that
+turns round in between is no corner to them.
 
 What the contacts store is a function of the gaps and of the joined heights (`gearidae.contact.energy`). A pair on a
 footprint of length :math:`\ell = \sqrt{R/p_b}` stores :math:`\ell\,(A(g) + \sum e_m)` and pushes with W. Its rate is
@@ -167,8 +169,28 @@ def book_joining(d: Floats, y: Floats, coast: int, pair: int, slot: int, gap: fl
         length = footprint(d, pair_gap(d, coast, pair, y[at.U], y[at.V], y[at.PHASE], y[at.W])[3])
     if d[at.NODES] > 0.0:
         d[at.ADHESION_LOSS] += length * nodes_joining_loss(d, slot, y, gap)
-    else:
-        d[at.ADHESION_LOSS] += length * _joining_loss(d, slot, gap)
+        return
+    loss = _joining_loss(d, slot, gap)
+    d[at.ADHESION_LOSS] += length * loss
+    if d[at.KIND] == at.GEARS:
+        _book_before(d, coast, pair, loss, length)
+
+
+@compiled
+def _book_before(d: Floats, coast: int, pair: int, loss: float, length: float) -> None:
+    """Let the power of the changing radius go on without a step where a loss per length has been booked.
+
+    From then on it lacks the loss times the rate of the length. It is taken out where the quadrature began, too, and
+    what that leaves out until now is the loss times what the length has changed by.
+    """
+    first, last = _pairs_on_path(d, coast)
+    if d[at.NEAR + coast] == 0.0 or not first <= pair <= last:
+        return
+    before = d[at.WAS_GEAR] * d[at.PHASE_RATE]
+    was, rate, bend = _length(d, coast, pair, before, d[at.WAS_W], d[at.WAS_W_RATE])
+    d[at.WAS_RADIUS] -= loss * rate
+    d[at.WAS_RADIUS_RATE] -= loss * bend
+    d[at.WAS_BOOKED] += loss * (length - was)
 
 
 @compiled
@@ -186,16 +208,9 @@ def _joining_loss(d: Floats, slot: int, gap: float) -> float:
 
 @compiled
 def _radius_power(d: Floats, t: float, y: Floats, w_rate: float) -> tuple[float, float]:
-    """Power of the changing radius, what length adds to a pair's energy times the length's rate, and its own rate.
-
-    A pair is on the path of contact or not according to where the last two mesh marks leave it, so that a step that
-    ends at a mark sees the side it comes from.
-    """
+    """Power of the changing radius, what length adds to a pair's energy times the length's rate, and its own rate."""
     power = rate = 0.0
-    phase, w = y[at.PHASE], y[at.W]
-    between = 0.5 * (d[at.MARK_LOW] + d[at.MARK_HIGH])
     elastic = d[at.NODES] > 0.0
-    path, curvature = d[at.PATH], d[at.SUM_CURVATURE]
     for coast in range(2):
         if d[at.NEAR + coast] == 0.0:
             continue
@@ -203,24 +218,13 @@ def _radius_power(d: Floats, t: float, y: Floats, w_rate: float) -> tuple[float,
         gap = d[at.HALF_BACKLASH] - sign * y[at.U]
         if gap >= d[at.CUTOFF]:
             continue
-        lowest = between - d[at.COAST_PHASE] if coast else between - path
-        first = math.ceil(lowest)
-        last = math.floor(lowest + path)
         potential, push = loading_value(d, int(d[at.POTENTIAL_AT]), gap)
-        along_rate = sign * d[at.PHASE_RATE] * w
-        along_bend = sign * d[at.PHASE_RATE] * w_rate
+        first, last = _pairs_on_path(d, coast)
         for pair in range(first, last + 1):
             slot = history_slot(d, coast, pair)
             if d[slot + at.PAIR] != pair:
                 continue
-            # l^2 = r - c r^2 with r the pinion's radius of curvature
-            radius = d[at.START_RADIUS] + (d[at.COAST_PHASE] + pair - phase if coast else phase - pair)
-            length = math.sqrt(radius - radius * radius * curvature)
-            half = 0.5 - radius * curvature
-            length_rate = half * along_rate / length
-            bend = (
-                half * along_bend - curvature * along_rate * along_rate - length_rate * length_rate
-            ) / length
+            length, length_rate, bend = _length(d, coast, pair, y[at.PHASE], y[at.W], w_rate)
             if elastic:
                 pull, change = nodes_length_force(d, slot, t, y, gap, -sign * y[at.V], length)
             else:
@@ -232,19 +236,48 @@ def _radius_power(d: Floats, t: float, y: Floats, w_rate: float) -> tuple[float,
     return power, rate
 
 
+@compiled
+def _pairs_on_path(d: Floats, coast: int) -> tuple[int, int]:
+    """First and last number of a flank's pairs on the path of contact.
+
+    The last two mesh marks tell, so that a step that ends at a mark sees the side it comes from.
+    """
+    between = 0.5 * (d[at.MARK_LOW] + d[at.MARK_HIGH])
+    lowest = between - d[at.COAST_PHASE] if coast else between - d[at.PATH]
+    return math.ceil(lowest), math.floor(lowest + d[at.PATH])
+
+
+@compiled
+def _length(
+    d: Floats, coast: int, pair: int, phase: float, w: float, w_rate: float
+) -> tuple[float, float, float]:
+    """Length of the footprint of a pair on the path of contact, its rate and the rate of that."""
+    sign = d[at.PHASE_RATE] * (1.0 - 2.0 * coast)
+    curvature = d[at.SUM_CURVATURE]
+    # l^2 = r - c r^2 with r the pinion's radius of curvature
+    radius = d[at.START_RADIUS] + (d[at.COAST_PHASE] + pair - phase if coast else phase - pair)
+    length = math.sqrt(radius - radius * radius * curvature)
+    half = 0.5 - radius * curvature
+    along = sign * w
+    rate = half * along / length
+    return length, rate, (half * sign * w_rate - curvature * along * along - rate * rate) / length
+
+
 # -- from one accepted time to the next ------------------------------------------------------------------------------
 
 
 @compiled
 def enter(d: Floats, t: float, y: Floats, yp: Floats) -> None:
     """Begin a quadrature at a start, where speeds and torques may jump."""
-    d[at.LEDGER_STEPS] = 0.0
+    d[at.LEDGER_STEPS] = d[at.WAS_BOOKED] = 0.0
     d[at.LEDGER_TIME] = t
     d[at.WAS_KINETIC] = kinetic_energy(d, y)
     if d[at.KIND] == at.ROLLER:
         return
     d[at.WAS_GEAR], d[at.WAS_W], d[at.WAS_W_RATE] = y[at.PHASE] / d[at.PHASE_RATE], y[at.W], yp[at.W]
-    d[at.WAS_V], d[at.WAS_V_RATE] = y[at.V], yp[at.V]
+    d[at.RESIST_TIME], d[at.RESIST_GEAR] = t, d[at.WAS_GEAR]
+    d[at.RESIST_W], d[at.RESIST_W_RATE] = y[at.W], yp[at.W]
+    d[at.RESIST_V], d[at.RESIST_V_RATE] = y[at.V], yp[at.V]
     d[at.WAS_PINION], d[at.WAS_SPEED], d[at.WAS_GAIN] = _pinion(d, y, yp)
     d[at.WAS_DRIVE], d[at.WAS_DRIVE_RATE] = _torque(d, int(d[at.DRIVE_AT]), t)
     d[at.WAS_LOAD], d[at.WAS_LOAD_RATE] = _torque(d, int(d[at.LOAD_AT]), t)
@@ -272,6 +305,8 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
     now : bool
         Whether it cannot wait until enough steps have gathered, see `layout.LEDGER_STRIDE`.
     """
+    if d[at.KIND] == at.GEARS:
+        _resist(d, t, y, yp)
     d[at.LEDGER_STEPS] += 1.0
     h = t - d[at.LEDGER_TIME]
     if h == 0.0 or not (
@@ -304,13 +339,6 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
 
     w, w_rate = y[at.W], yp[at.W]
     gear = y[at.PHASE] / d[at.PHASE_RATE]
-    if d[at.DRAG] != 0.0:
-        drag0, drag1 = d[at.WAS_W] * abs(d[at.WAS_W]), w * abs(w)
-        drag = d[at.DRAG] * _integral(
-            h, drag0 * d[at.WAS_W], drag1 * w, 3.0 * drag0 * d[at.WAS_W_RATE], 3.0 * drag1 * w_rate
-        )
-        d[at.DRAG_LOSS] += drag
-        exchange += drag
     if d[at.DRY] != 0.0:
         force, rate = _torque(d, int(d[at.LOAD_AT]), t)
         dry = 0.5 * (force + d[at.WAS_LOAD]) * (gear - d[at.WAS_GEAR])
@@ -333,21 +361,41 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
         d[at.WAS_LOAD], d[at.WAS_LOAD_RATE] = force, rate
         d[at.DRY_LOSS] += d[at.SLIP] * dry
         exchange += abs(d[at.SLIP] * dry)
-    if d[at.DAMPING] != 0.0:
-        v0, v1 = d[at.WAS_V], y[at.V]
-        rub = d[at.DAMPING] * _integral(h, v0 * v0, v1 * v1, 2.0 * v0 * d[at.WAS_V_RATE], 2.0 * v1 * yp[at.V])
-        d[at.WAS_V], d[at.WAS_V_RATE] = y[at.V], yp[at.V]
-        d[at.DAMPING_LOSS] += rub
-        exchange += rub
     d[at.WAS_GEAR], d[at.WAS_W], d[at.WAS_W_RATE] = gear, w, w_rate
 
     power, rate = _radius_power(d, t, y, w_rate)
-    radius = _integral(h, d[at.WAS_RADIUS], power, d[at.WAS_RADIUS_RATE], rate)
+    radius = _integral(h, d[at.WAS_RADIUS], power, d[at.WAS_RADIUS_RATE], rate) + d[at.WAS_BOOKED]
+    d[at.WAS_BOOKED] = 0.0
     d[at.WAS_RADIUS], d[at.WAS_RADIUS_RATE] = power, rate
     d[at.RADIUS_WORK] += radius
     kinetic = 0.5 * speed * speed / d[at.PINION_SHARE] + 0.5 * w * w / d[at.GEAR_SHARE]
     d[at.THROUGHPUT] += exchange + abs(radius) + abs(kinetic - d[at.WAS_KINETIC])
     d[at.WAS_KINETIC] = kinetic
+
+
+@compiled(inline=True)
+def _resist(d: Floats, t: float, y: Floats, yp: Floats) -> None:
+    """Book what drag and damping have taken: they cost next to nothing to look at, so that no step need be gathered."""
+    h = t - d[at.RESIST_TIME]
+    if h == 0.0:
+        return
+    gear, w, w_rate = y[at.PHASE] / d[at.PHASE_RATE], y[at.W], yp[at.W]
+    taken = 0.0
+    if d[at.DRAG] != 0.0:
+        taken = d[at.DRAG] * _cubes(
+            h, gear - d[at.RESIST_GEAR], d[at.RESIST_W], d[at.RESIST_W_RATE], w, w_rate
+        )
+        d[at.DRAG_LOSS] += taken
+    if d[at.DAMPING] != 0.0:
+        v, was = y[at.V], d[at.RESIST_V]
+        rub = d[at.DAMPING] * _integral(
+            h, was * was, v * v, 2.0 * was * d[at.RESIST_V_RATE], 2.0 * v * yp[at.V]
+        )
+        d[at.RESIST_V], d[at.RESIST_V_RATE] = v, yp[at.V]
+        d[at.DAMPING_LOSS] += rub
+        taken += rub
+    d[at.RESIST_TIME], d[at.RESIST_GEAR], d[at.RESIST_W], d[at.RESIST_W_RATE] = t, gear, w, w_rate
+    d[at.THROUGHPUT] += taken
 
 
 @compiled
@@ -375,3 +423,26 @@ def _torque(d: Floats, law: int, t: float) -> tuple[float, float]:
 def _integral(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
     """Corrected trapezoidal rule: exact for cubics."""
     return 0.5 * h * (f0 + f1) + h * h / 12.0 * (rate0 - rate1)
+
+
+@compiled
+def _cubes(h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float) -> float:
+    """Integral of the cube of a speed's magnitude.
+
+    That of the speed itself is known, the travel: what is left to the quadrature is of second order in the speed's
+    deviation from its mean.
+    """
+    mean = travel / h
+    if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # it has turned round
+        q0, q1 = w0 * abs(w0), w1 * abs(w1)
+        return _integral(h, q0 * w0, q1 * w1, 3.0 * q0 * rate0, 3.0 * q1 * rate1)
+    a, b = w0 - mean, w1 - mean
+    # of the cube of mean and deviation, the deviation itself leaves nothing
+    rest = _integral(
+        h,
+        (3.0 * mean + a) * a * a,
+        (3.0 * mean + b) * b * b,
+        3.0 * (2.0 * mean + a) * a * rate0,
+        3.0 * (2.0 * mean + b) * b * rate1,
+    )
+    return abs(mean * mean * travel + rest)

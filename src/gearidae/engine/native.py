@@ -6,7 +6,6 @@ output is full, a budget of steps is used up, or the run is over, and can be cal
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,7 +16,15 @@ from gearidae.engine import adams
 from gearidae.engine import layout as at
 from gearidae.engine import sundials as sun
 from gearidae.engine.callbacks import callbacks
-from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, handle, pass_knot
+from gearidae.engine.events import (
+    CROWDED,
+    EVENTS_AT_ONCE,
+    RESTART,
+    accept,
+    handle,
+    ledger_can_wait,
+    pass_knot,
+)
 from gearidae.engine.ledger import enter, follow
 from gearidae.engine.mesh import in_flight
 from gearidae.engine.observe import observe
@@ -66,9 +73,6 @@ Ints = NDArray[np.int64]
 ) = range(16)
 COUNTERS = PROGRESS
 LEDGER_ORDER = 4  # that of the ledger's quadrature
-# Parts of a step in flight, and of one near contact, over the number of steps that would be gathered near contact
-FLIGHT_PARTS = 8.0
-CONTACT_PARTS = 0.6
 # progress[ERROR]: what events, histories and folds may end a run with; negative numbers are IDA's own
 CHATTER, BEYOND = CODES
 
@@ -132,16 +136,19 @@ def state_for_sample(handles: Ints, desk: Floats, t: float, dky: Floats, spare: 
 
 @compiled(inline=True)
 def book(
-    desk: Floats, d: Floats, t: float, y: Floats, yp: Floats, dky: Floats, spare: Floats, now: bool
+    desk: Floats, d: Floats, t: float, y: Floats, yp: Floats, dky: Floats, spare: Floats, flag: int
 ) -> None:
-    """Keep the ledger up to an accepted time: in parts of a step that is too long for its quadrature.
+    """Keep the ledger up to an accepted time, and what IDA's flag says of it, before it is handled.
 
-    Formulas that look back far take steps for which it is too coarse: in flight, where torques and drag are all that
-    is left to integrate, and at tolerances that leave no step to gather.
+    Where a pair turns round nothing has to be kept. In flight, where torques and drag are all that is left to
+    integrate, formulas that look back far take steps that are too long for the quadrature: these are divided.
     """
+    if flag == sun.IDA_ROOT_RETURN and ledger_can_wait(d, t, y):
+        return
+    now = flag != 0 or d[at.PASSED] != 0.0
     parts, start = 1, d[at.LEDGER_TIME]
-    if desk[adams.USED] > LEDGER_ORDER and d[at.KIND] == at.GEARS:
-        parts = math.ceil((FLIGHT_PARTS if in_flight(d) else CONTACT_PARTS) / d[at.LEDGER_STRIDE])
+    if desk[adams.USED] > LEDGER_ORDER and in_flight(d) and d[at.KIND] == at.GEARS:
+        parts = int(d[at.LEDGER_PARTS])
         start = max(start, desk[adams.NOW] - desk[adams.LAST_STEP])
     for part in range(1, parts + 1):
         time, state, rates = t, y, yp
@@ -235,7 +242,7 @@ def advance(
             break
         progress[PENDING] = 0
         accept(d, t, y)
-        book(desk, d, t, y, yp, dky, spare, flag != 0 or d[at.PASSED] != 0.0)
+        book(desk, d, t, y, yp, dky, spare, flag)
         if d[at.PASSED] != 0.0:
             progress[ERROR] = BEYOND
         if in_flight(d):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,7 +17,7 @@ __all__ = ["observe"]
 Floats = NDArray[np.float64]
 
 
-@compiled(makes_arrays=True)
+@compiled
 def observe(d: Floats, t: float, y: Floats, row: Floats) -> None:
     """Write one sample.
 
@@ -48,12 +50,13 @@ def observe(d: Floats, t: float, y: Floats, row: Floats) -> None:
     row[3] = u * length
     row[4] = force * d[at.FORCE]
     row[5] = radius * (force + relief) * d[at.FORCE]
-    smallest = np.full(2, np.inf)
     touching = 0.0
     for coast in range(2):
+        smallest = math.inf
         for pair in range(first_pair(d, coast, phase), last_pair(d, coast, phase) + 1):
             gap, _, _, _ = pair_gap(d, coast, pair, u, v, phase, w)
-            smallest[coast] = min(smallest[coast], gap)
+            smallest = min(smallest, gap)
             if gap < d[at.ENGAGE]:
                 touching += 1.0
-    row[6], row[7], row[8] = smallest[0] * length, smallest[1] * length, touching
+        row[6 + coast] = smallest * length
+    row[8] = touching

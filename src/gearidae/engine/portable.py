@@ -17,7 +17,16 @@ from sksundae.ida import IDA
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 from gearidae.engine.blocks import dense_jacobian, store_size
-from gearidae.engine.events import CROWDED, EVENTS_AT_ONCE, RESTART, accept, guard, handle, pass_knot
+from gearidae.engine.events import (
+    CROWDED,
+    EVENTS_AT_ONCE,
+    RESTART,
+    accept,
+    guard,
+    handle,
+    ledger_can_wait,
+    pass_knot,
+)
 from gearidae.engine.ledger import enter, follow
 from gearidae.engine.mesh import in_flight
 from gearidae.engine.observe import observe
@@ -87,7 +96,8 @@ def run(
         tally.steps += flag != _ROOT
         yield from output.sample(t, y, trail)
         accept(d, t, y)
-        follow(d, t, y, yp, flag != 0 or d[at.PASSED] != 0.0)
+        if flag != _ROOT or not ledger_can_wait(d, t, y):
+            follow(d, t, y, yp, flag != 0 or d[at.PASSED] != 0.0)
         tally.flight_steps += in_flight(d)
         restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
         if flag == _ROOT:

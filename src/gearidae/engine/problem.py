@@ -33,7 +33,7 @@ from gearidae.engine.mesh import footprint, material_stretch
 from gearidae.engine.node_calls import service
 from gearidae.engine.nodes import history_size
 from gearidae.engine.settle import settle_nodes
-from gearidae.engine.torque import pack_torque
+from gearidae.engine.torque import fastest_harmonic, pack_torque
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Ledger
@@ -46,19 +46,13 @@ Layout: TypeAlias = tuple[float, int | None]
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
-STRIDE = 3  # accepted steps near contact that the ledger integrates over at once, if nothing happens between
-STRIDE_RTOL = 1e-6  # relative tolerance below which it gathers fewer
+STRIDE = 6  # accepted steps near contact that the ledger integrates over at once
+PARTS_RTOL = 1e-6  # relative tolerance below which it divides those in flight
 FELT = 0.1  # of the tolerance of a speed
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
 
 _LAWS = ((at.DRIVE_AT, at.PINION_SHARE), (at.LOAD_AT, at.GEAR_SHARE))
-
-
-def _harmonics(d: Floats, law: int) -> list[tuple[float, float]]:
-    """Amplitude and angular frequency of a torque law's harmonics."""
-    body = d[law + at.LAW_BODY :][: 3 * int(d[law + at.LAW_HARMONICS])].reshape(-1, 3)
-    return [(float(amplitude), float(frequency)) for amplitude, frequency, _ in body]
 
 
 @dataclass(slots=True)
@@ -105,24 +99,16 @@ class Problem:
     def set_tolerance(self, rtol: float) -> None:
         """Let every state's error count in absolute tolerances, `rtol` times its scale.
 
-        The ledger gathers fewer steps at tight ones: the error of its quadrature goes with the fourth power of a step,
-        and a step with no more than the eighth root of the tolerance. Torques that shake a gear by less than a share of
-        the tolerance need not be followed.
+        At tight ones the ledger divides steps in flight: the error of its quadrature goes with the fourth power of a
+        step, and a step with no more than the eighth root of the tolerance. Torques that shake a gear by less than a
+        share of the tolerance need not be followed.
         """
         d, first = self.data, int(self.data[at.WEIGHTS_AT])
         d[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
-        d[at.LEDGER_STRIDE] = STRIDE * min(1.0, rtol / STRIDE_RTOL) ** (1.0 / 8.0)
+        d[at.LEDGER_PARTS] = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
         if d[at.KIND] == at.GEARS:
-            self._set_waves(rtol * self.tolerance_scale[at.V])
-
-    def _set_waves(self, speed: float) -> None:
-        """Note how fast torques and mesh excite the motion, for this tolerance of a speed."""
-        d = self.data
-        waves = [(share, *wave) for law, share in _LAWS for wave in _harmonics(d, int(d[law]))]
-        felt = [abs(f) for share, a, f in waves if abs(d[share] * a) > FELT * abs(f) * speed]
-        d[at.TORQUE_WAVE] = max(felt, default=0.0)
-        orders = d[int(d[at.ERROR_AT]) :][: 3 * int(d[at.ERROR_ORDERS]) : 3]
-        d[at.MESH_WAVE] = 2.0 * math.pi * max(1.0, np.max(orders, initial=0.0) / d[at.PINION_TEETH])
+            felt = FELT * rtol * self.tolerance_scale[at.V]
+            d[at.TORQUE_WAVE] = max(fastest_harmonic(d, int(d[law]), felt / d[share]) for law, share in _LAWS)
 
     def ledger(self, time: float, state: Floats, rates: Floats) -> Ledger:
         """The energy ledger at an accepted time.
@@ -267,6 +253,7 @@ def _gear_problem(scene: Scene, layout: Layout | None) -> Problem:
     grid = _bodies(head, scene, footing, layout)
     head[at.DRY] = float(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
     fastest = max((h.frequency for shaft in (drive, load) for h in shaft.harmonic), default=0.0)
+    head[at.LEDGER_STRIDE] = STRIDE
     head[at.LEDGER_SPAN] = 1.0 / (1.0 + 2.0 * math.pi * fastest * tau)
     head[at.SLIP] = np.sign(start.gear_speed) if head[at.DRY] else 1.0
     head[at.REST_SPEED] = 10.0 * scene.run.rtol
@@ -282,6 +269,8 @@ def _gear_problem(scene: Scene, layout: Layout | None) -> Problem:
 
     errors = [x for h in mesh.static_error for x in (h.order, h.amplitude / sigma, h.phase)]
     head[at.ERROR_ORDERS] = len(mesh.static_error)
+    order = max((h.order for h in mesh.static_error), default=0)
+    head[at.MESH_WAVE] = 2.0 * math.pi * max(1.0, order / head[at.PINION_TEETH])
     laws = (_torque(drive, tau, force * r1), _torque(load, tau, force * r2))
     data = _assemble(head, 2, slots, contact, np.array(errors), *laws, grid)
     knots = {t / tau for shaft in (drive, load) for t, _ in shaft.schedule if 0.0 < t < scene.run.duration}

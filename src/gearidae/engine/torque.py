@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine import layout as at
 
-__all__ = ["pack_torque", "torque_force", "torque_rate"]
+__all__ = ["fastest_harmonic", "pack_torque", "torque_force", "torque_rate"]
 
 Floats = NDArray[np.float64]
 
@@ -65,6 +65,17 @@ def torque_force(d: Floats, law: int, t: float) -> float:
             share = (t - d[k - 2]) / (d[k] - d[k - 2])
             value += d[k - 1] + share * (d[k + 1] - d[k - 1])
     return value
+
+
+@compiled
+def fastest_harmonic(d: Floats, law: int, felt: float) -> float:
+    """Angular frequency of the fastest harmonic that turns a body's speed by more than this impulse; 0 if none does."""
+    fastest = 0.0
+    for k in range(int(d[law + at.LAW_HARMONICS])):
+        amplitude, frequency = d[law + at.LAW_BODY + 3 * k], abs(d[law + at.LAW_BODY + 3 * k + 1])
+        if abs(amplitude) > felt * frequency:
+            fastest = max(fastest, frequency)
+    return fastest
 
 
 @compiled
