@@ -327,6 +327,50 @@ def test_drag_of_a_speed_that_turns_round():
     assert ledger_kernel._cubes(1.1, 0.495, -0.1, 1.0, 1.0, 1.0) == pytest.approx(0.25, rel=0.05, abs=0)
 
 
+def work_of_a_torque(h):
+    """Errors and doubts of the work over h of a torque 2 + cos(x) / 4 at a speed 3 + sin(4 x) / 2, root mean square."""
+    x, w = np.polynomial.legendre.leggauss(20)
+    errors, doubts = [], []
+    for start in np.linspace(0.0, 2.0 * math.pi, 17)[:-1]:
+        ends = np.array([start, start + h])
+        forces, rates = 2.0 + 0.25 * np.cos(ends), -0.25 * np.sin(ends)
+        speeds, gains = 3.0 + 0.5 * np.sin(4.0 * ends), 2.0 * np.cos(4.0 * ends)
+        travel = 3.0 * h - 0.125 * np.diff(np.cos(4.0 * ends))[0]
+        t = start + 0.5 * h * (1.0 + x)
+        exact = 0.5 * h * w @ ((2.0 + 0.25 * np.cos(t)) * (3.0 + 0.5 * np.sin(4.0 * t)))
+        known = [float(x) for end in zip(forces, rates, speeds, gains, strict=True) for x in end]
+        work, doubt = ledger_kernel._torque_work(h, travel, *known)
+        errors.append(work - exact)
+        doubts.append(doubt)
+    return np.sqrt(np.mean(np.square(errors))), np.sqrt(np.mean(np.square(doubts)))
+
+
+def test_work_of_a_torque_that_changes_at_a_speed_that_vibrates():
+    fine, coarse = work_of_a_torque(0.1), work_of_a_torque(0.2)
+    assert coarse[0] / fine[0] == pytest.approx(32.0, rel=0.1)  # of fifth order
+    for h in (0.1, 0.2, 0.4, 0.8):  # up to half a period of the vibration
+        error, doubt = work_of_a_torque(h)
+        assert 0.2 * error < doubt < 100.0 * error  # the doubt falls more slowly with the length
+
+
+@pytest.mark.parametrize(("amplitude", "frequency"), [(5e-11, 2e5), (2e-10, 1e6)])
+def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequency, monkeypatch):
+    changes = {
+        "drive.harmonic": [{"amplitude": amplitude, "frequency": frequency}],
+        "load.drag": 0.0,
+        "mesh.damping": 1e-6,
+        "contact.model": "asperity",
+        "run.duration": 5e-5,
+        "run.rtol": 1e-9,
+        "run.samples": "off",
+    }
+    scene = HIGH.replace(changes)
+    sure = check(scene, solve(scene))
+    monkeypatch.setattr("gearidae.engine.problem.DOUBTS", math.inf)
+    # over six steps at once, whatever comes of it, it would be out by 30 and 80 tolerances
+    assert abs(sure.residual) < 0.1 * abs(solve(scene).ledger.residual)
+
+
 def test_pairs_that_turn_round_between_two_looks():
     """Steps and losses are the same wherever the ledger looks, and the work of the radius nearly so."""
     scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.model": "asperity"})

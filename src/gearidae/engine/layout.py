@@ -95,41 +95,41 @@ MODEL_CHANGE: Final = 76
 THROUGHPUT: Final = 77
 START_STORED: Final = 78
 START_KINETIC: Final = 79
-SUMS_END: Final = 80
-LEDGER_TIME: Final = 80  # up to which they are kept, and accepted steps since
-LEDGER_STEPS: Final = 81
+DOUBT: Final = 80  # how far the quadratures may be out, at most
+SUMS_END: Final = 81
+LEDGER_TIME: Final = 81  # up to which they are kept, and accepted steps since
+LEDGER_STEPS: Final = 82
 # What the powers are made of there, each with its rate.
-WAS_KINETIC: Final = 82
-WAS_PINION: Final = 83  # travel of the pinion's base circle, its speed and the rate of that
-WAS_SPEED: Final = 84
-WAS_GAIN: Final = 85
-WAS_GEAR: Final = 86  # the gear's
-WAS_W: Final = 87
-WAS_W_RATE: Final = 88
-WAS_DRIVE: Final = 89  # torques over base radius
-WAS_DRIVE_RATE: Final = 90
-WAS_LOAD: Final = 91
-WAS_LOAD_RATE: Final = 92
-WAS_RADIUS: Final = 93  # power of the changing radius
-WAS_RADIUS_RATE: Final = 94
-WAS_BOOKED: Final = 95  # work of the radius on what joining losses booked since then have taken
+WAS_KINETIC: Final = 83
+WAS_PINION: Final = 84  # travel of the pinion's base circle, its speed and the rate of that
+WAS_SPEED: Final = 85
+WAS_GAIN: Final = 86
+WAS_GEAR: Final = 87  # the gear's
+WAS_W: Final = 88
+WAS_W_RATE: Final = 89
+WAS_DRIVE: Final = 90  # torques over base radius
+WAS_DRIVE_RATE: Final = 91
+WAS_LOAD: Final = 92
+WAS_LOAD_RATE: Final = 93
+WAS_RADIUS: Final = 94  # power of the changing radius
+WAS_RADIUS_RATE: Final = 95
+WAS_BOOKED: Final = 96  # work of the radius on what joining losses booked since then have taken
 # Time up to which drag and damping are kept, and what their powers were made of there.
-RESIST_TIME: Final = 96
-RESIST_GEAR: Final = 97
-RESIST_W: Final = 98
-RESIST_W_RATE: Final = 99
-RESIST_V: Final = 100
-RESIST_V_RATE: Final = 101
-LEDGER_END: Final = 102
-LEDGER_SPAN: Final = (
-    102  # time over which steps may be gathered, how many, and into how many parts one in flight goes
-)
-LEDGER_STRIDE: Final = 103
-LEDGER_PARTS: Final = 104
+RESIST_TIME: Final = 97
+RESIST_GEAR: Final = 98
+RESIST_W: Final = 99
+RESIST_W_RATE: Final = 100
+RESIST_V: Final = 101
+RESIST_V_RATE: Final = 102
+LEDGER_END: Final = 103
+LEDGER_SPAN: Final = 103  # time over which steps may be gathered, and how many
+LEDGER_STRIDE: Final = 104
+LEDGER_DOUBT: Final = 105  # doubt from which on none are, over the throughput
+LEDGER_PARTS: Final = 106  # into which a step in flight is divided
 # Angular frequencies that the steps have to follow, 0 for none: of torques, scaled, and along the mesh, per pitch.
-TORQUE_WAVE: Final = 105
-MESH_WAVE: Final = 106
-CONSTANTS: Final = 107
+TORQUE_WAVE: Final = 107
+MESH_WAVE: Final = 108
+CONSTANTS: Final = 109
 
 # -- the history of a tooth pair, in the slot `pair mod SLOTS` of its flank ------------------------------------------
 PAIR: Final = 0  # number of the pair, counted without TURNS; what the slot is about

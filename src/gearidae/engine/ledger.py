@@ -309,9 +309,7 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
         _resist(d, t, y, yp)
     d[at.LEDGER_STEPS] += 1.0
     h = t - d[at.LEDGER_TIME]
-    if h == 0.0 or not (
-        now or in_flight(d) or d[at.LEDGER_STEPS] >= d[at.LEDGER_STRIDE] or h > d[at.LEDGER_SPAN]
-    ):
+    if h == 0.0 or not (now or in_flight(d) or _gathered(d, h)):
         return
     d[at.LEDGER_STEPS] = 0.0
     d[at.LEDGER_TIME] = t
@@ -322,16 +320,18 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
         return
     pinion, speed, gain = _pinion(d, y, yp)
     force, rate = _torque(d, int(d[at.DRIVE_AT]), t)
-    drive = 0.5 * (force + d[at.WAS_DRIVE]) * (pinion - d[at.WAS_PINION])
-    if rate != 0.0 or d[at.WAS_DRIVE_RATE] != 0.0:
-        half = 0.5 * (force - d[at.WAS_DRIVE])
-        drive += _integral(
-            h,
-            -half * d[at.WAS_SPEED],
-            half * speed,
-            d[at.WAS_DRIVE_RATE] * d[at.WAS_SPEED] - half * d[at.WAS_GAIN],
-            rate * speed + half * gain,
-        )
+    drive, doubt = _torque_work(
+        h,
+        pinion - d[at.WAS_PINION],
+        d[at.WAS_DRIVE],
+        d[at.WAS_DRIVE_RATE],
+        d[at.WAS_SPEED],
+        d[at.WAS_GAIN],
+        force,
+        rate,
+        speed,
+        gain,
+    )
     d[at.WAS_DRIVE], d[at.WAS_DRIVE_RATE] = force, rate
     d[at.WAS_PINION], d[at.WAS_SPEED], d[at.WAS_GAIN] = pinion, speed, gain
     d[at.DRIVE_WORK] += drive
@@ -341,23 +341,25 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
     gear = y[at.PHASE] / d[at.PHASE_RATE]
     if d[at.DRY] != 0.0:
         force, rate = _torque(d, int(d[at.LOAD_AT]), t)
-        dry = 0.5 * (force + d[at.WAS_LOAD]) * (gear - d[at.WAS_GEAR])
+        travel = gear - d[at.WAS_GEAR]
         if min(force, d[at.WAS_LOAD]) < 0.0:  # a dry resistance never pushes: what is left of a straight line
             most = max(force, d[at.WAS_LOAD], 0.0)
-            dry = (
-                0.5 * most * most / abs(force - d[at.WAS_LOAD]) * (gear - d[at.WAS_GEAR])
-                if most > 0.0
-                else 0.0
-            )
-        elif rate != 0.0 or d[at.WAS_LOAD_RATE] != 0.0:
-            half = 0.5 * (force - d[at.WAS_LOAD])
-            dry += _integral(
+            dry = 0.5 * most * most / abs(force - d[at.WAS_LOAD]) * travel if most > 0.0 else 0.0
+            doubt += abs(dry)
+        else:
+            dry, more = _torque_work(
                 h,
-                -half * d[at.WAS_W],
-                half * w,
-                d[at.WAS_LOAD_RATE] * d[at.WAS_W] - half * d[at.WAS_W_RATE],
-                rate * w + half * w_rate,
+                travel,
+                d[at.WAS_LOAD],
+                d[at.WAS_LOAD_RATE],
+                d[at.WAS_W],
+                d[at.WAS_W_RATE],
+                force,
+                rate,
+                w,
+                w_rate,
             )
+            doubt += more
         d[at.WAS_LOAD], d[at.WAS_LOAD_RATE] = force, rate
         d[at.DRY_LOSS] += d[at.SLIP] * dry
         exchange += abs(d[at.SLIP] * dry)
@@ -365,12 +367,22 @@ def follow(d: Floats, t: float, y: Floats, yp: Floats, now: bool) -> None:
 
     power, rate = _radius_power(d, t, y, w_rate)
     radius = _integral(h, d[at.WAS_RADIUS], power, d[at.WAS_RADIUS_RATE], rate) + d[at.WAS_BOOKED]
+    d[at.DOUBT] += doubt + _doubt(h, d[at.WAS_RADIUS], power, d[at.WAS_RADIUS_RATE], rate)
     d[at.WAS_BOOKED] = 0.0
     d[at.WAS_RADIUS], d[at.WAS_RADIUS_RATE] = power, rate
     d[at.RADIUS_WORK] += radius
     kinetic = 0.5 * speed * speed / d[at.PINION_SHARE] + 0.5 * w * w / d[at.GEAR_SHARE]
     d[at.THROUGHPUT] += exchange + abs(radius) + abs(kinetic - d[at.WAS_KINETIC])
     d[at.WAS_KINETIC] = kinetic
+
+
+@compiled(inline=True)
+def _gathered(d: Floats, h: float) -> bool:
+    """Whether as many steps have been gathered since the last look as may be: fewer, the more is in doubt."""
+    steps, most = d[at.LEDGER_STEPS], d[at.LEDGER_DOUBT] * d[at.THROUGHPUT]
+    if steps >= d[at.LEDGER_STRIDE] or h > d[at.LEDGER_SPAN] or d[at.DOUBT] > most:
+        return True
+    return bool(3.0 * d[at.DOUBT] > most and 2.0 * steps >= d[at.LEDGER_STRIDE])
 
 
 @compiled(inline=True)
@@ -417,6 +429,45 @@ def _torque(d: Floats, law: int, t: float) -> tuple[float, float]:
     if d[law + at.LAW_HARMONICS] == 0.0 and d[law + at.LAW_POINTS] == 0.0:
         return d[law + at.LAW_CONSTANT], 0.0
     return torque_force(d, law, t), torque_rate(d, law, t)
+
+
+@compiled
+def _torque_work(
+    h: float,
+    travel: float,
+    force0: float,
+    rate0: float,
+    speed0: float,
+    gain0: float,
+    force1: float,
+    rate1: float,
+    speed1: float,
+    gain1: float,
+) -> tuple[float, float]:
+    """Work of a torque along a travel, and how far it may be out.
+
+    The mean of the torque does its part exactly, and its change that at the mean speed nearly so; what is in doubt is
+    the work at the speed's deviation.
+    """
+    work = 0.5 * (force0 + force1) * travel
+    if rate0 == 0.0 and rate1 == 0.0:
+        return work, 0.0
+    mean, half = travel / h, 0.5 * (force1 - force0)
+    a, b = speed0 - mean, speed1 - mean
+    start, end = rate0 * a - half * gain0, rate1 * b + half * gain1
+    slow = mean * h * h / 12.0 * (rate0 - rate1)
+    return work + slow + _integral(h, -half * a, half * b, start, end), _doubt(
+        h, half * a, half * b, start, end
+    )
+
+
+@compiled
+def _doubt(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
+    """By how much the corrected trapezoidal rule may be out: its correction, times the share that this has in it."""
+    correction = abs(h * h / 12.0 * (rate0 - rate1))
+    if correction == 0.0:
+        return 0.0
+    return correction * correction / (correction + 0.5 * h * (abs(f0) + abs(f1)))
 
 
 @compiled

@@ -47,6 +47,7 @@ Layout: TypeAlias = tuple[float, int | None]
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
 STRIDE = 6  # accepted steps near contact that the ledger integrates over at once
+DOUBTS = 30.0  # in relative tolerances: where it may be out by more, it integrates over single steps
 PARTS_RTOL = 1e-6  # relative tolerance below which it divides those in flight
 FELT = 0.1  # of the tolerance of a speed
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
@@ -105,6 +106,7 @@ class Problem:
         """
         d, first = self.data, int(self.data[at.WEIGHTS_AT])
         d[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
+        d[at.LEDGER_DOUBT] = DOUBTS * rtol
         d[at.LEDGER_PARTS] = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
         if d[at.KIND] == at.GEARS:
             felt = FELT * rtol * self.tolerance_scale[at.V]
