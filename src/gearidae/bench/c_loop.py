@@ -24,7 +24,7 @@ from gearidae.engine.observe import observe
 from gearidae.engine.problem import Problem
 from gearidae.engine.run import BLOCK_EVENTS
 from gearidae.engine.search import SHARPNESS
-from gearidae.engine.sundials import newton_places, places
+from gearidae.engine.sundials import newton_places, places, vector_places
 
 __all__ = ["c_contenders"]
 
@@ -95,10 +95,10 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     desk = np.zeros(adams.DESK)
     desk[adams.WANTED] = 1.0
     calls = addresses()
-    where = places(), newton_places()
+    where = places(), newton_places(), vector_places()
     observe(d, 0.0, y, rows[0])
     try:
-        own = known.model, known.steps, known.newton
+        own = known.model, known.steps, known.newton, known.vectors
         if opened.open_solver(handles, *own, *where, desk, d, y, yp, dky) != 0:
             return BROKEN
         flag = _library().gearidae_loop(

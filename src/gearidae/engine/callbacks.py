@@ -17,6 +17,7 @@ from gearidae.engine import sundials as sun
 from gearidae.engine.blocks import assemble, factorise, solve_blocks
 from gearidae.engine.newton import iterate
 from gearidae.engine.residual import jacobian, residual
+from gearidae.engine.vectors import vector_operations
 
 __all__ = ["Callbacks", "callbacks"]
 
@@ -42,11 +43,14 @@ class Callbacks:
         Set-up and solution of a linear solver of ours; none where SUNDIALS has to solve, or nothing is left to.
     newton : ndarray of int64, shape (3,) or (0,)
         What a nonlinear solver of ours answers, see `gearidae.engine.newton`; none where SUNDIALS iterates.
+    vectors : ndarray of int64, shape (4,) or (0,)
+        Operations on vectors, see `gearidae.engine.vectors`; none where SUNDIALS has its own.
     """
 
     model: Ints
     steps: Ints
     newton: Ints
+    vectors: Ints
 
 
 _JACOBIAN = types.int32(
@@ -178,14 +182,18 @@ def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Callbacks:
     """
     steps: tuple[Any, ...] = ()
     newton: tuple[Any, ...] = ()
+    vectors: tuple[Any, ...] = ()
     if elastic:
         slopes, set_up, solve = _bodies()
         model, steps = (_residual(), slopes, _weights), (set_up, solve)
     elif as_ida:
         model = (_residual(), _dense(), _weights)
     else:
-        newton = _newton(n, int(sun.newton_places()[0]))
+        newton, vectors = _newton(n, int(sun.newton_places()[0])), vector_operations(n)
         model = (_unasked, None, _weights)
     return Callbacks(
-        *(np.array([f.address if f else 0 for f in part], np.int64) for part in (model, steps, newton))
+        *(
+            np.array([f.address if f else 0 for f in part], np.int64)
+            for part in (model, steps, newton, vectors)
+        )
     )

@@ -29,8 +29,10 @@ def open_solver(
     model: Ints,
     steps: Ints,
     newton: Ints,
+    vectors: Ints,
     where: Ints,
     newton_where: Ints,
+    vector_where: Ints,
     desk: Floats,
     d: Floats,
     y: Floats,
@@ -43,10 +45,10 @@ def open_solver(
     ----------
     handles : ndarray of int64, shape (HANDLES,)
         Filled in.
-    model, steps, newton : ndarray of int64
+    model, steps, newton, vectors : ndarray of int64
         See `gearidae.engine.callbacks.Callbacks`.
-    where, newton_where : ndarray of int64
-        From `gearidae.engine.sundials.places` and `newton_places`.
+    where, newton_where, vector_where : ndarray of int64
+        From `gearidae.engine.sundials.places`, `newton_places` and `vector_places`.
     desk : ndarray, shape (DESK,)
         See `gearidae.engine.adams`; must outlive the solver.
     d, y, yp, dky : ndarray
@@ -62,6 +64,9 @@ def open_solver(
     handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
     handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
     sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
+    if vectors.size > 0:
+        for vector in (Y, YP, DKY):
+            ptr.replace(handles[vector], vector_where, vectors)
     solver = sun.IDACreate(context)
     handles[SOLVER] = solver
     flag |= sun.IDAInit(solver, model[0], d[at.LAST_TIME], handles[Y], handles[YP])

@@ -106,7 +106,7 @@ def numbers(vector: int) -> NDArray[np.float64]:
 
 @compiled
 def replace(record: int, where: NDArray[np.int64], functions: NDArray[np.int64]) -> None:
-    """Give a solver other functions.
+    """Give a solver or a vector other functions.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.pointers import STEP, SYSTEM
 
-__all__ = ["newton_places", "places", "unavailable"]
+__all__ = ["newton_places", "places", "unavailable", "vector_places"]
 
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
@@ -44,12 +44,13 @@ def unavailable() -> str:
         binding.load_library_permanently(_cy_ida.__file__)
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
-    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, STEP)
+    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, *OF_VECTORS, "SUNNonlinSol_Newton", SYSTEM, STEP)
     if missing := [name for name in wanted if binding.address_of_symbol(name) is None]:
         return f"the SUNDIALS library lacks {', '.join(missing)}"
     try:
         places()
         newton_places()
+        vector_places()
     except RuntimeError as error:
         return str(error)
     return ""
@@ -64,6 +65,14 @@ OF_NEWTON: Final = (
     "SUNNonlinSolSetSysFn_Newton",
 )
 """Operations of the Newton iteration, in whose place the driver puts its own."""
+
+OF_VECTORS: Final = (
+    "N_VWrmsNorm_Serial",
+    "N_VLinearSum_Serial",
+    "N_VLinearCombination_Serial",
+    "N_VLinearSumVectorArray_Serial",
+)
+"""Operations of a vector that the driver replaces where there are few numbers."""
 
 
 @cache
@@ -88,7 +97,7 @@ def places() -> NDArray[np.int64]:
         matrix = _call("SUNDenseMatrix", ctypes.c_int32(1), ctypes.c_int32(1), context)
         linear = _call("SUNLinSol_Dense", vector, _address(matrix), context)
         table = _table_place(linear, context)
-        functions = _operations(linear, table, 12, OF_SOLVERS, "linear")
+        functions = _operations(linear, table, 12, OF_SOLVERS, "linear solvers")
         if _words(_words(vector.value, 1)[0], 2)[1] != numbers.ctypes.data:
             raise RuntimeError("SUNDIALS lays out its vectors in an unknown way")
         _call("SUNLinSolFree", _address(linear))
@@ -114,7 +123,7 @@ def newton_places() -> NDArray[np.int64]:
         newton = _call("SUNNonlinSol_Newton", vector, context)
         empty = _call("SUNNonlinSolNewEmpty", context)
         table = _table_place(newton, context)
-        functions = _operations(newton, table, 13, OF_NEWTON, "nonlinear")
+        functions = _operations(newton, table, 13, OF_NEWTON, "nonlinear solvers")
         own, bare = _words(newton, table), _words(empty, table)
         content = next((k for k in range(table) if own[k] != 0 and bare[k] == 0), table)
         if content == table:
@@ -122,6 +131,27 @@ def newton_places() -> NDArray[np.int64]:
         _call("SUNNonlinSolFreeEmpty", _address(empty))
         _call("SUNNonlinSolFree_Newton", _address(newton))
     return np.array([content, table, *functions], dtype=np.int64)
+
+
+@cache
+def vector_places() -> NDArray[np.int64]:
+    """Where SUNDIALS keeps the functions of a vector, found like `places`.
+
+    Returns
+    -------
+    ndarray of int64, shape (5,)
+        Place of the table in a vector's record, those of `OF_VECTORS` in the table.
+
+    Raises
+    ------
+    RuntimeError
+        If anything is not where it could be.
+    """
+    with _bench() as (context, vector, _):
+        _call("N_VEnableFusedOps_Serial", vector, ctypes.c_int(1))
+        table = _table_place(vector.value, context)
+        functions = _operations(vector.value, table, 45, OF_VECTORS, "vectors")
+    return np.array([table, *functions], dtype=np.int64)
 
 
 @contextmanager
@@ -138,17 +168,17 @@ def _bench() -> Iterator[tuple[ctypes.c_int64, ctypes.c_int64, NDArray[np.float6
 
 
 def _table_place(record: int, context: ctypes.c_int64) -> int:
-    """Place of the table of functions in a solver's record: just before the context; 0 if that is not there."""
+    """Place of the table of functions in a record: just before the context; 0 if that is not there."""
     fields = _words(record, 4)
     return fields.index(context.value) - 1 if context.value in fields[1:] else 0
 
 
 def _operations(record: int, table: int, size: int, names: tuple[str, ...], kind: str) -> list[int]:
-    """Places of these functions in a solver's table of so many."""
+    """Places of these functions in the table of so many that a record has."""
     functions = _words(_words(record, table + 1)[table], size) if table else []
     wanted = [binding.address_of_symbol(name) for name in names]
     if any(function not in functions for function in wanted):
-        raise RuntimeError(f"SUNDIALS lays out its {kind} solvers in an unknown way")
+        raise RuntimeError(f"SUNDIALS lays out its {kind} in an unknown way")
     return [functions.index(function) for function in wanted]
 
 
