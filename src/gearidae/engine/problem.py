@@ -47,7 +47,8 @@ Layout: TypeAlias = tuple[float, int | None]
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
 STRIDE = 6  # accepted steps near contact that the ledger integrates over at once
-DOUBTS = 30.0  # in relative tolerances: where it may be out by more, it integrates over single steps
+SPAN = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
+DOUBTS = 5.0  # in relative tolerances: where it may be out by more, it integrates over single steps
 PARTS_RTOL = 1e-6  # relative tolerance below which it divides those in flight
 FELT = 0.1  # of the tolerance of a speed
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
@@ -256,7 +257,7 @@ def _gear_problem(scene: Scene, layout: Layout | None) -> Problem:
     head[at.DRY] = float(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
     fastest = max((h.frequency for shaft in (drive, load) for h in shaft.harmonic), default=0.0)
     head[at.LEDGER_STRIDE] = STRIDE
-    head[at.LEDGER_SPAN] = 1.0 / (1.0 + 2.0 * math.pi * fastest * tau)
+    head[at.LEDGER_SPAN] = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
     head[at.SLIP] = np.sign(start.gear_speed) if head[at.DRY] else 1.0
     head[at.REST_SPEED] = 10.0 * scene.run.rtol
     contact = _contact(
