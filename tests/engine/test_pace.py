@@ -197,6 +197,5 @@ def test_they_come_back_where_they_are_some_good_again():
         other = desk.copy()
         other[place] = value
         assert not changed(other, data, state, rates)
-    assert not changed(
-        desk, data, np.array([16.0, 1.5e-9 * pace.QUIET]), rates
-    )  # hardly more than where they are given up
+    slow = np.array([16.0, 1.5e-9 * pace.QUIET])  # hardly more than where they are given up
+    assert not changed(desk, data, slow, rates)

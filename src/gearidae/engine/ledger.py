@@ -275,9 +275,7 @@ def enter(d: Floats, t: float, y: Floats, yp: Floats) -> None:
     if d[at.KIND] == at.ROLLER:
         return
     d[at.WAS_GEAR], d[at.WAS_W], d[at.WAS_W_RATE] = y[at.PHASE] / d[at.PHASE_RATE], y[at.W], yp[at.W]
-    d[at.RESIST_TIME], d[at.RESIST_GEAR] = t, d[at.WAS_GEAR]
-    d[at.RESIST_W], d[at.RESIST_W_RATE] = y[at.W], yp[at.W]
-    d[at.RESIST_V], d[at.RESIST_V_RATE] = y[at.V], yp[at.V]
+    _see_resistance(d, t, d[at.WAS_GEAR], y, yp)
     d[at.WAS_PINION], d[at.WAS_SPEED], d[at.WAS_GAIN] = _pinion(d, y, yp)
     d[at.WAS_DRIVE], d[at.WAS_DRIVE_RATE] = _torque(d, int(d[at.DRIVE_AT]), t)
     d[at.WAS_LOAD], d[at.WAS_LOAD_RATE] = _torque(d, int(d[at.LOAD_AT]), t)
@@ -286,7 +284,10 @@ def enter(d: Floats, t: float, y: Floats, yp: Floats) -> None:
 
 @compiled
 def see_radius(d: Floats, t: float, y: Floats) -> None:
-    """Look again at the power of the changing radius, which jumps as a joining loss is booked and at a mesh mark."""
+    """Look again at the power of the changing radius, which jumps at a mesh mark.
+
+    Of an elastic contact it jumps where a joining loss is booked, too.
+    """
     d[at.WAS_RADIUS], d[at.WAS_RADIUS_RATE] = _radius_power(d, t, y, d[at.WAS_W_RATE])
 
 
@@ -403,11 +404,18 @@ def _resist(d: Floats, t: float, y: Floats, yp: Floats) -> None:
         rub = d[at.DAMPING] * _integral(
             h, was * was, v * v, 2.0 * was * d[at.RESIST_V_RATE], 2.0 * v * yp[at.V]
         )
-        d[at.RESIST_V], d[at.RESIST_V_RATE] = v, yp[at.V]
         d[at.DAMPING_LOSS] += rub
         taken += rub
-    d[at.RESIST_TIME], d[at.RESIST_GEAR], d[at.RESIST_W], d[at.RESIST_W_RATE] = t, gear, w, w_rate
+    _see_resistance(d, t, gear, y, yp)
     d[at.THROUGHPUT] += taken
+
+
+@compiled(inline=True)
+def _see_resistance(d: Floats, t: float, gear: float, y: Floats, yp: Floats) -> None:
+    """Note what the powers of drag and damping are made of, with the gear's travel."""
+    d[at.RESIST_TIME], d[at.RESIST_GEAR] = t, gear
+    d[at.RESIST_W], d[at.RESIST_W_RATE] = y[at.W], yp[at.W]
+    d[at.RESIST_V], d[at.RESIST_V_RATE] = y[at.V], yp[at.V]
 
 
 @compiled
@@ -455,7 +463,7 @@ def _torque_work(
     mean, half = travel / h, 0.5 * (force1 - force0)
     a, b = speed0 - mean, speed1 - mean
     start, end = rate0 * a - half * gain0, rate1 * b + half * gain1
-    slow = mean * h * h / 12.0 * (rate0 - rate1)
+    slow = mean * _correction(h, rate0, rate1)
     return work + slow + _integral(h, -half * a, half * b, start, end), _doubt(
         h, half * a, half * b, start, end
     )
@@ -464,7 +472,7 @@ def _torque_work(
 @compiled
 def _doubt(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
     """By how much the corrected trapezoidal rule may be out: its correction, times the share that this has in it."""
-    correction = abs(h * h / 12.0 * (rate0 - rate1))
+    correction = abs(_correction(h, rate0, rate1))
     if correction == 0.0:
         return 0.0
     return correction * correction / (correction + 0.5 * h * (abs(f0) + abs(f1)))
@@ -473,7 +481,13 @@ def _doubt(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
 @compiled
 def _integral(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
     """Corrected trapezoidal rule: exact for cubics."""
-    return 0.5 * h * (f0 + f1) + h * h / 12.0 * (rate0 - rate1)
+    return 0.5 * h * (f0 + f1) + _correction(h, rate0, rate1)
+
+
+@compiled
+def _correction(h: float, rate0: float, rate1: float) -> float:
+    """What the rates correct the trapezoidal rule by."""
+    return h * h / 12.0 * (rate0 - rate1)
 
 
 @compiled
