@@ -1,13 +1,15 @@
 # make run   the low-speed experiment: archive and picture in out/
 # make test  lint, types and tests
 # make docs  the documentation: docs/_build/html/index.html
+# make bench    run time against error, all scenes: the benchmark's page anew (some ten minutes)
+# make stress   2,000 random scenes: the stress page anew (some minutes)
 # All need python3 (3.11 or newer) and network access to a package index, nothing else.
 
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
-.PHONY: run test lint docs clean
+.PHONY: run test lint docs bench stress clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/installed
@@ -26,6 +28,12 @@ lint: $(VENV)/installed-dev
 
 docs: $(VENV)/installed-docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+
+bench: $(VENV)/installed
+	PYTHONPATH=benchmarks $(BIN)/python benchmarks/make_page.py
+
+stress: $(VENV)/installed
+	PYTHONPATH=benchmarks $(BIN)/python -m gearidae_bench --stress -o out/stress
 
 clean:
 	rm -rf $(VENV) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -11,9 +11,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from gearidae.bench import Result, Settings, find_scenes, run_benchmark
-from gearidae.bench.files import write_result
-from gearidae.bench.long import long_page, measure_long
+from gearidae_bench import Result, Settings, find_scenes, run_benchmark
+from gearidae_bench.files import write_result
+from gearidae_bench.long import long_page, measure_long
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "benchmarks.md"

@@ -9,8 +9,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from gearidae.bench import SCENES
-from gearidae.bench.reference import make_reference, save_reference
+from gearidae_bench import SCENES
+from gearidae_bench.reference import make_reference, save_reference
 
 FOLDER = Path(__file__).with_name("references")
 

@@ -5,7 +5,7 @@ sticks at this torque, and the same for more torque.
 """
 
 import gearidae as gd
-from gearidae.outcome import outcomes
+from gearidae.analysis.verdict import outcomes
 
 scene = gd.preset("teodorescu2009_low_speed")  # 4.5e-18 N m on the pinion
 fractions = [1.0, 0.8, 0.6, 0.55, 0.5, 0.47, 0.45, 0.4]

@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 
 import gearidae as gd
-from gearidae.outcome import outcomes
+from gearidae.analysis.verdict import outcomes
 from gearidae.scene import dump_case
 
 teeth = 22, 44

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from gearidae import analysis, contact, plot
     from gearidae.archive import open_archive
     from gearidae.errors import GearidaeError, SceneError, SolverError
+    from gearidae.runs.simulation import simulate
+    from gearidae.runs.sweeping import sweep
     from gearidae.scene import Scene, load_case, preset
-    from gearidae.simulation import simulate
-    from gearidae.sweeping import sweep
 
 __version__ = "0.1.0"
 
@@ -51,8 +51,8 @@ _HOME: dict[str, str | None] = {
     "open_archive": "archive",
     "plot": None,
     "preset": "scene",
-    "simulate": "simulation",
-    "sweep": "sweeping",
+    "simulate": "runs.simulation",
+    "sweep": "runs.sweeping",
 }
 
 __getattr__, __dir__ = lazy_names(globals(), _HOME)

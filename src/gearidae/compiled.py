@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-COMPILED_PACKAGES = ("contact", "engine", "bench", "compiled.py", "records.py")
+COMPILED_PACKAGES = ("contact", "engine", "compiled.py", "records.py")
 
 
 @cache

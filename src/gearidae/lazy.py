@@ -19,7 +19,8 @@ def lazy_names(
     namespace : dict
         The package's ``globals()``, in which a name is kept once it has been loaded.
     home : mapping of str to str or None
-        The module within the package where each public name lives; None for a name that is such a module itself.
+        The module within the package where each public name lives, or its full name if it lives in another room; None
+        for a name that is such a module itself.
     """
     package = namespace["__name__"]
 
@@ -27,7 +28,8 @@ def lazy_names(
         if name not in home:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         place = home[name]
-        module = import_module(f"{package}.{name if place is None else place}")
+        inside = name if place is None else place
+        module = import_module(inside if inside.startswith("gearidae.") else f"{package}.{inside}")
         namespace[name] = module if place is None else getattr(module, name)
         return namespace[name]
 

@@ -15,7 +15,7 @@ from gearidae.archive import combine, dimension_names, to_dataset
 from gearidae.archive.select import run_value, runs
 from gearidae.archive.variables import EVENTS, SAMPLES
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Statistics
-from gearidae.running import unsolved
+from gearidae.runs.running import unsolved
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 51})

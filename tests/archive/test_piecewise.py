@@ -11,13 +11,13 @@ import xarray as xr
 from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
 
 import gearidae as gd
-from gearidae import account as account_module
-from gearidae.analysis import teeth
+from gearidae.analysis import run_summary as account_module
+from gearidae.analysis.verdict import outcomes
 from gearidae.archive import netcdf, pieces, save, time_index, to_dataset
 from gearidae.archive.growing import GrowingArchive
-from gearidae.outcome import outcomes
 from gearidae.plot import spectra, style
 from gearidae.report import build_report, series
+from gearidae.studies import tooth_contacts as teeth
 
 SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
 LOOKED_BACK = 4_096  # samples that the view of the teeth looks back at together

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.bench.accuracy import RTOLS, SHORTENED, Achieved, accuracy_scenes, measure_accuracy
-from gearidae.bench.accuracy_report import page, quantiles
 from gearidae.engine import solve
 from gearidae.records import EventKind
+from gearidae_bench.accuracy import RTOLS, SHORTENED, Achieved, accuracy_scenes, measure_accuracy
+from gearidae_bench.accuracy_report import page, quantiles
 
 CASES = Path(__file__).parents[2] / "cases"
 SCENES = {bench.name: bench for bench in accuracy_scenes()}

@@ -3,13 +3,13 @@ import math
 
 import pytest
 
-from gearidae.bench import SCENES, Result, Settings, find_scenes, run_benchmark
-from gearidae.bench.contender import Contender, explicit_contenders
-from gearidae.bench.files import write_result
-from gearidae.bench.scenes import BenchScene
-from gearidae.bench.tables import equal_error_rows, ratio_range
 from gearidae.cli import main
 from gearidae.errors import SceneError
+from gearidae_bench import SCENES, Result, Settings, find_scenes, run_benchmark
+from gearidae_bench.contender import Contender, explicit_contenders
+from gearidae_bench.files import write_result
+from gearidae_bench.scenes import BenchScene
+from gearidae_bench.tables import equal_error_rows, ratio_range
 
 
 @pytest.fixture(scope="module")

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearidae.bench import SCENES
-from gearidae.bench.benchmark import all_contenders
-from gearidae.bench.c_loop import c_contenders
-from gearidae.bench.contender import engine_contenders
-from gearidae.bench.error import run_error
-from gearidae.bench.loop import run_dop853, run_gauss, run_rk4
-from gearidae.bench.reference import find_reference
-from gearidae.bench.roots import FAILED
-from gearidae.engine.problem import make_problem
+from gearidae.engine.model.problem import make_problem
+from gearidae_bench import SCENES
+from gearidae_bench.benchmark import all_contenders
+from gearidae_bench.c_loop import c_contenders
+from gearidae_bench.contender import engine_contenders
+from gearidae_bench.error import run_error
+from gearidae_bench.loop import run_dop853, run_gauss, run_rk4
+from gearidae_bench.reference import find_reference
+from gearidae_bench.roots import FAILED
 
 BENCH = SCENES["roller_slow_bare"]
 PROBLEM = make_problem(BENCH.scene)

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from gearidae.bench.error import run_error, time_at_error
+from gearidae_bench.error import run_error, time_at_error
 
 TIME = np.linspace(0.0, 1.0, 11)
 SPEED, POSITION = 100.0 + 2.0 * TIME, 3e-9 * TIME

@@ -6,8 +6,8 @@ import dataclasses
 
 import pytest
 
-from gearidae.bench.long import PARTS, long_page, long_rows, long_scene, measure_long, sound
-from gearidae.estimates import steady_speed
+from gearidae.runs.estimates import steady_speed
+from gearidae_bench.long import PARTS, long_page, long_rows, long_scene, measure_long, sound
 
 
 @pytest.fixture(scope="module")

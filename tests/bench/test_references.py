@@ -4,10 +4,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearidae.bench import SCENES
-from gearidae.bench.error import run_error
-from gearidae.bench.reference import find_reference, load_reference, make_reference, scene_hash
-from gearidae.bench.scenes import BenchScene
+from gearidae_bench import SCENES
+from gearidae_bench.error import run_error
+from gearidae_bench.reference import find_reference, load_reference, make_reference, scene_hash
+from gearidae_bench.scenes import BenchScene
 
 FOLDER = Path(__file__).parents[2] / "benchmarks" / "references"
 

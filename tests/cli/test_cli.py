@@ -15,7 +15,7 @@ import pytest
 import gearidae as gd
 from gearidae import engine
 from gearidae.cli import main
-from gearidae.engine.run import Ending
+from gearidae.engine.integrate.driver import Ending
 
 CASES = Path(__file__).parents[2] / "cases"
 SHORT = ["--set", "run.duration=2 ms", "run.samples=101"]
@@ -300,19 +300,3 @@ def test_ctrl_c_ends_the_program(low, folder):
     assert process.returncode == 130
     assert one_line(err), err
     assert files(folder) in (["low.nc", "low.toml"], ["low.toml"])
-
-
-def test_an_interrupted_stress_run_keeps_what_is_done(folder, monkeypatch, capsys):
-    from gearidae.bench.stress import run_stress
-    from gearidae.cli import bench
-    from gearidae.engine.run import BLOCK_STEPS
-
-    def interrupted(runs, seed, jobs, report):
-        report(run_stress(1, seed, 1, BLOCK_STEPS))
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(bench, "run_stress", interrupted)
-    assert main(["bench", "--stress", "--runs", "8", "--jobs", "1", "-o", "out"]) == 130
-    assert "1 of 8 scenes done" in capsys.readouterr().err
-    assert "--runs 8 --seed 1` on" in (text := (folder / "out" / "stress.md").read_text())
-    assert "interrupted after 1 scenes" in text

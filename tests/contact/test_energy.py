@@ -5,9 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from gearidae.contact.energy import JOINING, energy_table, joining_energy, number_table, stretched_energy
 from gearidae.contact.jkr import S_FOLD, jkr_load, jkr_root
-from gearidae.contact.law import HEADER, law_table, law_value, loading_value
+from gearidae.contact.kernels.energy import (
+    JOINING,
+    energy_table,
+    joining_energy,
+    number_table,
+    stretched_energy,
+)
+from gearidae.contact.kernels.law import HEADER, law_table, law_value, loading_value
 from gearidae.contact.psi import psi
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from gearidae.contact.lanes import eight_powers
+from gearidae.contact.kernels.lanes import eight_powers
 
 
 @numba.njit

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.contact import law
 from gearidae.contact.jkr import asperity_of
+from gearidae.contact.kernels import law
 from gearidae.contact.line import line_force
 from gearidae.contact.rough import rough_pressure
 from reference.surface import PlainSurface

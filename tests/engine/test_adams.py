@@ -9,12 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gearidae as gd
-from gearidae.bench.error import run_error
-from gearidae.bench.reference import load_reference
-from gearidae.bench.scenes import SCENES
-from gearidae.engine import adams, native
-from gearidae.engine.problem import make_problem
-from gearidae.engine.run import Tally
+from gearidae.engine.integrate import adams, native
+from gearidae.engine.integrate.driver import Tally
+from gearidae.engine.model.problem import make_problem
+from gearidae_bench.error import run_error
+from gearidae_bench.reference import load_reference
+from gearidae_bench.scenes import SCENES
 
 EPS = np.finfo(float).eps
 REFERENCES = Path(__file__).parents[2] / "benchmarks" / "references"

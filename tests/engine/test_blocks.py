@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import native, portable, solve
+from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.problem import make_problem
-from gearidae.engine.run import Tally
+from gearidae.engine.integrate import native, portable
+from gearidae.engine.integrate.driver import Tally
+from gearidae.engine.model.problem import make_problem
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace(
     {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 301}
@@ -89,7 +90,7 @@ def test_phase_is_taken_back_without_a_trace(monkeypatch):
 
 
 def _rebase_now(d, y):
-    from gearidae.engine import start
+    from gearidae.engine.integrate import start
 
     start.rebase.py_func.__globals__["PHASE_HIGH"] = 5.0
     try:

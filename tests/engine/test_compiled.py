@@ -32,7 +32,7 @@ def test_the_second_process_compiles_nothing(tmp_path):
         assert first.stderr.count("compiling") == 1
         assert f"{message} for this machine" in first.stderr
         # what elastic contacts need is compiled with the first of them, and not before
-        assert any(tmp_path.rglob("node_service.*")) == (model == "elastic")
+        assert any(tmp_path.rglob("service.*")) == (model == "elastic")
         kept = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*.nb*")}
         second = run(tmp_path, model)
         assert second.stderr == ""

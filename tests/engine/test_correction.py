@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gearidae as gd
-from gearidae.engine import layout as at
-from gearidae.engine.correction import correct
-from gearidae.engine.problem import make_problem
-from gearidae.engine.residual import jacobian, residual
+from gearidae.engine.integrate.correction import correct
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.residual import jacobian, residual
 
 SMALL = st.floats(-1.0, 1.0)
 

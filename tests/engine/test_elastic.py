@@ -6,20 +6,29 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.bench.random_scenes import random_scene
 from gearidae.contact import asperity_of
 from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve, elastic_line_force
-from gearidae.engine import backend, elastic, native, portable, problem, solve
-from gearidae.engine import layout as at
+from gearidae.engine import backend, solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.blocks import assemble, dense_jacobian, factorise, solve_blocks, store_size
 from gearidae.engine.changeover import change_over
-from gearidae.engine.nodes import point_count, row
-from gearidae.engine.problem import make_problem
-from gearidae.engine.residual import mesh_forces, residual
-from gearidae.engine.run import Ending, Tally
-from gearidae.engine.settle import settle_nodes
+from gearidae.engine.elastic import layout as elastic
+from gearidae.engine.elastic.block_jacobian import (
+    assemble,
+    dense_jacobian,
+    factorise,
+    solve_blocks,
+    store_size,
+)
+from gearidae.engine.elastic.nodes import point_count, row
+from gearidae.engine.elastic.static_solve import settle_nodes
+from gearidae.engine.integrate import native, portable
+from gearidae.engine.integrate.driver import Ending, Tally
+from gearidae.engine.model import layout as at
+from gearidae.engine.model import problem
+from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.residual import mesh_forces, residual
 from gearidae.records import EventKind
+from gearidae_bench.random_scenes import random_scene
 
 
 def roller(name, fraction=0.0, **changes):

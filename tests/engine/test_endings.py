@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import problem, solve
-from gearidae.engine.run import Ending, ending_of_flag
+from gearidae.engine import solve
+from gearidae.engine.integrate.driver import Ending, ending_of_flag
+from gearidae.engine.model import problem
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])

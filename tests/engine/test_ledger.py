@@ -11,15 +11,15 @@ import pytest
 import gearidae as gd
 from gearidae import engine
 from gearidae.contact import asperity_of
-from gearidae.contact.energy import JOINING
 from gearidae.contact.jkr import S_FOLD, jkr_root
+from gearidae.contact.kernels.energy import JOINING
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
-from gearidae.engine import layout as at
-from gearidae.engine import ledger as ledger_kernel
-from gearidae.engine import native as native_driver
-from gearidae.engine.problem import make_problem
-from gearidae.engine.run import Tally
+from gearidae.engine.energy import balance as ledger_kernel
+from gearidae.engine.integrate import native as native_driver
+from gearidae.engine.integrate.driver import Tally
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
 from gearidae.mesh import curvature_radii
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -366,7 +366,7 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
     }
     scene = HIGH.replace(changes)
     sure = check(scene, solve(scene))
-    monkeypatch.setattr("gearidae.engine.problem.DOUBTS", math.inf)
+    monkeypatch.setattr("gearidae.engine.model.problem.DOUBTS", math.inf)
     # over six steps at once, whatever comes of it, it would be out by 30 and 80 tolerances
     assert abs(sure.residual) < 0.1 * abs(solve(scene).ledger.residual)
 
@@ -407,7 +407,7 @@ def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
-    monkeypatch.setattr("gearidae.engine.problem.rigid_limit", lambda *_: (2.0, True))
+    monkeypatch.setattr("gearidae.engine.model.problem.rigid_limit", lambda *_: (2.0, True))
     scene = gd.preset("roller_slow")
     run = solve(scene, backend=backend)
     assert run.statistics.skipped["elastic_deflection"] == 0

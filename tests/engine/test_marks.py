@@ -4,11 +4,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.bench.scenes import SCENES
-from gearidae.engine import layout as at
-from gearidae.engine.events import _cross_mark, _set_marks
-from gearidae.engine.problem import make_problem
-from gearidae.engine.start import rebase
+from gearidae.engine.events.events import _cross_mark, _set_marks
+from gearidae.engine.integrate.start import rebase
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
+from gearidae_bench.scenes import SCENES
 
 PROBLEM = make_problem(SCENES["high_sam"].scene)
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from gearidae.engine import adams, pace
-from gearidae.engine import layout as at
+from gearidae.engine.integrate import adams
+from gearidae.engine.integrate import step_control as pace
+from gearidae.engine.model import layout as at
 
 SCENE = np.zeros(at.CONSTANTS)  # nothing that excites, no pair near
 

@@ -5,10 +5,10 @@ import pytest
 
 import gearidae as gd
 from gearidae.contact import line_force
-from gearidae.engine import layout as at
-from gearidae.engine.mesh import history_slot, pair_force, set_joined
-from gearidae.engine.problem import make_problem
-from gearidae.engine.residual import jacobian, residual
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.residual import jacobian, residual
+from gearidae.engine.model.tooth_pairs import history_slot, pair_force, set_joined
 
 
 @pytest.mark.parametrize("roughness", [0.9e-9, 1.2e-9, 6e-9, 30e-9])

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.bench.scenes import SCENES
-from gearidae.engine import native
-from gearidae.engine.problem import make_problem
-from gearidae.engine.run import Tally
-from gearidae.engine.search import _inverse
+from gearidae.engine.integrate import native
+from gearidae.engine.integrate.driver import Tally
+from gearidae.engine.integrate.root_finding import _inverse
+from gearidae.engine.model.problem import make_problem
+from gearidae_bench.scenes import SCENES
 
 RTOL = 1e-6
 

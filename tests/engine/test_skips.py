@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import problem, solve
+from gearidae.engine import solve
+from gearidae.engine.model import problem
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
     {"run.duration": 0.02, "run.samples": 201, "run.rtol": 1e-8}
@@ -39,7 +40,7 @@ def test_negligible_hysteresis(monkeypatch):
     scene = LOW.replace({"coating.energy": 1e-6})
     run = solve(scene)
     assert run.statistics.skipped["coated_hysteresis"] == 1
-    from gearidae.contact import law
+    from gearidae.contact.kernels import law
 
     monkeypatch.setattr(law, "NEGLIGIBLE_STRETCH", 0.0)
     law.law_table.cache_clear()

@@ -5,12 +5,12 @@ import ctypes
 import numpy as np
 import pytest
 
-from gearidae.engine import sundials
+from gearidae.engine.sundials import names as sundials
 
 if reason := sundials.unavailable():
     pytest.skip(reason, allow_module_level=True)
 
-from gearidae.engine.vectors import vector_operations
+from gearidae.engine.sundials.vectors import vector_operations
 
 REAL, WORD = ctypes.c_double, ctypes.c_int64
 

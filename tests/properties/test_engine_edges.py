@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 import gearidae as gd
-from gearidae.engine import layout as at
 from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.events import begin
-from gearidae.engine.problem import make_problem
-from gearidae.engine.run import Ending, Tally
+from gearidae.engine.events.events import begin
+from gearidae.engine.integrate.driver import Ending, Tally
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
 from gearidae.records import EventKind
 
 BASE = gd.preset("teodorescu2009").replace(

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gearidae as gd
-from gearidae.engine import layout as at
 from gearidae.engine import solve
-from gearidae.engine.problem import make_problem
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
 from gearidae.records import EventKind
 
 BASE = gd.preset("teodorescu2009").replace(

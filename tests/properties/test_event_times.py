@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 import gearidae as gd
-from gearidae.engine import layout as at
 from gearidae.engine import solve
-from gearidae.engine.problem import make_problem
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
 from gearidae.records import EventKind
 from reference.bouncing import BouncingTooth
 

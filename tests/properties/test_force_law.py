@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.law import law_table, law_value
+from gearidae.contact.kernels.law import law_table, law_value
 from gearidae.contact.line import line_force
 from gearidae.contact.psi import psi
 from reference.asperity import jkr_displacement, jkr_displacement_rate, jkr_fold, jkr_force

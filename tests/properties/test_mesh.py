@@ -6,11 +6,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gearidae as gd
-from gearidae.engine import layout as at
-from gearidae.engine.events import begin
-from gearidae.engine.mesh import first_pair, history_slot, last_pair, pair_force, pair_gap, set_joined
-from gearidae.engine.problem import make_problem
-from gearidae.engine.residual import jacobian, mesh_forces, residual
+from gearidae.engine.events.events import begin
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.residual import jacobian, mesh_forces, residual
+from gearidae.engine.model.tooth_pairs import (
+    first_pair,
+    history_slot,
+    last_pair,
+    pair_force,
+    pair_gap,
+    set_joined,
+)
 
 # backlash below the range of adhesion: both flanks carry force at once
 PROBLEM = make_problem(

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.bench import stress, stress_checks
-from gearidae.bench.random_scenes import random_scene
-from gearidae.bench.stress import Outcome, run_one, run_stress
-from gearidae.bench.stress_report import counts, ledger_quantiles, page, quantiles, worst
 from gearidae.cli import main
 from gearidae.engine import solve
-from gearidae.engine.problem import ROOT_LIMIT, make_problem
-from gearidae.engine.run import BLOCK_STEPS, Ending
+from gearidae.engine.integrate.driver import BLOCK_STEPS, Ending
+from gearidae.engine.model.problem import ROOT_LIMIT, make_problem
 from gearidae.records import EventKind
+from gearidae_bench import stress, stress_checks
+from gearidae_bench.random_scenes import random_scene
+from gearidae_bench.stress import Outcome, run_one, run_stress
+from gearidae_bench.stress_report import counts, ledger_quantiles, page, quantiles, worst
 
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.analysis.teeth import tooth_contacts
 from gearidae.records import Flank
 from gearidae.report import build_report
 from gearidae.report.teeth import FRAME, PAIR, pack_teeth
+from gearidae.studies.tooth_contacts import tooth_contacts
 
 SCENE = gd.preset("teodorescu2009_low_speed")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

@@ -12,13 +12,13 @@ from gearidae.lazy import lazy_names
 if TYPE_CHECKING:
     from gearidae.analysis.assessment import Assessment, assess
     from gearidae.analysis.impacts import impact_windows
-    from gearidae.analysis.maps import coating_map, open_map
     from gearidae.analysis.measured import read_signal
-    from gearidae.analysis.resting import contact_resonance
     from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies, impact_spectrum
     from gearidae.analysis.spectra import power_spectrum, spectrogram
-    from gearidae.analysis.starting import starting_torque, static_starting_torque
-    from gearidae.analysis.teeth import tooth_contacts
+    from gearidae.studies.coating_map import coating_map, open_map
+    from gearidae.studies.equilibrium import contact_resonance
+    from gearidae.studies.starting_torque import starting_torque, static_starting_torque
+    from gearidae.studies.tooth_contacts import tooth_contacts
 
 __all__ = [
     "Assessment",
@@ -42,18 +42,18 @@ _HOME = {
     "Assessment": "assessment",
     "assess": "assessment",
     "characteristic_frequency": "ringing",
-    "coating_map": "maps",
-    "contact_resonance": "resting",
+    "coating_map": "gearidae.studies.coating_map",
+    "contact_resonance": "gearidae.studies.equilibrium",
     "impact_frequencies": "ringing",
     "impact_spectrum": "ringing",
     "impact_windows": "impacts",
-    "open_map": "maps",
+    "open_map": "gearidae.studies.coating_map",
     "power_spectrum": "spectra",
     "read_signal": "measured",
     "spectrogram": "spectra",
-    "starting_torque": "starting",
-    "static_starting_torque": "starting",
-    "tooth_contacts": "teeth",
+    "starting_torque": "gearidae.studies.starting_torque",
+    "static_starting_torque": "gearidae.studies.starting_torque",
+    "tooth_contacts": "gearidae.studies.tooth_contacts",
 }
 
 __getattr__, __dir__ = lazy_names(globals(), _HOME)

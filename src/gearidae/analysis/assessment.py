@@ -26,11 +26,11 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from gearidae.analysis.impacts import check_width
-from gearidae.analysis.maps import require_map
 from gearidae.analysis.measured import read_signal
 from gearidae.analysis.ringing import HIGHEST, rings_of
 from gearidae.analysis.signal import Floats, signals
 from gearidae.errors import SceneError
+from gearidae.studies.coating_map import require_map
 
 __all__ = ["Assessment", "assess"]
 

@@ -27,7 +27,7 @@ from gearidae.archive.disk import disk_errors, read_at, sync, write_at
 from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
 from gearidae.archive.lock import is_locked, lock
 from gearidae.archive.variables import EVENTS
-from gearidae.engine.run import Block, Tally
+from gearidae.engine.integrate.driver import Block, Tally
 from gearidae.errors import SceneError
 
 __all__ = ["GrowingArchive", "is_growing", "trimmed"]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.run import Tally
+from gearidae.engine.integrate.driver import Tally
 
 __all__ = ["COUNTERS", "HEADER", "Checkpoint", "newest"]
 

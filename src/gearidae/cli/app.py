@@ -8,7 +8,6 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 import gearidae
-from gearidae.errors import SceneError
 
 __all__ = ["app"]
 
@@ -223,44 +222,3 @@ def info(archive: Annotated[Path, Parameter(help="Archive to describe.")]) -> in
     from gearidae.cli.files import describe
 
     return describe(archive)
-
-
-@app.command
-def bench(
-    *,
-    scenes: Annotated[
-        list[str] | None,
-        Parameter(help="Benchmark scenes to measure; by default all.", consume_multiple=True),
-    ] = None,
-    output: Annotated[
-        Path | None, Parameter(name=["--output", "-o"], help="Folder for tables, all points and pictures.")
-    ] = None,
-    quick: Annotated[bool, Parameter(help="Fewer scenes, tolerances and rounds.")] = False,
-    stress: Annotated[
-        bool, Parameter(help="Run random scenes over wide ranges instead, and account for every ending.")
-    ] = False,
-    runs: Annotated[int, Parameter(help="Random scenes to run.")] = 2000,
-    seed: Annotated[int, Parameter(help="Which random scenes.")] = 1,
-    accuracy: Annotated[
-        bool, Parameter(help="Hold the error of every shipped case against the tolerance asked for instead.")
-    ] = False,
-    jobs: Annotated[
-        int | None, Parameter(help="Scenes at a time, with --stress or --accuracy; by default one per core.")
-    ] = None,
-    long: Annotated[
-        bool, Parameter(help="Let very many teeth pass instead, and see whether anything drifts or grows.")
-    ] = False,
-    passages: Annotated[int, Parameter(help="Tooth passages of the long run.")] = 1_000_000,
-) -> int:
-    """Measure run time against error on this machine, and hold it against other integrators."""
-    from gearidae.cli.bench import bench_accuracy, bench_long, bench_scenes, bench_stress
-
-    if stress + accuracy + long > 1:
-        raise SceneError("bench", "--stress, --accuracy, --long", "say one of them")
-    if long:
-        return bench_long(passages, output)
-    if stress:
-        return bench_stress(runs, seed, jobs, output)
-    if accuracy:
-        return bench_accuracy(jobs, output)
-    return bench_scenes(scenes or [], output, quick=quick)

@@ -15,7 +15,7 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import is_quiet, say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.values import default_output, sweep_values
-from gearidae.executors import check_jobs
+from gearidae.runs.executors import check_jobs
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -25,5 +25,4 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset teodorescu2009"),
     "info": ("gearidae info mine.nc",),
-    "bench": ("gearidae bench --quick", "gearidae bench --long -o results"),
 }

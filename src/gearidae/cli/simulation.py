@@ -15,7 +15,7 @@ from gearidae.cli.output import complain, is_quiet, say
 from gearidae.cli.tables import label_text, show_account, show_outcomes
 from gearidae.cli.values import default_output, sweep_values
 from gearidae.errors import SceneError, SolverError
-from gearidae.executors import check_jobs, dask_executor
+from gearidae.runs.executors import check_jobs, dask_executor
 
 __all__ = ["run_case", "sweep_case"]
 

@@ -12,9 +12,9 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
+from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.select import swept_dims
 from gearidae.cli.output import show
-from gearidae.outcome import GearOutcome, RollerOutcome, outcomes
 
 __all__ = ["label_text", "show_account", "show_outcomes", "show_rows"]
 

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import say_compiling
-from gearidae.engine import layout as at
 from gearidae.engine.changeover import change_over, deepen
-from gearidae.engine.problem import Problem, make_problem
-from gearidae.engine.run import Block, Ending, Tally
-from gearidae.engine.sundials import unavailable
+from gearidae.engine.integrate.driver import Block, Ending, Tally
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import Problem, make_problem
+from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Ledger, Solution, Statistics
 from gearidae.scene import Scene
@@ -74,7 +74,7 @@ def load_driver(backend: str) -> ModuleType:
     module = "native" if backend == "native" else "portable"
     say_compiling(_COMPILED[module], "the solver", "about half a minute")
     # imported late: the native driver compiles its callbacks when it is imported
-    return import_module(f"gearidae.engine.{module}")
+    return import_module(f"gearidae.engine.integrate.{module}")
 
 
 _COMPILED = {"native": "native", "portable": "residual"}  # a module that is compiled with each driver

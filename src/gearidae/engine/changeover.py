@@ -7,12 +7,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine import layout as at
-from gearidae.engine.ledger import carry_ledger
-from gearidae.engine.mesh import history_slot
-from gearidae.engine.nodes import book_points, first_unknown, meet_nodes, point_count, point_weights, row
-from gearidae.engine.problem import Problem
-from gearidae.engine.settle import SETTLED, settle_nodes
+from gearidae.engine.elastic.nodes import (
+    book_points,
+    first_unknown,
+    meet_nodes,
+    point_count,
+    point_weights,
+    row,
+)
+from gearidae.engine.elastic.static_solve import SETTLED, settle_nodes
+from gearidae.engine.energy.balance import carry_ledger
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.tooth_pairs import history_slot
 
 __all__ = ["change_over", "deepen"]
 

@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 
-from gearidae.analysis.teeth import tooth_contacts
 from gearidae.errors import SceneError
 from gearidae.plot.files import BY_FFMPEG, MOVING, whole_file
 from gearidae.plot.teeth_view import TeethView
+from gearidae.studies.tooth_contacts import tooth_contacts
 
 __all__ = ["animate_teeth"]
 

@@ -14,9 +14,9 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from gearidae.analysis.tooth_states import ToothContact
 from gearidae.plot.style import NEGATIVE, POSITIVE
 from gearidae.scene import Scene
+from gearidae.studies.tooth_states import ToothContact
 
 __all__ = ["COATING", "FLANKS", "SAMPLES", "close_up", "half_width", "joined_asperities", "rough_sample"]
 

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
 from gearidae.analysis.assessment import Assessment
-from gearidae.analysis.maps import require_map
 from gearidae.errors import SceneError
 from gearidae.plot.style import new_axes, scale_for, tidy
+from gearidae.studies.coating_map import require_map
 
 __all__ = ["coating_map", "starting_torque"]
 

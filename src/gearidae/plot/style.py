@@ -17,10 +17,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
 from gearidae.errors import SceneError
-from gearidae.outcome import START_UP
 
 __all__ = [
     "NEGATIVE",

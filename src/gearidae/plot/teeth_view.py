@@ -11,13 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearidae.analysis.teeth import run_scene, tooth_contacts
-from gearidae.analysis.tooth_states import ContactState, MeshState, ToothContact
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
 from gearidae.plot.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
 from gearidae.records import Flank
 from gearidae.scene import Scene
+from gearidae.studies.tooth_contacts import run_scene, tooth_contacts
+from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
 __all__ = ["STATE_WORDS", "TeethView", "nearest_pairs", "pairs_at_most", "teeth"]
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.pieces import pieces
 from gearidae.archive.select import runs, scene_of, swept_dims
-from gearidae.outcome import GearOutcome, RollerOutcome, outcomes
 from gearidae.records import EventKind
 from gearidae.report import html
 from gearidae.scene import describe_keys

@@ -10,9 +10,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.analysis.teeth import run_scene, tooth_contacts
-from gearidae.analysis.tooth_record import samples_of
-from gearidae.analysis.tooth_states import MeshState, ToothContact
 from gearidae.archive.select import is_roller
 from gearidae.errors import SceneError
 from gearidae.plot.asperities import SAMPLES, half_width, joined_asperities, rough_sample
@@ -20,6 +17,9 @@ from gearidae.plot.style import runs_of
 from gearidae.plot.teeth_view import STATE_WORDS, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
 from gearidae.scene import Scene
+from gearidae.studies.tooth_contacts import run_scene, tooth_contacts
+from gearidae.studies.tooth_record import samples_of
+from gearidae.studies.tooth_states import MeshState, ToothContact
 
 __all__ = ["FRAME", "MOST_STATES", "PAIR", "pack_teeth"]
 

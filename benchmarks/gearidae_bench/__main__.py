@@ -1,0 +1,74 @@
+"""``python -m gearidae_bench``: the benchmark and the stress, accuracy and long runs, from a source tree."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from gearidae.cli.codes import BAD_INPUT, INTERRUPTED
+from gearidae.errors import GearidaeError, SceneError
+from gearidae_bench.commands import bench_accuracy, bench_long, bench_scenes, bench_stress
+
+app = App(
+    name="gearidae_bench",
+    help="Run time against error, and the runs that look for faults.",
+    suppress_keyboard_interrupt=False,
+)
+
+
+@app.default
+def bench(
+    *,
+    scenes: Annotated[
+        list[str] | None,
+        Parameter(help="Benchmark scenes to measure; by default all.", consume_multiple=True),
+    ] = None,
+    output: Annotated[
+        Path | None, Parameter(name=["--output", "-o"], help="Folder for tables, all points and pictures.")
+    ] = None,
+    quick: Annotated[bool, Parameter(help="Fewer scenes, tolerances and rounds.")] = False,
+    stress: Annotated[
+        bool, Parameter(help="Run random scenes over wide ranges instead, and account for every ending.")
+    ] = False,
+    runs: Annotated[int, Parameter(help="Random scenes to run.")] = 2000,
+    seed: Annotated[int, Parameter(help="Which random scenes.")] = 1,
+    accuracy: Annotated[
+        bool, Parameter(help="Hold the error of every shipped case against the tolerance asked for instead.")
+    ] = False,
+    jobs: Annotated[
+        int | None, Parameter(help="Scenes at a time, with --stress or --accuracy; by default one per core.")
+    ] = None,
+    long: Annotated[
+        bool, Parameter(help="Let very many teeth pass instead, and see whether anything drifts or grows.")
+    ] = False,
+    passages: Annotated[int, Parameter(help="Tooth passages of the long run.")] = 1_000_000,
+) -> int:
+    """Measure run time against error on this machine, and hold it against other integrators."""
+    if stress + accuracy + long > 1:
+        raise SceneError("bench", "--stress, --accuracy, --long", "say one of them")
+    if long:
+        return bench_long(passages, output)
+    if stress:
+        return bench_stress(runs, seed, jobs, output)
+    if accuracy:
+        return bench_accuracy(jobs, output)
+    return bench_scenes(scenes or [], output, quick=quick)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line, and return its exit code."""
+    try:
+        return int(app(arguments, result_action="return_value") or 0)
+    except GearidaeError as error:
+        sys.stderr.write(f"{error}\n")
+        return BAD_INPUT
+    except KeyboardInterrupt as interrupt:
+        sys.stderr.write(f"interrupted: {interrupt}\n")
+        return INTERRUPTED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,206 @@
+"""What ``python -m gearidae_bench`` does: benchmark, stress run, accuracy run and long run, with their pages."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from gearidae.cli.codes import DONE, UNFINISHED
+from gearidae.cli.output import say, show
+from gearidae.cli.tables import show_rows
+from gearidae.errors import SceneError
+from gearidae.runs.executors import check_jobs
+from gearidae_bench import Result, Settings, find_scenes, run_benchmark
+from gearidae_bench.accuracy import accuracy_scenes, measure_accuracy
+from gearidae_bench.accuracy_report import PICTURE, draw_accuracy
+from gearidae_bench.accuracy_report import page as accuracy_page
+from gearidae_bench.accuracy_report import quantiles as accuracy_quantiles
+from gearidae_bench.files import write_result
+from gearidae_bench.long import FEWEST_PASSAGES, long_page, measure_long, sound
+from gearidae_bench.stress import Outcome, run_stress
+from gearidae_bench.stress_report import counts, page, quantiles
+from gearidae_bench.tables import ERRORS, beyond_rows, equal_error_rows
+
+__all__ = ["bench_accuracy", "bench_scenes", "bench_stress"]
+
+_QUICK_SCENES = ("low_sam", "high_sam", "roller_slow_bare")
+_QUICK = Settings(rounds=3, longest=1.0, share=1.0, every=2)
+
+
+def bench_scenes(scenes: Sequence[str], output: Path | None, *, quick: bool) -> int:
+    """Measure, print a table for each scene, and write everything to a folder if asked.
+
+    Parameters
+    ----------
+    scenes : sequence of str
+        Names of benchmark scenes; none for all of them (or a few, if `quick`).
+    output : Path or None
+        Folder for ``benchmark.json``, ``points.csv``, ``benchmark.md`` and a picture of each scene.
+    quick : bool
+        Fewer scenes, tolerances and rounds.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If there is no benchmark scene of a name.
+    """
+    chosen = find_scenes(tuple(scenes) or (_QUICK_SCENES if quick else ()))
+    settings = _QUICK if quick else Settings()
+    with Console(stderr=True).status("") as status:
+        result = run_benchmark(
+            chosen, settings, beyond=not quick, report=lambda words: status.update(f"{words} ...")
+        )
+    _print(result)
+    if output is not None:
+        write_result(result, output)
+        say(f"Results: {output}")
+    return DONE
+
+
+def bench_long(passages: int, output: Path | None) -> int:
+    """Let very many teeth pass, print what changed from part to part, and write the page about it if asked.
+
+    Parameters
+    ----------
+    passages : int
+        How many.
+    output : Path or None
+        Folder for ``long.md``.
+
+    Returns
+    -------
+    int
+        Exit code: `UNFINISHED` if a passage was miscounted.
+    """
+    if passages < FEWEST_PASSAGES:
+        raise SceneError("--passages", passages, f"must be at least {FEWEST_PASSAGES}")
+    with Console(stderr=True).status("") as status:
+        parts = measure_long(passages, lambda passed: status.update(f"{passed} of {passages} passages ..."))
+    text = long_page(parts)
+    say(text)
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        (output / "long.md").write_text(text)
+        say(f"Report: {output / 'long.md'}")
+    return DONE if sound(parts) else UNFINISHED
+
+
+def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) -> int:
+    """Run random scenes, print how they ended, and write the page about them if asked.
+
+    What is done when Ctrl-C comes is printed and written all the same.
+
+    Parameters
+    ----------
+    runs, seed : int
+        How many scenes, and which.
+    jobs : int or None
+        Processes to share them; by default one per core.
+    output : Path or None
+        Folder for ``stress.md``.
+
+    Returns
+    -------
+    int
+        Exit code: `UNFINISHED` if any outcome is unsound.
+    """
+    if runs < 1 or seed < 0:
+        raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
+    workers = check_jobs(jobs)
+    outcomes: list[Outcome] = []
+    interrupted = False
+    with Console(stderr=True).status("") as status:
+
+        def note(some: list[Outcome]) -> None:
+            outcomes.extend(some)
+            status.update(f"{len(outcomes)} of {runs} ...")
+
+        try:
+            run_stress(runs, seed, workers, report=note)
+        except KeyboardInterrupt:
+            interrupted = True
+    outcomes.sort(key=lambda outcome: outcome.number)
+    if not outcomes:
+        raise KeyboardInterrupt
+    rows = [(ending, str(number), "") for ending, number in counts(outcomes).items()]
+    rows += [
+        (f"error / rtol of {100 * share:g} %", f"{ratio:.2g}", "at most")
+        for share, ratio in quantiles(outcomes).items()
+    ]
+    show_rows(rows)
+    unsound = [outcome for outcome in outcomes if not outcome.sound]
+    for outcome in unsound:
+        say(f"scene {outcome.number}: {outcome.status} {outcome.message} {outcome.complaint}")
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        (output / "stress.md").write_text(page(outcomes, seed, datetime.now(UTC).date(), runs))
+        say(f"Report: {output / 'stress.md'}")
+    if interrupted:
+        raise KeyboardInterrupt(f"{len(outcomes)} of {runs} scenes done")
+    return UNFINISHED if unsound else DONE
+
+
+def bench_accuracy(jobs: int | None, output: Path | None) -> int:
+    """Run the shipped cases at many tolerances, print how the error compares, and write the page if asked.
+
+    Parameters
+    ----------
+    jobs : int or None
+        Scenes at a time; by default one per core.
+    output : Path or None
+        Folder for ``accuracy.md`` and ``images/accuracy.png``.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    workers, scenes = check_jobs(jobs), accuracy_scenes()
+    with Console(stderr=True).status("") as status:
+        results = measure_accuracy(
+            scenes, workers, lambda done: status.update(f"{done} of {len(scenes)} ...")
+        )
+    rows = [
+        (f"error / rtol at {name}", f"{median:.2g}", f"median; at most {largest:.2g}")
+        for name, (_, median, _, largest) in accuracy_quantiles(results).items()
+    ]
+    show_rows(rows)
+    if output is not None:
+        (output / "images").mkdir(parents=True, exist_ok=True)
+        (output / "accuracy.md").write_text(accuracy_page(results, datetime.now(UTC).date()))
+        draw_accuracy(results, output / "images" / PICTURE)
+        say(f"Report: {output / 'accuracy.md'}")
+    return DONE
+
+
+def _print(result: Result) -> None:
+    for scene, title in result.scenes.items():
+        table = Table(
+            box=box.SIMPLE,
+            pad_edge=False,
+            title=f"{title}: run time (ms) at error of scale",
+            title_justify="left",
+        )
+        table.add_column("")
+        for error in ERRORS:
+            table.add_column(f"1e{round(math.log10(error))}", justify="right")
+        for label, times, _ in equal_error_rows(result, scene):
+            table.add_row(label, *("-" if math.isnan(t) else f"{1e3 * t:.3g}" for t in times))
+        show(table)
+    for key, reason in result.skipped.items():
+        sys.stdout.write(f"{result.labels[key]}: not measured ({reason})\n")
+    rows = [(name, value, "") for name, value in beyond_rows(result)]
+    if rows:
+        show_rows(rows)

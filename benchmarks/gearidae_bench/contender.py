@@ -1,0 +1,131 @@
+"""What takes part in the benchmark: a name, a ladder of tolerances, and a way to run a scaled problem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.engine.backend import run_blocks
+from gearidae.engine.integrate.driver import Ending, Tally
+from gearidae.engine.model.problem import Problem
+from gearidae_bench.loop import run_dop853, run_rk4
+from gearidae_bench.reference import physical
+from gearidae_bench.roots import CALLS, FAILED, STEPS
+
+__all__ = ["TOLERANCES", "Contender", "Outcome", "engine_contenders", "explicit_contenders"]
+
+Floats = NDArray[np.float64]
+
+TOLERANCES: Final = tuple(10.0**-k for k in range(3, 13))
+STEP_LENGTHS: Final = tuple(0.4 * 0.5**k for k in range(9))
+"""Of the fixed-step method, over the scene's tau."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Samples of a run and what they cost.
+
+    Attributes
+    ----------
+    speed, position : ndarray, shape (n,)
+        As in `gearidae_bench.reference.Reference`; shorter for a run that broke off.
+    steps, evaluations : int
+        Steps of the integrator, and evaluations of the right-hand side or residual.
+    """
+
+    speed: Floats
+    position: Floats
+    steps: int
+    evaluations: int
+
+
+BROKEN: Final = Outcome(np.empty(0), np.empty(0), 0, 0)
+
+
+def _always() -> str:
+    return ""
+
+
+@dataclass(frozen=True, slots=True)
+class Contender:
+    """One way to integrate a scene.
+
+    Attributes
+    ----------
+    key, label : str
+        Short name, and what tables and pictures say.
+    run : callable
+        Takes a problem (which it may use up), a tolerance and the sample times over tau; returns an `Outcome`.
+    ladder : tuple of float
+        Tolerances (or step lengths), from loose to tight.
+    unavailable : callable
+        Says why it cannot run here; an empty string if it can.
+    peer : str
+        What kind of peer it is: ``gearidae``, ``python`` (steps driven from Python) or ``compiled``.
+    """
+
+    key: str
+    label: str
+    run: Callable[[Problem, float, Floats], Outcome]
+    peer: str
+    ladder: tuple[float, ...] = TOLERANCES
+    unavailable: Callable[[], str] = field(default=_always)
+
+
+def _engine(backend: str) -> Callable[[Problem, float, Floats], Outcome]:
+    def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
+        tally = Tally()
+        table = np.concatenate([b.rows for b in run_blocks(problem, tolerance, times.size, backend, tally)])
+        if tally.ending is not Ending.FINISHED:
+            return BROKEN
+        names = ("speed", "height") if "height" in problem.columns else ("gear_speed", "transmission_error")
+        speed, position = (table[:, problem.columns.index(name)] for name in names)
+        return Outcome(speed, position, tally.steps, tally.residual_evaluations)
+
+    return run
+
+
+def _no_native() -> str:
+    from gearidae.engine.sundials.names import unavailable
+
+    return unavailable()
+
+
+def engine_contenders() -> tuple[Contender, ...]:
+    """gearidae's own drivers."""
+    return (
+        Contender("native", "gearidae, native", _engine("native"), "gearidae", unavailable=_no_native),
+        Contender("portable", "gearidae, sksundae", _engine("sksundae"), "gearidae"),
+    )
+
+
+def _dop853(problem: Problem, tolerance: float, times: Floats) -> Outcome:
+    states, counts = np.empty((times.size, problem.start.size)), np.zeros(4, np.int64)
+    atol = tolerance * problem.tolerance_scale
+    # ending steps at the kinks was tried and takes twice as long at equal error
+    run_dop853(problem.data, problem.start, problem.end, times, states, atol, False, counts)
+    return _outcome(problem, states, counts)
+
+
+def _rk4(problem: Problem, step: float, times: Floats) -> Outcome:
+    states, counts = np.empty((times.size, problem.start.size)), np.zeros(4, np.int64)
+    run_rk4(problem.data, problem.start, problem.end, times, states, step, counts)
+    return _outcome(problem, states, counts)
+
+
+def _outcome(problem: Problem, states: Floats, counts: NDArray[np.int64]) -> Outcome:
+    if counts[FAILED]:
+        return BROKEN
+    return Outcome(*physical(problem, states), int(counts[STEPS]), int(counts[CALLS]))
+
+
+def explicit_contenders() -> tuple[Contender, ...]:
+    """Compiled explicit methods over the same right-hand side."""
+    return (
+        Contender("dop853", "DOP853, compiled", _dop853, "compiled"),
+        Contender("rk4", "RK4 of fixed step, compiled", _rk4, "compiled", STEP_LENGTHS),
+    )

@@ -1,0 +1,195 @@
+/* The native driver's stepping loop once more, in C, to see what the compiled Python costs.
+ *
+ * It works on the solver that gearidae's own open_solver has set up, calls the same SUNDIALS library, and reaches the
+ * same guard, history, interpolation and output functions through their addresses. Keep it in step with
+ * gearidae.engine.integrate.native.advance and gearidae.engine.integrate.root_finding.
+ */
+#include <math.h>
+#include <stdint.h>
+
+extern int IDASolve(void *, double, double *, void *, void *, int);
+extern int IDAGetCurrentTime(void *, double *);
+extern int IDAGetCurrentStep(void *, double *);
+extern int IDAGetNumSteps(void *, long *);
+
+enum { ONE_STEP = 2, TSTOP_RETURN = 1, ROOT_RETURN = 2 };
+enum { CONTINUE = 0, RESTART = 1 };
+enum { TRIES = 3 }; /* that of gearidae.engine.integrate.root_finding */
+
+/* Order of gearidae_bench.c_calls.addresses. */
+typedef struct {
+    int32_t (*accept)(double *d, double *desk, double t, double *y, double *yp, double *dky, double *spare,
+                      int32_t flag);
+    int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);
+    void (*observe)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *row);
+    int32_t (*restart)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *scale,
+                       double rtol, double stop);
+    double (*guard)(double *d, double t, double *y);
+    void (*keep)(double *d, double *desk, double t, double *yp);
+    void (*state_at)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp);
+} calls_t;
+
+typedef struct {
+    const calls_t *call;
+    int64_t *handles;
+    void *solver, *yy, *yyp;
+    double *d, *desk, *y, *yp;
+    double low, low_time, step_end, stop_time, sharp;
+    int rest, stop;
+} search_t;
+
+static void state_at(search_t *s, double t)
+{
+    s->call->state_at(s->d, s->handles, s->desk, t, s->y, s->yp);
+}
+
+static double look(const search_t *s, double t)
+{
+    return s->call->guard(s->d, t, s->y);
+}
+
+static double rounding(const search_t *s)
+{
+    double step = 0.0;
+    IDAGetCurrentStep(s->solver, &step);
+    return 100.0 * 0x1p-52 * (fabs(s->step_end) + fabs(step));
+}
+
+static double inverse(double a, double at_a, double b, double at_b, double c, double at_c)
+{
+    return a * at_b * at_c / ((at_a - at_b) * (at_a - at_c)) + b * at_a * at_c / ((at_b - at_a) * (at_b - at_c))
+           + c * at_a * at_b / ((at_c - at_a) * (at_c - at_b));
+}
+
+static double find(search_t *s, double high)
+{
+    double a = s->low_time, b = s->step_end, low = s->low, c = a, left = low, here = b, wide = b - a;
+    const double tolerance = fmax(rounding(s), s->sharp * (b - a));
+    int tries = 0;
+    while (b - a > tolerance && (b - a) * high < tolerance * (high - low)) {
+        here = b - (b - a) * high / (high - low);
+        if (left != low && left != high)
+            here = inverse(a, low, b, high, c, left);
+        here += 0.5 * tolerance;
+        if (++tries % TRIES == 0) {
+            const int slow = b - a > 0.5 * wide;
+            wide = b - a;
+            if (slow)
+                here = 0.5 * (a + b);
+        }
+        here = fmin(fmax(here, a + 0.25 * tolerance), b - 0.25 * tolerance);
+        state_at(s, here);
+        const double value = look(s, here);
+        if (value < 0.0) {
+            c = b, left = high, b = here, high = value;
+        } else {
+            c = a, left = low, a = here, low = value;
+        }
+    }
+    if (here != b)
+        state_at(s, b);
+    return b;
+}
+
+static int at_stop(search_t *s, double *t)
+{
+    s->stop = 0;
+    *t = s->stop_time;
+    state_at(s, *t);
+    return TSTOP_RETURN;
+}
+
+static int next_time(search_t *s, double end, double *t)
+{
+    if (s->rest) {
+        s->low = look(s, *t), s->low_time = *t;
+        if (fabs(s->step_end - *t) <= rounding(s))
+            s->rest = 0;
+    }
+    const int rest = s->rest;
+    if (rest) {
+        *t = s->step_end;
+        state_at(s, *t);
+    } else if (s->stop) {
+        return at_stop(s, t);
+    } else {
+        int flag = IDASolve(s->solver, end, t, s->yy, s->yyp, ONE_STEP);
+        if (flag < 0)
+            return flag;
+        s->call->keep(s->d, s->desk, *t, s->yp);
+        if (flag == TSTOP_RETURN) {
+            s->stop = 1, s->stop_time = *t;
+            IDAGetCurrentTime(s->solver, t);
+            state_at(s, *t);
+        }
+    }
+    const double high = look(s, *t);
+    if (s->low > 0.0 && high < 0.0) {
+        s->step_end = *t;
+        s->rest = 1;
+        *t = find(s, high);
+        return ROOT_RETURN;
+    }
+    s->low = high, s->low_time = *t;
+    s->rest = 0;
+    return s->stop && !rest ? at_stop(s, t) : 0;
+}
+
+static int start(search_t *s, double t, double *scale, double rtol, double end)
+{
+    int flag = s->call->restart(s->d, s->handles, s->desk, t, s->y, s->yp, scale, rtol, end);
+    s->low = look(s, t), s->low_time = t;
+    s->rest = s->stop = 0;
+    return flag;
+}
+
+static int64_t steps(void *solver)
+{
+    long number = 0;
+    IDAGetNumSteps(solver, &number);
+    return number;
+}
+
+/* Run to the end; 0 if all went well, and the steps taken. */
+int gearidae_loop(const calls_t *call, int64_t *handles, void *solver, void *yy, void *yyp, double *d, double *desk,
+                  double *y, double *yp, double *dky, double *spare, double *scale, double rtol, double sharp,
+                  double end, int64_t total, int64_t columns, double *rows, double *events, int64_t room,
+                  int64_t *taken)
+{
+    search_t s = {call, handles, solver, yy, yyp, d, desk, y, yp};
+    s.sharp = sharp;
+    const double spacing = end / (double)(total - 1);
+    double t = 0.0;
+    int64_t next = 1, happened = 0;
+    int flag = start(&s, t, scale, rtol, end);
+    while (flag == 0) {
+        flag = next_time(&s, end, &t);
+        if (flag < 0)
+            return flag;
+        while (next < total) {
+            double sample = next < total - 1 ? (double)next * spacing : end;
+            if (sample > t)
+                break;
+            call->observe(d, handles, desk, sample, dky, spare, rows + next * columns);
+            next++;
+        }
+        int afresh = call->accept(d, desk, t, y, yp, dky, spare, flag);
+        if (flag == ROOT_RETURN) {
+            if (happened >= room)
+                happened = 0;
+            int32_t action = call->handle(d, t, y, events, &happened);
+            if (action != RESTART && action != CONTINUE)
+                return 1;
+            afresh |= action == RESTART;
+            flag = 0;
+        } else if (flag == TSTOP_RETURN) {
+            *taken += steps(solver);
+            return 0;
+        }
+        if (afresh) {
+            *taken += steps(solver);
+            flag = start(&s, t, scale, rtol, end);
+        }
+    }
+    return flag;
+}

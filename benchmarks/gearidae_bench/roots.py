@@ -1,0 +1,155 @@
+"""Find events and kinks within a step, and take the histories through them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+from gearidae.engine.events.events import accept, guard, handle
+from gearidae_bench.kinks import watch
+from gearidae_bench.steps import dop853_value, gauss_step, hermite_value
+
+__all__ = ["CALLS", "CUBIC", "DOP853", "EVENTS", "FAILED", "GAUSS", "STEPS", "find_root", "pass_events"]
+
+Floats = NDArray[np.float64]
+Counts = NDArray[np.int64]
+
+CUBIC: Final = 0
+DOP853: Final = 1
+GAUSS: Final = 2
+"""How to know the state within a step: by a cubic, by the method's own interpolant, by a step that ends there."""
+
+STEPS, CALLS, EVENTS, FAILED = range(4)
+"""Columns of the counters; FAILED is not zero where a run had to be given up: the action that the
+engine's `handle` asks for and these loops do not know, or -1 where steps became too small."""
+
+_ROOT_TOLERANCE = 1e-15  # of the step's end time
+_MOST_TRIALS = 60
+
+
+@compiled
+def _value(
+    method: int,
+    d: Floats,
+    t: float,
+    y: Floats,
+    h: float,
+    theta: float,
+    scale: Floats,
+    k: Floats,
+    zero: Floats,
+    trial: Floats,
+    new: Floats,
+    f_new: Floats,
+    dense: Floats,
+    out: Floats,
+) -> None:
+    """State at ``t + theta`` within a step of h: from the interpolant, or for Gauss by a step that ends there."""
+    if method == CUBIC:
+        hermite_value(y, k[0], new, f_new, h, theta / h, out)
+    elif method == DOP853:
+        dop853_value(y, dense, theta / h, out)
+    else:
+        gauss_step(d, t, y, theta, scale, k, zero, trial, out)
+
+
+@compiled(makes_arrays=True)
+def find_root(
+    method: int,
+    d: Floats,
+    t: float,
+    y: Floats,
+    h: float,
+    start: float,
+    low: float,
+    high: float,
+    scale: Floats,
+    k: Floats,
+    zero: Floats,
+    trial: Floats,
+    new: Floats,
+    f_new: Floats,
+    dense: Floats,
+    out: Floats,
+    heights: Floats,
+    armed: bool,
+) -> float:
+    """Find where the guard falls between ``t + start`` and ``t + h``, given its values `low` and `high` there.
+
+    Regula falsi after Illinois. Returns the place just behind the root, with its state in `out`.
+    """
+    a, b = start, h
+    state = np.empty(y.size)
+    weight, side = 1.0, 0
+    out[:] = new
+    for _ in range(_MOST_TRIALS):
+        if b - a <= _ROOT_TOLERANCE * (t + h):
+            break
+        share = min(max(high / (high - weight * low), 1e-3), 1.0 - 1e-3)
+        place = b - (b - a) * share
+        _value(method, d, t, y, h, place, scale, k, zero, trial, new, f_new, dense, state)
+        middle = watch(d, t + place, state, heights, armed)
+        if middle < 0.0:
+            b, high = place, middle
+            out[:] = state
+            weight = 0.5 * weight if side == 1 else 1.0
+            side = 1
+        else:
+            a, low = place, middle
+            weight = 2.0 * weight if side == -1 else 1.0
+            side = -1
+    return b
+
+
+@compiled
+def pass_events(
+    method: int,
+    d: Floats,
+    t: float,
+    y: Floats,
+    h: float,
+    before: float,
+    k: Floats,
+    zero: Floats,
+    trial: Floats,
+    new: Floats,
+    f_new: Floats,
+    dense: Floats,
+    there: Floats,
+    room: Floats,
+    counts: Counts,
+) -> None:
+    """Take the history through the events within a step, one after the other, and go on from the step's end."""
+    start = 0.0
+    after = guard(d, t + h, new)
+    while before > 0.0 > after:
+        start = find_root(
+            method,
+            d,
+            t,
+            y,
+            h,
+            start,
+            before,
+            after,
+            zero,
+            k,
+            zero,
+            trial,
+            new,
+            f_new,
+            dense,
+            there,
+            zero,
+            False,
+        )
+        counts[EVENTS] += 1
+        accept(d, t + start, there)
+        _, counts[FAILED] = handle(d, t + start, there, room, 0)
+        if counts[FAILED] != 0:
+            return
+        before = guard(d, t + start, there)
+        after = guard(d, t + h, new)

@@ -1,0 +1,285 @@
+"""The stress run: random scenes through the engine, every ending accounted for, every sample held against the physics.
+
+A scene may end finished, with the step budget used up, or with a named status. What it may not do is hang, raise
+anything but `SceneError`, hand up a number that is not finite, an event out of order, or a sample that no state of the
+contact could produce: see `stress_checks`. The motion up to its first few impacts is then solved again at a tenth of
+the tolerance, which shows the error against the tolerance asked for.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.engine.backend import run_blocks
+from gearidae.engine.integrate.driver import BLOCK_STEPS, Tally
+from gearidae.engine.model import layout as at
+from gearidae.engine.model.problem import Problem, make_problem
+from gearidae.errors import SceneError
+from gearidae.records import EventKind, Ledger
+from gearidae.runs.executors import own_executor, stop
+from gearidae.scene import Scene
+from gearidae_bench.random_scenes import SCENES_PER_SURFACE, random_scene
+from gearidae_bench.stress_checks import complaint_about
+
+__all__ = ["ELASTIC_SHARE", "LEDGER_TOLERANCES", "STEP_BUDGET", "Outcome", "run_one", "run_stress"]
+
+Floats = NDArray[np.float64]
+
+STEP_BUDGET = 5 * BLOCK_STEPS
+"""Steps after which a scene is left alone, or as many blocks of output full of samples or events."""
+ELASTIC_SHARE = 5
+"""Where bodies give way, steps take longer: the budget is divided by this."""
+
+LEDGER_TOLERANCES = 1e4
+"""What the energy ledger of a finished run may leave unexplained, in tolerances."""
+
+_PATIENCE = 600.0  # [s]; no four scenes take a tenth of that
+_HORIZON_EVENTS = 3  # turning points, sticks or slips up to which two tolerances are compared
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How one scene ended.
+
+    Attributes
+    ----------
+    number : int
+        Of the scene, for `random_scene`.
+    status : str
+        ``finished``, ``budget`` (stopped after `STEP_BUDGET` steps), ``refused`` (a SceneError), one of the engine's
+        named endings, or ``raised`` and ``hung``, which are defects.
+    message : str
+        The reason in words.
+    complaint : str
+        What is wrong with the samples or events; empty if nothing is.
+    rtol, error : float
+        Tolerance, and error up to the first few impacts over what the motion covers there (at least a roughness, or a
+        roughness per time unit), a shift in time over the time; NaN where there was nothing to compare.
+    imbalance : float
+        What the energy ledger leaves unexplained, over the energy that has moved and the largest of motion there was.
+    steps, wall_time, reached : int, float, float
+        Steps, wall time [s], and share of the simulated time that was reached.
+    """
+
+    number: int
+    status: str
+    message: str = ""
+    complaint: str = ""
+    rtol: float = math.nan
+    error: float = math.nan
+    imbalance: float = math.nan
+    steps: int = 0
+    wall_time: float = 0.0
+    reached: float = 0.0
+
+    @property
+    def ratio(self) -> float:
+        """Error over tolerance."""
+        return self.error / self.rtol
+
+    @property
+    def sound(self) -> bool:
+        """Whether nothing is wrong with it."""
+        return self.status not in ("raised", "hung") and not self.complaint
+
+
+def run_stress(
+    runs: int,
+    seed: int,
+    jobs: int = 1,
+    budget: int = STEP_BUDGET,
+    report: Callable[[list[Outcome]], None] | None = None,
+) -> list[Outcome]:
+    """Run so many random scenes.
+
+    Parameters
+    ----------
+    runs, seed : int
+    jobs : int, optional
+        Processes to share them.
+    budget : int, optional
+        Steps after which a scene is left alone.
+    report : callable, optional
+        Called with the outcomes of each few scenes as they are done: what there is after an interruption.
+
+    Returns
+    -------
+    list of Outcome
+        In the order of their numbers.
+    """
+    groups = [
+        range(first, min(first + SCENES_PER_SURFACE, runs)) for first in range(0, runs, SCENES_PER_SURFACE)
+    ]
+    outcomes: list[Outcome] = []
+    with own_executor(jobs, len(groups), releases_gil=False) as executor:
+        finished = (
+            (_run_group(seed, group, budget) for group in groups)
+            if executor is None
+            else _spread(executor, seed, groups, budget)
+        )
+        for some in finished:
+            outcomes += some
+            if report is not None:
+                report(some)
+    return sorted(outcomes, key=lambda outcome: outcome.number)
+
+
+def _run_group(seed: int, numbers: range, budget: int) -> list[Outcome]:
+    """Run the scenes that share a surface."""
+    return [run_one(random_scene(seed, number), number, budget) for number in numbers]
+
+
+def _spread(executor: Executor, seed: int, groups: list[range], budget: int) -> Iterator[list[Outcome]]:
+    """Hand groups to processes; one that dies or does not come back is a defect of all that are out."""
+    out: dict[Future[list[Outcome]], range] = {
+        executor.submit(_run_group, seed, group, budget): group for group in groups
+    }
+    while out:
+        done, _ = wait(out, timeout=_PATIENCE, return_when=FIRST_COMPLETED)
+        if not done:
+            stop(executor)
+            reason = f"one of those that hung, or waited for it: nothing came back for {_PATIENCE:g} s"
+            yield [Outcome(number, "hung", reason) for group in out.values() for number in group]
+            return
+        for future in done:
+            group, error = out.pop(future), future.exception()
+            yield [Outcome(n, "raised", repr(error)) for n in group] if error else future.result()
+
+
+def run_one(scene: Scene, number: int = 0, budget: int = STEP_BUDGET) -> Outcome:
+    """Run one scene, check what it gave, and compare with a tenth of its tolerance."""
+    started = time.perf_counter()
+    try:
+        run = _solve(scene, scene.run.rtol, budget)
+        status = run.tally.ending.status
+        if status == "finished" and run.reached < 1.0:
+            status = "budget"
+        error = math.nan
+        complaint = complaint_about(
+            scene, run.rows, run.events, float(run.problem.data[at.FORCE]), rigid=run.rigid
+        )
+        if status == "finished" and run.imbalance > LEDGER_TOLERANCES * scene.run.rtol:
+            complaint = complaint or f"the energy ledger leaves {run.imbalance:.1e} unexplained"
+        if len(run.rows) > 1 and not complaint:
+            error = _error(scene, run, budget)
+    except SceneError as refusal:
+        return Outcome(number, "refused", str(refusal))
+    except Exception as defect:  # whatever it is, it is to be listed and the run to go on
+        where = traceback.extract_tb(defect.__traceback__)[-1]
+        return Outcome(
+            number, "raised", f"{type(defect).__name__}: {defect} ({where.name}, line {where.lineno})"
+        )
+    return Outcome(
+        number,
+        status,
+        run.tally.ending.message,
+        complaint,
+        scene.run.rtol,
+        error,
+        run.imbalance,
+        run.tally.steps,
+        time.perf_counter() - started,
+        run.reached,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """What came of a scene within the budget."""
+
+    problem: Problem
+    tally: Tally
+    rows: Floats
+    events: Floats
+    reached: float  # share of the simulated time
+    imbalance: float  # of the energy ledger
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the asperity model has done all of it."""
+        return _is_rigid(self.problem)
+
+
+def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
+    problem, tally = make_problem(scene), Tally()
+    rows, events, reached, ledger = [], [], 0.0, None
+    for spent, block in enumerate(run_blocks(problem, rtol, scene.run.sample_count, "native", tally), 1):
+        rows.append(block.rows)
+        events.append(block.events)
+        reached = block.time / (problem.end * problem.time_unit)
+        ledger = block.ledger or ledger
+        if spent * BLOCK_STEPS * (1 if _is_rigid(problem) else ELASTIC_SHARE) >= budget:
+            break
+    table = np.concatenate(rows)
+    return _Run(
+        problem, tally, table, np.concatenate(events), min(reached, 1.0), _imbalance(scene, ledger, table)
+    )
+
+
+def _imbalance(scene: Scene, ledger: Ledger | None, rows: Floats) -> float:
+    """Residual of a ledger over what moved; speeds err by the tolerance even where no energy is meant to move."""
+    if ledger is None:
+        return math.nan
+    if scene.roller:
+        motion = 0.5 * scene.roller.mass * rows[:, 1] ** 2
+    else:
+        assert scene.gears
+        motion = 0.5 * (
+            scene.gears.gear_inertia * rows[:, 0] ** 2 + scene.gears.pinion_inertia * rows[:, 1] ** 2
+        )
+    scale = ledger.throughput + float(motion.max(initial=0.0))
+    return abs(ledger.residual) / scale if scale > 0.0 else 0.0
+
+
+def _is_rigid(problem: Problem) -> bool:
+    """Whether a problem has done without the deflection of bodies so far."""
+    return bool(problem.skipped["elastic_deflection"])
+
+
+# -- error against tolerance -----------------------------------------------------------------------------------------
+
+
+def _error(scene: Scene, run: _Run, budget: int) -> float:
+    """Difference from a run at a tenth of the tolerance up to the first few impacts, over what the motion covers."""
+    kinds = (EventKind.TURNING_POINT, EventKind.STICK, EventKind.SLIP)
+    impacts = run.events[np.isin(run.events[:, 1], kinds), 0]
+    horizon = (
+        impacts[_HORIZON_EVENTS - 1] if len(impacts) >= _HORIZON_EVENTS else run.reached * scene.run.duration
+    )
+    if not 0.0 < horizon <= scene.run.duration:
+        return math.nan
+    short = scene.replace({"run.duration": float(horizon)})
+    ours, theirs = (
+        _motion(scene, _solve(short, rtol, budget)) for rtol in (scene.run.rtol, 0.1 * scene.run.rtol)
+    )
+    count = min(ours.shape[1], theirs.shape[1])
+    ours, theirs = ours[:, :count], theirs[:, :count]
+    # a shift in time by a share of the horizon is an error by that share, however steep an impact is
+    allowed = np.maximum(np.ptp(theirs[0], axis=0), 1.0)
+    allowed = allowed + np.abs(theirs[1]) * horizon / run.problem.time_unit
+    return float((np.abs(ours[0] - theirs[0]) / allowed).max())
+
+
+def _motion(scene: Scene, run: _Run) -> Floats:
+    """Height or transmission error, and speeds, with their rates, in the engine's units; shape (2, samples, 2 or 3)."""
+    sigma, data = scene.surface.roughness, run.problem.data
+    speed = sigma / run.problem.time_unit
+    if scene.roller:
+        height, rate, force = run.rows.T
+        values = [height / sigma, rate / speed]
+        rates = [values[1], data[at.GEAR_SHARE] * force / data[at.FORCE]]
+    else:
+        geometry, rows = scene.geometry, run.rows
+        gear, pinion = rows[:, 0] * geometry.base_radius_gear, rows[:, 1] * geometry.base_radius_pinion
+        force = rows[:, 4] / data[at.FORCE]
+        values = [rows[:, 3] / sigma, gear / speed, pinion / speed]
+        rates = [values[2] - values[1], data[at.GEAR_SHARE] * force, data[at.PINION_SHARE] * force]
+    return np.stack([np.column_stack(values), np.column_stack(rates)])

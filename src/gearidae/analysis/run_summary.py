@@ -1,0 +1,397 @@
+"""The account of a run: how long it took to speed, stood still and adhered, what forces it met, where energy went.
+
+Read from a dataset of any length in pieces. Times at rest come from the stick and slip events and are as exact as
+these. Energies are those of the ledger that the engine kept at its own steps (`gearidae.engine.energy.balance`).
+
+Archives without a ledger have their work summed over the samples, ``sum of mean(M) times the angle turned``: of
+a constant torque that is exact however the gear trembles between two samples, and of a torque that changes it errs
+with the second power of the sampling only. What torques and speeds do not explain is then what the contacts took.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae.archive.energy import ledger_of
+from gearidae.archive.select import is_roller, scene_of
+from gearidae.records import EventKind
+from gearidae.scene import Drive, Load, Scene
+
+__all__ = ["Account", "account", "account_of", "with_account"]
+
+Floats = NDArray[np.float64]
+Read = Callable[[str, slice], NDArray[Any]]
+
+PIECE = 2**18
+"""Samples, or events, looked at together."""
+AT_SPEED = 0.95
+"""Share of its largest speed from which a gear counts as up to speed."""
+_HELD_WITHIN = 0.5
+"""Tooth pitches that a gear held by adhesion stays within."""
+_COLUMNS = (
+    "time",
+    "gear_speed",
+    "pinion_speed",
+    "gear_angle",
+    "transmission_error",
+    "mesh_force",
+    "drive_gap",
+    "coast_gap",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """What one run of a gear pair did; times in s, work and energies in J, NaN for what was not sampled.
+
+    Attributes
+    ----------
+    top_speed : float
+        Largest speed of the gear [rad/s].
+    time_to_speed : float
+        When it first had `AT_SPEED` of that.
+    sticks, slips : int
+        How often dry resistance took hold of the gear, and gave way.
+    time_at_rest : float
+        Held at rest by dry resistance.
+    time_adhering : float
+        Held by adhesion: turned back by teeth that cling to each other, again and again within half a pitch.
+    held_by : str
+        What holds the gear at the end: ``dry resistance``, ``adhesion``, or nothing.
+    impacts : int
+        Contacts made.
+    largest_force, largest_force_time : float
+        Largest sampled force along the line of action [N], either way, and when.
+    drive_work : float
+        Done by the torque on the pinion.
+    drag_loss, dry_loss, damping_loss : float
+        Taken by the drag and the dry resistance at the gear, and by the mesh's viscous damping.
+    kinetic_change : float
+        Kinetic energy of both gears at the end less that at the start.
+    contact_loss : float
+        What is left of the work: lost to adhesion or stored in contacts, less the work of the changing radius.
+    uncertainty : float
+        How far that can be trusted: the ledger's residual; without a ledger, how much `contact_loss` changes when only
+        every second sample is looked at.
+    adhesion_loss, stored_change, radius_work, model_change : float
+        What it is made of, from the ledger; see `gearidae.records.Ledger`.
+    residual_bound : float
+        What the ledger's residual stays below in a sound run.
+    """
+
+    top_speed: float
+    time_to_speed: float
+    sticks: int
+    slips: int
+    time_at_rest: float
+    time_adhering: float
+    held_by: str
+    impacts: int
+    largest_force: float
+    largest_force_time: float
+    drive_work: float
+    drag_loss: float
+    dry_loss: float
+    damping_loss: float
+    kinetic_change: float
+    contact_loss: float
+    uncertainty: float
+    adhesion_loss: float = math.nan
+    stored_change: float = math.nan
+    radius_work: float = math.nan
+    model_change: float = math.nan
+    residual_bound: float = math.nan
+
+    def as_plain(self) -> dict[str, Any]:
+        """Return the account as data fit for JSON, which has no NaN."""
+        plain = asdict(self)
+        return {name: None if isinstance(v, float) and math.isnan(v) else v for name, v in plain.items()}
+
+    def as_json(self) -> str:
+        """Return the account as the dataset's attribute ``account`` holds it."""
+        return json.dumps(self.as_plain(), allow_nan=False)
+
+
+def account(ds: xr.Dataset) -> Account | None:
+    """Give an account of a run.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run, also one read piece by piece.
+
+    Returns
+    -------
+    Account or None
+        None for a roller, and for a sweep.
+
+    Raises
+    ------
+    SceneError
+        If the dataset carries no scene.
+    """
+    if is_roller(ds) or ds["gear_speed"].dims != ("time",):
+        return None
+    end = float(ds.attrs["t_end"]) if ds.attrs["status"] == "finished" else 0.0
+    scene = Scene.from_dict(scene_of(ds))
+    return account_of(
+        scene, lambda name, cut: ds[name][cut].values, ds.sizes["time"], ds.sizes["event"], end, ledger_of(ds)
+    )
+
+
+def account_of(
+    scene: Scene,
+    read: Read,
+    samples: int,
+    events: int,
+    end: float,
+    ledger: Mapping[str, float] | None = None,
+) -> Account:
+    """Give an account of a run that is kept anywhere.
+
+    Parameters
+    ----------
+    scene : Scene
+        A gear pair.
+    read : callable
+        Returns the values of a variable, named as in a dataset, in a slice.
+    samples, events : int
+        How many there are.
+    end : float
+        Time that the run is known to have reached [s], besides that of samples and events.
+    ledger : mapping, optional
+        The run's energy ledger, from `gearidae.archive.energy.ledger_of`.
+
+    Returns
+    -------
+    Account
+    """
+    incidents = _Events(scene)
+    for piece in _pieces(read, events, ("event_time", "event_kind")):
+        incidents.add(piece["event_time"], piece["event_kind"])
+    fine, work = _Samples(scene), _SampledWork(scene)
+    for piece in _pieces(read, samples, _COLUMNS, overlap=2):
+        fine.add(piece)
+        if ledger is None:
+            work.add(piece)
+    end = max(end, incidents.time, np.nan_to_num(fine.time))
+    at_rest, resting = incidents.rest(end, moved=fine.top_speed > 0.0)
+    adhering, clinging = fine.adhering()
+    return Account(
+        top_speed=fine.top_speed,
+        time_to_speed=_time_to_speed(read, samples, fine.top_speed),
+        sticks=incidents.counts[EventKind.STICK],
+        slips=incidents.counts[EventKind.SLIP],
+        time_at_rest=at_rest,
+        time_adhering=adhering,
+        held_by="dry resistance" if resting else "adhesion" if clinging else "",
+        impacts=incidents.counts[EventKind.ONSET],
+        largest_force=fine.largest_force,
+        largest_force_time=fine.largest_force_time,
+        **(work.done() if ledger is None else _from_ledger(ledger)),
+    )
+
+
+def _from_ledger(ledger: Mapping[str, float]) -> dict[str, float]:
+    """Energies of the account from those of a ledger."""
+    own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
+    parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
+    energies = {name: ledger[name] for name in (*own, *parts)}
+    contact = ledger["adhesion_loss"] + ledger["stored_change"]
+    contact -= ledger["radius_work"] + ledger["model_change"]
+    return energies | {"contact_loss": contact, "uncertainty": abs(ledger["residual"])}
+
+
+def with_account(ds: xr.Dataset) -> xr.Dataset:
+    """Add the account of a run, if it has one, to its dataset's attributes."""
+    found = account(ds)
+    return ds if found is None else ds.assign_attrs(account=found.as_json())
+
+
+def _pieces(
+    read: Read, count: int, names: tuple[str, ...], overlap: int = 0
+) -> Iterator[dict[str, NDArray[Any]]]:
+    """Go through a dimension; each piece begins with the last samples of the one before, as `_Work` wants it."""
+    for start in range(0, count, PIECE):
+        cut = slice(max(start - overlap, 0), min(start + PIECE, count))
+        yield {name: read(name, cut) for name in names}
+
+
+def _time_to_speed(read: Read, samples: int, top: float) -> float:
+    if top > 0.0:
+        for piece in _pieces(read, samples, ("time", "gear_speed")):
+            fast = np.flatnonzero(piece["gear_speed"] >= AT_SPEED * top)
+            if fast.size:
+                return float(piece["time"][fast[0]])
+    return math.nan
+
+
+class _Events:
+    """Counts of events, and the intervals between stick and slip."""
+
+    def __init__(self, scene: Scene) -> None:
+        assert scene.load is not None
+        assert scene.initial is not None
+        load = scene.load
+        dry = load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule)
+        self.counts = dict.fromkeys(EventKind, 0)
+        self._may_rest = dry and scene.initial.gear_speed == 0.0
+        self._since: float | None = None  # when the gear came to rest
+        self._total = 0.0
+        self.time = 0.0  # of the last event
+
+    def add(self, time: Floats, kind: NDArray[np.int8]) -> None:
+        self.time = float(time[-1])
+        for one in EventKind:
+            self.counts[one] += int(np.count_nonzero(kind == one))
+        for k in np.flatnonzero((kind == EventKind.STICK) | (kind == EventKind.SLIP)):
+            if kind[k] == EventKind.STICK:
+                self._since = float(time[k])
+            else:
+                # the first slip of a gear that was at rest from the start has no stick before it
+                self._total += float(time[k]) - (self._since or 0.0)
+                self._since = None
+
+    def rest(self, end: float, *, moved: bool) -> tuple[float, bool]:
+        """Time at rest, and whether it lasts."""
+        if self._since is not None:
+            return self._total + end - self._since, True
+        if self._may_rest and not moved and not self.counts[EventKind.SLIP]:
+            return end, True
+        return self._total, False
+
+
+class _SampledWork:
+    """Work of the torques, summed over all samples and over every second one."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._fine, self._coarse = _Work(scene), _Work(scene)
+
+    def add(self, piece: dict[str, Floats]) -> None:
+        """Add a piece that overlaps with the one before by two samples."""
+        self._fine.add(piece)
+        self._coarse.add({name: values[::2] for name, values in piece.items()})
+
+    def done(self) -> dict[str, float]:
+        """Fields of the account; NaN without samples."""
+        return self._fine.done() | {"uncertainty": abs(self._fine.balance() - self._coarse.balance())}
+
+
+class _Work:
+    """Work of the torques, summed over samples."""
+
+    def __init__(self, scene: Scene) -> None:
+        assert scene.gears is not None
+        assert scene.mesh is not None
+        assert scene.drive is not None
+        assert scene.load is not None
+        self._gears, self._mesh, self._drive, self._load = scene.gears, scene.mesh, scene.drive, scene.load
+        self._pinion_radius = scene.gears.pinion_base_radius
+        self._gear_radius = scene.geometry.base_radius_gear
+        self._sums = dict.fromkeys(("drive_work", "drag_loss", "dry_loss", "damping_loss"), 0.0)
+        self._kinetic: list[float] = []
+        self._time = -math.inf
+
+    def add(self, piece: dict[str, Floats]) -> None:
+        """Add a piece that overlaps with the one before by one sample."""
+        piece = {name: values[piece["time"] >= self._time] for name, values in piece.items()}
+        time, speed, u = piece["time"], piece["gear_speed"], piece["transmission_error"]
+        if not time.size:
+            return
+        kinetic = 0.5 * self._gears.pinion_inertia * piece["pinion_speed"] ** 2
+        kinetic += 0.5 * self._gears.gear_inertia * speed**2
+        self._kinetic = [*self._kinetic[:1], float(kinetic[0]), float(kinetic[-1])]
+        self._kinetic = [self._kinetic[0], self._kinetic[-1]]
+        gear, pinion = np.diff(piece["gear_angle"]), np.diff(self._pinion_angle(piece["gear_angle"], u))
+        rate = self._pinion_radius * piece["pinion_speed"] - self._gear_radius * speed
+        resisting = np.maximum(_torque(self._load, time), 0.0)
+        for name, torque, turned in (
+            ("drive_work", _torque(self._drive, time), pinion),
+            ("drag_loss", self._load.drag * speed * np.abs(speed), gear),
+            ("dry_loss", resisting, np.abs(gear)),
+            ("damping_loss", self._mesh.damping * rate, np.diff(u)),
+        ):
+            self._sums[name] += float(np.sum(0.5 * (torque[1:] + torque[:-1]) * turned))
+        self._time = float(time[-1])
+
+    def done(self) -> dict[str, float]:
+        """Fields of the account; NaN without samples."""
+        if not self._kinetic:
+            return dict.fromkeys((*self._sums, "kinetic_change", "contact_loss"), math.nan)
+        change = self._kinetic[1] - self._kinetic[0]
+        return {**self._sums, "kinetic_change": change, "contact_loss": self.balance()}
+
+    def balance(self) -> float:
+        """What no torque and no speed accounts for."""
+        if not self._kinetic:
+            return math.nan
+        sums = self._sums
+        taken = sums["drag_loss"] + sums["dry_loss"] + sums["damping_loss"]
+        return sums["drive_work"] - taken - (self._kinetic[1] - self._kinetic[0])
+
+    def _pinion_angle(self, gear: Floats, u: Floats) -> Floats:
+        """phi1 of ``R1 phi1 = u + R2 phi2 + e(phi1)``, by iteration: e is small against R1."""
+        rigid = (u + self._gear_radius * gear) / self._pinion_radius
+        angle = rigid
+        for _ in range(20 if self._mesh.static_error else 0):
+            error = sum(h.amplitude * np.cos(h.order * angle + h.phase) for h in self._mesh.static_error)
+            angle = rigid + error / self._pinion_radius
+        return angle
+
+
+class _Samples:
+    """Extremes of the samples, and the times the gear is turned back by adhesion."""
+
+    def __init__(self, scene: Scene) -> None:
+        assert scene.gears is not None
+        self.time = self.top_speed = self.largest_force = self.largest_force_time = math.nan
+        self._angle = math.nan
+        self._pitch = 2.0 * math.pi / scene.gears.gear_teeth
+        self._turned_back: tuple[float, float] | None = None
+        self._total = 0.0
+
+    def add(self, piece: dict[str, Floats]) -> None:
+        new = piece["time"] > (-math.inf if math.isnan(self.time) else self.time)
+        force, speed = np.abs(piece["mesh_force"]), piece["gear_speed"]
+        self.top_speed = float(np.fmax(self.top_speed, speed.max()))
+        most = int(np.argmax(force))
+        if not force[most] <= self.largest_force:
+            self.largest_force, self.largest_force_time = float(force[most]), float(piece["time"][most])
+        # a gear that runs forward and then back without touching the coast flank is held by what it clings to
+        back = (speed[:-1] > 0.0) & (speed[1:] < 0.0) & new[1:]
+        back &= piece["drive_gap"][:-1] < piece["coast_gap"][:-1]
+        for k in np.flatnonzero(back):
+            time, angle = float(piece["time"][k]), float(piece["gear_angle"][k])
+            if self._turned_back is not None and self._near(angle):
+                self._total += time - self._turned_back[0]
+            self._turned_back = (time, angle)
+        self.time, self._angle = float(piece["time"][-1]), float(piece["gear_angle"][-1])
+
+    def adhering(self) -> tuple[float, bool]:
+        """Time held by adhesion, and whether it lasts."""
+        if self._turned_back is not None and self._total > 0.0 and self._near(self._angle):
+            return self._total + self.time - self._turned_back[0], True
+        return self._total, False
+
+    def _near(self, angle: float) -> bool:
+        assert self._turned_back is not None
+        return abs(angle - self._turned_back[1]) < _HELD_WITHIN * self._pitch
+
+
+def _torque(shaft: Drive | Load, time: Floats) -> Floats:
+    """Prescribed torque of a shaft [N m]."""
+    torque = np.full(time.shape, shaft.torque)
+    for harmonic in shaft.harmonic:
+        torque += harmonic.amplitude * np.cos(2.0 * math.pi * harmonic.frequency * time + harmonic.phase)
+    if shaft.schedule:
+        knots = np.array(shaft.schedule)
+        torque += np.interp(time, knots[:, 0], knots[:, 1])
+    return torque

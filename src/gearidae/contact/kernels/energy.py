@@ -1,0 +1,210 @@
+r"""What a rough contact stores: the potential of its force law, compiled, tabulated alike.
+
+An asperity holds the energy :math:`E(\Delta) = \int_{-D}^{\Delta} \hat p\,d\Delta'`, counted from the instant at which
+it lets go. With G, Z, S and D as in `law`, a contact whose asperities above Z are joined stores
+
+.. math::
+
+    U(G, Z) = \int_{-S}^{\infty} E(\Delta)\,\psi(G + \Delta)\,d\Delta = A(G) + e(Z, S), \qquad
+    A(G) = \int_G^\infty q(G', 0)\,dG',
+
+.. math::
+
+    e(Z, S) = E(0)\,\Psi(Z) - \int_0^S t(Z, S')\,dS', \qquad \Psi(Z) = \int_Z^\infty \psi(z)\,dz,
+
+with :math:`\partial U / \partial G = -q` while Z stays. At full stretch e is a function :math:`V(Z)` of one variable,
+:math:`V' = -t(Z, D)`, so that
+
+.. math::
+
+    e(Z, S) = V(Z) + \int_S^D t(Z, S')\,dS'.
+
+An asperity that joins drops from nothing to :math:`E(0) = -0.93550\, P_c d_c`, and nothing more is lost when it lets
+go. A surface without stretch has no such drop: E is counted from touching, e = 0.
+
+The integrals are taken over the polynomials of a law's own table, so that table and potential agree as closely as the
+table and the law. The potential has the law's layout: A in the place of the loading branch, V in that of t(Z, D), e in
+that of t(Z, S), and what reads the one reads the other.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+from gearidae.contact.jkr import AsperityLaw
+from gearidae.contact.kernels.law import (
+    DEGREE,
+    GAP_HIGH,
+    GAP_LOW,
+    H_COUNT,
+    H_END,
+    H_LOW,
+    H_MODE,
+    H_PARTIAL,
+    H_PIECES,
+    H_STRETCH,
+    HEADER,
+    KNOTS_PER_SIGMA,
+    MODE_INTEGRATED,
+    MODE_TABLE,
+    N_LOADING,
+    Kernel,
+    hermite_matrix,
+    integrated_value,
+    kernel_table,
+    law_table,
+    stretched_value,
+)
+
+__all__ = ["JOINING", "energy_table", "joining_energy", "number_table", "stretched_energy"]
+
+Floats = NDArray[np.float64]
+
+JOINING: Final = (4.0 / 27.0) * (3.6 * 4.0 ** (1.0 / 3.0) + 0.6)
+"""Energy that an asperity loses when it joins, 0.93550, over its pull-off load times its stretch limit."""
+_GAUSS: Final = 16
+
+
+def joining_energy(stretch_limit: float) -> float:
+    """Energy that an asperity loses when it joins, in the unit of the force law times the roughness.
+
+    Parameters
+    ----------
+    stretch_limit : float
+        D = dc / sigma as the law's table has it: 0 where the surface has no hysteresis worth following.
+    """
+    return JOINING * math.sqrt(3.0) * stretch_limit**2.5
+
+
+@lru_cache(maxsize=32)
+def energy_table(stretch_limit: float, asperity: AsperityLaw = "jkr", kernel: Kernel = "line") -> Floats:
+    """Tabulate the stored energy that goes with a force law.
+
+    Parameters
+    ----------
+    stretch_limit, asperity, kernel
+        As for `gearidae.contact.kernels.law.law_table`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In the layout of a force law. Read-only, shared between callers.
+    """
+    law = law_table(stretch_limit, asperity, kernel)
+    table = law.copy()
+    loading = slice(HEADER, HEADER + 8 * N_LOADING)
+    table[loading] = _potential(law[loading].reshape(-1, 8), GAP_LOW).ravel()
+    if law[H_STRETCH] > 0.0:
+        count, first = int(law[H_COUNT]), int(law[H_END])
+        end = law[first : first + 8 * count].reshape(-1, 8)
+        table[first : first + 8 * count] = _potential(end, law[H_LOW]).ravel()
+        if law[H_MODE] == MODE_TABLE:
+            _store_partial(law, end, table)
+    table.setflags(write=False)
+    return table
+
+
+@lru_cache(maxsize=2)
+def number_table(kernel: Kernel = "line") -> Floats:
+    """Tabulate Psi, the number of asperities above a height, laid out as a loading branch without a header."""
+    low, *body = kernel_table(kernel)
+    first = round((GAP_LOW - low) * KNOTS_PER_SIGMA)
+    table = _potential(np.array(body).reshape(-1, 8)[first:], GAP_LOW).ravel()
+    table.setflags(write=False)
+    return table
+
+
+def _potential(pieces: Floats, low: float) -> Floats:
+    """Pieces of ``int_x^high f`` from those of f, shape (n, 8), both scaled by ``exp(max(x, 0)^2 / 2)``."""
+    h = 1.0 / KNOTS_PER_SIGMA
+    knots = low + h * np.arange(len(pieces) + 1)
+    x, w = np.polynomial.legendre.leggauss(_GAUSS)
+    u = 0.5 * (x + 1.0)
+    places = np.maximum(knots[:-1, None] + h * u, 0.0)
+    values = pieces @ np.vander(u, 8, increasing=True).T * np.exp(-0.5 * places**2)
+    parts = 0.5 * h * values @ w
+    total = np.append(np.cumsum(parts[::-1])[::-1], 0.0)
+    ends = []
+    for u_end, span in ((0.0, slice(None, -1)), (1.0, slice(1, None))):
+        # f and two derivatives at this end, scaled; then the potential with three: F' = -f
+        powers = np.array(
+            [[math.perm(p, k) * u_end ** (p - k) if p >= k else 0.0 for p in range(8)] for k in range(3)]
+        )
+        f, f1, f2 = (pieces @ powers.T / h ** np.arange(3.0)).T
+        at = np.where(knots[:-1] >= 0.0, knots[span], 0.0)
+        grown = total[span] * np.exp(0.5 * at**2)
+        slope = at * grown - f
+        bend = np.where(knots[:-1] >= 0.0, grown, 0.0) + at * slope - f1
+        third = np.where(knots[:-1] >= 0.0, 2.0 * slope, 0.0) + at * bend - f2
+        ends += [grown, h * slope, h**2 * bend, h**3 * third]
+    return np.asarray(np.stack(ends, axis=1) @ hermite_matrix().T)
+
+
+def _store_partial(law: Floats, end: Floats, table: Floats) -> None:
+    """Pieces of e(Z, S) as ``V(Z) + v^2 times a polynomial``, which begins with ``D t(Z, D)``."""
+    pieces, limit, first = int(law[H_PIECES]), law[H_STRETCH], int(law[H_PARTIAL])
+    n = DEGREE + 1
+    shape = (len(end), pieces, 8, n)
+    size = math.prod(shape)
+    # powers of v in all pieces, then those of u
+    partial = law[first : first + size].reshape(shape).swapaxes(2, 3).reshape(len(end), pieces * n, 8)
+    result = 2.0 * limit * np.einsum("ab,jbc->jac", _stretch_integral(pieces), partial, optimize=True)
+    result[:, ::n] += limit * end[:, None]
+    table[first : first + size] = result.reshape(len(end), pieces, n, 8).swapaxes(2, 3).ravel()
+
+
+@lru_cache(maxsize=8)
+def _stretch_integral(pieces: int) -> Floats:
+    """Matrix from a piecewise polynomial f to that of ``v^-2 int_0^v v'^3 f dv'``, both in powers of place."""
+    nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
+    to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
+    x, w = np.polynomial.legendre.leggauss(_GAUSS)
+    n = DEGREE + 1
+    matrix = np.zeros((pieces, n, pieces, n))
+    before = np.zeros((pieces, n))  # integral over all earlier pieces
+    for piece in range(pieces):
+        rows = np.zeros((n, pieces, n))
+        for i, node in enumerate((*nodes, 1.0)):
+            r = -1.0 + 0.5 * (node + 1.0) * (x + 1.0)
+            v = (piece + 0.5 * (r + 1.0)) / pieces
+            weight = 0.25 * (node + 1.0) * w / pieces * v**3
+            upto = before.copy()
+            upto[piece] += weight @ np.vander(r, n, increasing=True)
+            if i < n:
+                rows[i] = upto / ((piece + 0.5 * (node + 1.0)) / pieces) ** 2
+            else:
+                before = upto
+        matrix[piece] = np.einsum("ab,bcd->acd", to_powers, rows)
+    return matrix.reshape(pieces * n, pieces * n)
+
+
+@compiled
+def stretched_energy(table: Floats, booked: float, gap: float, joined: float) -> tuple[float, float]:
+    """What joined asperities store beyond the loading branch, and its slope while the joined height stays.
+
+    Parameters
+    ----------
+    table : ndarray
+        From `energy_table`.
+    booked : float
+        e(Z, 0) = E(0) Psi(Z) at the joined height.
+    gap, joined : float
+        G and Z over roughness [1]; Z is clipped to no less than G - D. Asperities that a closing contact joins below
+        Z are not counted.
+    """
+    limit = table[H_STRETCH]
+    if limit == 0.0:
+        return 0.0, 0.0
+    stretch = gap - joined
+    if stretch <= 0.0:
+        return booked, 0.0
+    if stretch < limit and table[H_MODE] == MODE_INTEGRATED and joined < GAP_HIGH:
+        lifted, slope = integrated_value(table, joined, stretch, True)
+        return booked - lifted, -slope
+    return stretched_value(table, gap, joined)

@@ -1,0 +1,268 @@
+"""Which contact model a scene takes, and the nodes of an elastic one.
+
+Both decisions rest on the static contact: how far the bodies would give way under the asperities' own pressure, and
+how deep an impact of a given energy can go.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_nodes
+from gearidae.contact.jkr import asperity_of, contact_modulus
+from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_table, law_value
+from gearidae.engine.elastic.nodes import point_count
+from gearidae.engine.model.layout import FINER
+from gearidae.scene import Scene
+
+__all__ = [
+    "DEPTH_HIGH",
+    "NODES",
+    "RIGID_DEFLECTION",
+    "Footing",
+    "NodeGrid",
+    "deepest_gap",
+    "node_grid",
+    "rigid_limit",
+]
+
+Floats = NDArray[np.float64]
+
+NODES = 12
+"""Nodes on one side of a contact, the middle included.
+
+As shares of the largest force, on the rollers of Figs. 2 and 3 against 48 nodes: 12 hold the force to 4e-8 while teeth
+close and to 4e-6 while asperities let go, 16 to 2e-8 and 2e-6.
+"""
+NODES_BY_DEPTH = ((-4.0, 12), (-13.0, 16), (-math.inf, 24))
+"""Nodes of a contact that is pressed to a gap, in roughnesses: the deeper, the sharper its edge."""
+DEPTH_HIGH = -GAP_LOW - 1.0
+"""Depth of the deepest layout, in roughnesses."""
+TAIL = 5.5
+"""Roughnesses of gap at the outermost node, beyond the reach of stretched asperities, in a contact pressed to zero."""
+ORDERS = 6
+"""Powers of the footprint's length that stand for the influence coefficients."""
+RIGID_DEFLECTION = 0.02
+"""Deflection in the middle, in roughnesses, below which the asperity model is taken to be enough: the asperities'
+force at the same gap is then at most about 5 % too large."""
+_FAR = 10.0  # roughnesses from which a static curve is followed, and how
+_STEP = 0.25
+_TRIES = 25
+_SETTLED = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Footing:
+    """Where a scene's contacts take place.
+
+    Attributes
+    ----------
+    width : float
+        Face width L [m].
+    radius : float
+        Radius R of unit length [m]: ``length = sqrt(R / radius)``.
+    shortest, longest : float
+        Range of that length along the path of contact.
+    energy : float
+        What drives the teeth into each other, as far as it is known beforehand [J].
+    impact : float
+        That part of it which is certain to be taken up by the contact [J].
+    load : float
+        Force that is to be carried in any case [N].
+    start : float
+        Gap at which the closest teeth begin, in roughnesses.
+    """
+
+    width: float
+    radius: float
+    shortest: float
+    longest: float
+    energy: float
+    impact: float
+    load: float
+    start: float
+
+
+@dataclass(frozen=True, slots=True)
+class NodeGrid:
+    """The numbers that `gearidae.engine.elastic.nodes` reads.
+
+    Attributes
+    ----------
+    nodes, orders : int
+        Nodes of a pair, and powers of length.
+    middle, half : float
+        Of the range of lengths.
+    body : ndarray
+        Of the nodes: profile ``s^2``, weights, influence coefficients column by column for each power. Of the points
+        between them: profile, weights, and each point's shares of the nodes around it.
+    """
+
+    nodes: int
+    orders: int
+    middle: float
+    half: float
+    body: Floats
+
+
+@lru_cache(maxsize=256)
+def _line_grid(reach: float, width: float, modulus: float, nodes: int) -> LineGrid:
+    """Grids are shared: the runs of a sweep mostly differ in something else."""
+    return line_grid(reach, width, modulus, nodes)
+
+
+def node_grid(
+    scene: Scene, footing: Footing, force_unit: float, deepest: float, nodes: int | None = None
+) -> NodeGrid:
+    """Lay out the nodes of every pair.
+
+    Parameters
+    ----------
+    scene : Scene
+    footing : Footing
+    force_unit : float
+        Reference load [N].
+    deepest : float
+        Lowest gap that will occur, in roughnesses.
+    nodes : int, optional
+        Nodes on one side, the middle included; by depth if not given.
+    """
+    nodes = nodes or next(count for gap, count in NODES_BY_DEPTH if deepest >= gap)
+    sigma = scene.surface.roughness
+    modulus = contact_modulus(scene.surface.youngs_modulus, scene.surface.poisson_ratio)
+    unit = math.sqrt(2.0 * footing.radius * sigma)
+    reach = unit * math.sqrt(TAIL + _stretch(scene) + max(-deepest, 0.0))
+    orders = ORDERS if footing.longest > footing.shortest else 1
+    middle = 0.5 * (footing.longest + footing.shortest)
+    half = 0.5 * (footing.longest - footing.shortest) or 1.0
+    places = np.polynomial.chebyshev.chebpts1(orders)
+    grids = [_line_grid(reach * (middle + half * p), footing.width, modulus, nodes) for p in places]
+    # pressures are in reference loads per face width and unit length
+    pressure = force_unit / (footing.width * unit)
+    values = np.stack([grid.compliance.T for grid in grids]) * (pressure / sigma)
+    powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
+    x, weights = place_nodes(reach / unit, nodes)
+    finer, finer_weights = place_nodes(reach / unit, point_count(nodes))
+    between = between_nodes(nodes, FINER)
+    body = [x**2, weights, powers.ravel(), finer**2, finer_weights, between.ravel()]
+    return NodeGrid(nodes, orders, middle, half, np.concatenate(body))
+
+
+def _stretch(scene: Scene) -> float:
+    """How far asperities stretch at most, in roughnesses."""
+    if scene.contact.asperity != "jkr":
+        return 0.0
+    fraction = scene.coating.sam_fraction
+    shares = ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
+    return max(asperity_of(s).stretch_limit / s.roughness for s, share in shares if share > 0.0)
+
+
+def deepest_gap(scene: Scene, footing: Footing) -> float:
+    """Lowest gap to which energy and load press an elastic contact, in roughnesses, with a little to spare.
+
+    The static curve of a closing contact is followed until its work has taken up the energy, or to its fold, or to the
+    deepest tabulated gap; and no less deep than a scene begins.
+    """
+    depth = 4.0
+    while True:
+        lowest = _followed(scene, footing, depth)
+        if not math.isnan(lowest) or depth >= DEPTH_HIGH:
+            lowest = -DEPTH_HIGH if math.isnan(lowest) else lowest
+            return max(min(lowest, footing.start) - 0.5, -DEPTH_HIGH)
+        depth = min(2.0 * depth, DEPTH_HIGH)
+
+
+def _followed(scene: Scene, footing: Footing, depth: float) -> float:
+    """Gap at which a closing contact has taken up its energy or folds; NaN if it does neither down to a depth."""
+    grid, middle, surfaces = _static(scene, footing, -depth)
+    n = grid.nodes
+    profile, weights = grid.body[:n], grid.body[n : 2 * n]
+    deflection = np.zeros(n)
+    work = last = 0.0
+    for gap in np.arange(_FAR, -depth - 0.5 * _STEP, -_STEP):
+        change = math.inf
+        for _ in range(_TRIES):
+            pressure, slope = np.zeros(n), np.zeros(n)
+            for table, scale in surfaces:
+                q = _loading(table, gap + profile + deflection)
+                pressure += scale * q[0]
+                slope += scale * q[1]
+            matrix = np.eye(n) - middle * slope
+            step = np.linalg.solve(matrix, deflection - middle @ pressure)
+            deflection = deflection - step
+            change = float(np.max(np.abs(step)))
+            if change < _SETTLED:
+                break
+        if not change < _SETTLED or np.linalg.det(matrix) <= 0.0:
+            return float(gap) + _STEP
+        force = float(footing.longest * weights @ pressure)
+        work += 0.5 * (force + last) * _STEP * scene.surface.roughness
+        last = force
+        if work > footing.energy and force > footing.load:
+            return float(gap)
+    return math.nan
+
+
+def _static(
+    scene: Scene, footing: Footing, deepest: float
+) -> tuple[NodeGrid, Floats, list[tuple[Floats, float]]]:
+    """Nodes of the widest contact in newtons, its influence coefficients, and its surfaces' laws with their scales."""
+    sigma, fraction = scene.surface.roughness, scene.coating.sam_fraction
+    grid = node_grid(scene, footing, 1.0, deepest, NODES)
+    n = grid.nodes
+    powers = grid.body[2 * n : (2 + grid.orders * n) * n].reshape(grid.orders, n, n)
+    x = (footing.longest - grid.middle) / grid.half
+    kappa = np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
+    unit = footing.width * math.sqrt(2.0 * footing.radius * sigma)
+    surfaces = []
+    for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
+        if share > 0.0:
+            tip = asperity_of(surface)
+            # a copy: numba compiles everything a second time for arrays that are read-only
+            table = law_table(tip.stretch_limit / sigma, scene.contact.asperity, "plane").copy()
+            scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
+            surfaces.append((table, scale))
+    return grid, kappa, surfaces
+
+
+@compiled(makes_arrays=True)
+def _loading(table: Floats, gaps: Floats) -> Floats:
+    """Pressures on the way in and their slopes, one for each gap."""
+    out = np.empty((2, gaps.size))
+    for i in range(gaps.size):
+        out[0, i], out[1, i] = law_value(table, gaps[i], gaps[i])
+    return out
+
+
+def rigid_limit(scene: Scene, footing: Footing) -> tuple[float, bool]:
+    """Gap down to which the bodies hardly give way, and whether that will do.
+
+    Returns
+    -------
+    lowest : float
+        Last gap, an eighth of a roughness apart, at which the asperities' pressure deflects the middle of the
+        widest contact by no more than `RIGID_DEFLECTION`; in roughnesses.
+    enough : bool
+        Whether neither an impact nor the load is certain to press the teeth closer than that, nor do they begin there.
+    """
+    grid, kappa, surfaces = _static(scene, footing, -4.0)
+    profile, weights = grid.body[: grid.nodes], grid.body[grid.nodes : 2 * grid.nodes]
+    work, last = 0.0, 0.0
+    step = 0.125
+    for gap in np.arange(GAP_HIGH, -4.0, -step):
+        pressure = np.zeros(grid.nodes)
+        for table, scale in surfaces:
+            pressure += scale * _loading(table, gap + profile)[0]
+        force = float(footing.longest * weights @ pressure)
+        work += 0.5 * (force + last) * step * scene.surface.roughness
+        last = force
+        if abs(kappa[0] @ pressure) > RIGID_DEFLECTION:
+            deep_enough = work > footing.impact and force > footing.load
+            return float(gap) + step, bool(deep_enough and footing.start > gap + step)
+    return -4.0, footing.start > -4.0

@@ -1,0 +1,228 @@
+"""A run whose output goes straight into its archive, and that can be taken up again after anything."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearidae import __version__, engine
+from gearidae.analysis.run_summary import account_of
+from gearidae.archive import GrowingArchive, open_archive, to_dataset
+from gearidae.archive.disk import DiskError
+from gearidae.archive.energy import ledger_of
+from gearidae.archive.journal import Checkpoint
+from gearidae.engine.backend import statistics_of
+from gearidae.errors import Interrupted, SceneError, SolverError
+from gearidae.progress import RunProgress, run_progress
+from gearidae.runs.running import early_end, unsolved
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gearidae.engine import Ended
+    from gearidae.engine.integrate.driver import Block, Tally
+    from gearidae.scene import Scene
+
+__all__ = ["stream"]
+
+_FREE_SPACE = "free some space and go on with --resume (resume=True)"
+
+
+def stream(
+    scene: Scene,
+    target: Path,
+    *,
+    backend: str,
+    progress: bool | RunProgress,
+    resume: bool,
+) -> xr.Dataset:
+    """Run a scene, or go on with a run of it, into an archive.
+
+    Parameters
+    ----------
+    scene : Scene
+        As it is to be run.
+    target : Path
+        The archive, checked by `gearidae.archive.check_target`.
+    backend, progress, resume
+        As for `gearidae.simulate`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The finished archive, as `open_archive` returns it.
+
+    Raises
+    ------
+    SceneError, SolverError, Interrupted
+        As `gearidae.simulate` says.
+    """
+    found = _found(target, scene) if resume and target.exists() else None
+    if found is not None and found.attrs["status"] == "finished":
+        return found
+    if found is not None:
+        backend = _same_backend(backend, str(found.attrs["backend"]))
+        found.close()
+    run = _Run(scene, target, engine.choose_backend(backend))
+    with run.take_up() if found is not None else run.begin() as archive:
+        with run_progress(progress, scene.run.duration) as report:
+            ended = run.follow(archive, report)
+        run.leave(archive, ended)
+    return open_archive(target)
+
+
+class _Run:
+    """One run into one archive."""
+
+    def __init__(self, scene: Scene, target: Path, backend: str) -> None:
+        self._scene, self._target, self._backend = scene, target, backend
+        self._checkpoint_size, self._skipped = engine.outlook(scene, backend)
+
+    def begin(self) -> GrowingArchive:
+        """Make the archive."""
+        run = self._scene.run
+        try:
+            return GrowingArchive.create(
+                self._target, self._template(), run.sample_count, run.duration, self._checkpoint_size
+            )
+        except DiskError as error:
+            raise SolverError(
+                f"the archive {self._target} could not be made ({error})",
+                time=0.0,
+                state={},
+                last_event="none",
+                advice="free some space, or ask for fewer samples (run.samples)",
+            ) from error
+
+    def take_up(self) -> GrowingArchive:
+        """Open the archive that is there."""
+        try:
+            return GrowingArchive(self._target, self._template())
+        except DiskError as error:
+            raise SceneError("archive", self._target, f"cannot be written ({error})") from error
+
+    def follow(self, archive: GrowingArchive, report: RunProgress | None) -> Ended:
+        """Run on from the newest checkpoint."""
+        duration = self._scene.run.duration
+        reached = 0.0
+
+        def take(block: Block, tally: Tally, wall_time: float) -> None:
+            nonlocal reached
+            archive.take(block, tally, wall_time, last=_is_end(block.time, duration))
+            reached = block.time
+
+        try:
+            point = archive.go_back()
+            reached = point.time
+            if _is_end(reached, duration):  # all that is missing is the final form
+                return self._ended_at(point)
+            state = point.state if point.sequence else None
+            start = engine.Start(state, point.tally, point.time, point.wall_time, point.events)
+            return engine.follow(self._scene, take, backend=self._backend, on_progress=report, begin=start)
+        except DiskError as error:
+            raise self._not_written(archive, reached, error) from error
+
+    def leave(self, archive: GrowingArchive, ended: Ended) -> None:
+        """Put the archive into its final form, or close it as it is for a run that was interrupted.
+
+        Raises
+        ------
+        SolverError, Interrupted
+            If the run did not reach its end.
+        """
+        if ended.status == "interrupted":
+            archive.close()
+            kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
+            raise Interrupted(kept, open_archive(self._target))
+        try:
+            archive.finish(self._told(archive, ended))
+        except DiskError as error:
+            raise self._not_written(archive, ended.reached, error) from error
+        if ended.status != "finished":
+            raise early_end(open_archive(self._target), ended.reached)
+
+    def _told(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
+        """Make the final template, with the account of the run."""
+        template = self._template(ended)
+        if self._scene.roller is None:
+            end = self._scene.run.duration if ended.status == "finished" else 0.0
+            told = account_of(
+                self._scene, archive.read, archive.samples, archive.events, end, ledger_of(template)
+            )
+            template.attrs["account"] = told.as_json()
+        return template
+
+    def _not_written(self, archive: GrowingArchive, reached: float, error: DiskError) -> SolverError:
+        archive.close()
+        ds = open_archive(self._target)
+        return early_end(
+            ds, reached, f"the archive {self._target} could not be written ({error})", _FREE_SPACE
+        )
+
+    def _ended_at(self, point: Checkpoint) -> Ended:
+        """How a run ended of which only the archive's final form was missing."""
+        _, skipped = engine.outlook(self._scene, self._backend, point.state)
+        statistics = statistics_of(point.tally, point.wall_time, self._backend, skipped)
+        ledger = engine.ledger_at(self._scene, point.state, self._backend)
+        return engine.Ended(statistics, "finished", "", point.time, ledger)
+
+    def _template(self, ended: Ended | None = None) -> xr.Dataset:
+        """Make the run's dataset, without samples and events."""
+        empty = unsolved("running", "the run is not at its end yet")
+        statistics = replace(empty.statistics, backend=self._backend, skipped=self._skipped)
+        if ended is None:
+            return to_dataset(self._scene, replace(empty, statistics=statistics))
+        solution = replace(
+            empty,
+            statistics=ended.statistics,
+            status=ended.status,
+            message=ended.message,
+            reached=ended.reached,
+            ledger=ended.ledger,
+        )
+        return to_dataset(self._scene, solution)
+
+
+def _is_end(time: float, duration: float) -> bool:
+    """Whether a run's time, which went through its time unit and back, is the end of it."""
+    return math.isclose(time, duration, rel_tol=1e-12)
+
+
+def _found(target: Path, scene: Scene) -> xr.Dataset:
+    """Open the archive to be resumed and make sure that it is of this very run."""
+    ds = open_archive(target)
+    theirs = json.loads(ds.attrs["scene"])
+    differing = _difference(theirs, scene.to_dict())
+    refusal = ""
+    if differing or "swept" in ds.attrs:
+        what = "of a sweep" if "swept" in ds.attrs else f"of another scene ({differing} differs)"
+        refusal = f"is {what}: resume with the scene it was begun with, or name another archive"
+    elif ds.attrs["status"] in ("running", "interrupted") and ds.attrs["product_version"] != __version__:
+        refusal = f"was begun by gearidae {ds.attrs['product_version']}, which alone can go on with it"
+    elif ds.attrs["status"] not in ("finished", "running", "interrupted"):
+        refusal = f"has ended early ({ds.attrs['status']}): there is nothing to go on with"
+    if refusal:
+        ds.close()
+        raise SceneError("archive", target, refusal)
+    return ds
+
+
+def _difference(one: Any, other: Any, key: str = "") -> str:
+    """Name the first key in which two scenes differ; empty if none."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        for name in sorted({*one, *other}):
+            inner = f"{key}.{name}" if key else name
+            if found := _difference(one.get(name), other.get(name), inner):
+                return found
+        return ""
+    return "" if one == other else key
+
+
+def _same_backend(backend: str, begun: str) -> str:
+    """Go on with the backend that the run was begun with: another would take other steps."""
+    if backend not in ("auto", begun):
+        raise SceneError("backend", backend, f"the run was begun with {begun}, and goes on with nothing else")
+    return begun

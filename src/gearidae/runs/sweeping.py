@@ -1,0 +1,297 @@
+"""Many runs of one scene with some of its keys varied, as one labelled dataset."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from concurrent.futures import Executor, Future, as_completed
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearidae.archive import check_target, open_archive, save
+from gearidae.archive.provenance import provenance
+from gearidae.engine import choose_backend
+from gearidae.errors import Interrupted, SceneError
+from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.records import Solution
+from gearidae.runs.executors import check_executor, check_jobs, own_executor, stop
+from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import prepare, runs_in_threads, solve, unsolved
+from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gearidae.scene import Scene
+
+__all__ = ["sweep"]
+
+
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]],
+    executor: Executor | None = None,
+    *,
+    rtol: float | None = None,
+    t_end: float | None = None,
+    samples: int | str | None = None,
+    backend: str = "auto",
+    progress: bool | SweepProgress = False,
+    archive: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    jobs: int | None = None,
+    zipped: bool | Collection[str] = False,
+    resume: bool = False,
+) -> xr.Dataset:
+    """Run a scene for every combination of some keys' values, or for values that are walked together.
+
+    With `archive`, every finished run is kept in a folder beside it (``OUT.nc.runs``) until the archive is
+    written, so that a sweep that was cut off, even by a power failure, can be resumed.
+
+    Parameters
+    ----------
+    scene : Scene
+        What the runs have in common.
+    over : mapping of str to iterable
+        Values of each swept key of the scene; numbers in SI units or strings with a unit, as in a case file.
+        ``run.duration`` and ``run.samples`` cannot be swept, because all runs share one time axis.
+    executor : concurrent.futures.Executor, optional
+        Where to compute the runs: any executor, also of a cluster (of a Dask client,
+        ``client.get_executor()``). By default threads, as many as `jobs`,
+        when the solver runs outside Python's lock (backend ``native``); the others one after the other, or in
+        `jobs` processes if `jobs` is given (the script that calls it then needs ``if __name__ ==
+        "__main__":``).
+    rtol, t_end, samples, backend, archive
+        As for `simulate`, for every run.
+    overwrite : bool, optional
+        Whether `archive` may replace a file, and the runs of an unfinished sweep beside it be discarded.
+    progress : bool or callable, optional
+        True for a progress bar on a terminal, or a function that is told the number of runs done (with
+        fractions for those under way, where they can be seen) and the number of runs.
+    jobs : int, optional
+        Runs at a time; by default the number of usable cores. Ignored if `executor` is given.
+    zipped : bool or collection of str, optional
+        True if all keys are to be walked together, the first value of each, then the second, instead of in all
+        combinations; or the keys for which that holds. They need as many values each, and share one dimension:
+        the first of them names and labels it, the others are coordinates along it.
+    resume : bool, optional
+        Take the runs that an unfinished sweep into `archive` has kept, and compute the others only. An archive
+        that holds this very sweep already is returned as it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `simulate`, with a dimension for each swept key in front of ``time``, named by the key's last
+        part (``sam_fraction``). Events lie on one flat ``event`` dimension, labelled by
+        ``event_<dimension>``. A run that could not go on says so in its ``status`` and is NaN from there on;
+        the others are not affected.
+
+    Raises
+    ------
+    SceneError
+        If a key, a value or a setting is not allowed, the archive cannot be written or there is an unfinished
+        sweep into it; nothing has been run then.
+    Interrupted
+        On Ctrl-C: a `KeyboardInterrupt` that carries the finished runs as its ``dataset``. `archive` holds the same
+        and can be resumed.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> scene = gd.preset("teodorescu2009_low_speed")
+    >>> ds = gd.sweep(scene, {"coating.sam_fraction": [1.0, 0.5, 0.47]})  # doctest: +SKIP
+    >>> ds.gear_speed.sel(sam_fraction=0.5).min()  # doctest: +SKIP
+    """
+    base = prepare(scene, rtol=rtol, t_end=t_end, samples=samples, backend=backend)
+    plan = plan_sweep(base, over, zipped=zipped)
+    workers = check_jobs(jobs)
+    check_executor(executor)
+    kept, whole = _prepare_archive(archive, plan, backend, overwrite=overwrite, resume=resume)
+    if whole is not None:
+        return whole
+    releases_gil = runs_in_threads(backend)
+    if not releases_gil and jobs is None:
+        workers = 1
+    with sweep_progress(progress, len(plan.scenes)) as report:
+        batch = _Batch(plan.scenes, backend, report, kept)
+        if resume:
+            batch.take_kept()
+        if executor is not None:
+            interrupted = batch.run(executor, in_process=False)
+        else:
+            with own_executor(workers, batch.left, releases_gil=releases_gil) as own:
+                interrupted = batch.run(own, in_process=releases_gil)
+                if interrupted and own is not None:
+                    stop(own)
+    ds = plan.stack(batch.solutions())
+    if archive is not None:
+        save(ds, archive, overwrite=overwrite or resume)
+    if interrupted:
+        where = (
+            "" if archive is None else f"the finished runs are in {os.fspath(archive)}; go on with --resume"
+        )
+        raise Interrupted(where, ds)
+    if kept is not None:
+        kept.remove(plan.scenes)
+    return ds
+
+
+def _prepare_archive(
+    archive: str | os.PathLike[str] | None, plan: SweepPlan, backend: str, *, overwrite: bool, resume: bool
+) -> tuple[KeptRuns | None, xr.Dataset | None]:
+    """Where to keep finished runs, and the whole sweep if it is there already."""
+    if archive is None:
+        if resume:
+            raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
+        return None, None
+    target = check_target(archive, overwrite=True)
+    kept = KeptRuns(target, plan.base, choose_backend(backend))
+    count = kept.count()
+    if resume:
+        if count:
+            kept.note_strangers(plan.scenes)
+        elif target.exists():
+            whole = _whole(target, plan, backend)
+            if whole is not None or overwrite:
+                return kept, whole
+    elif count and overwrite:
+        kept.remove()
+    elif count:
+        raise SceneError(
+            "archive",
+            archive,
+            f"is of a sweep that was cut off, {count} of its runs are in {kept.folder.name}: "
+            "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)",
+        )
+    else:
+        check_target(archive, overwrite=overwrite)
+    return kept, None
+
+
+def _whole(target: Path, plan: SweepPlan, backend: str) -> xr.Dataset | None:
+    """Return the archive of this very sweep, None if runs of it are missing; refuse any other file."""
+    try:
+        ds = open_archive(target)
+    except SceneError as error:
+        raise SceneError("archive", target, f"exists and cannot be resumed: it {error.allowed}") from None
+    expected = provenance(plan.base, "") | {"swept": plan.swept, "zipped": plan.zipped}
+    differing = [
+        name for name in ("scene", "swept", "zipped", "source") if ds.attrs.get(name, "") != expected[name]
+    ]
+    if differing or ds.attrs["backend"] not in ("", choose_backend(backend)):
+        ds.close()
+        raise SceneError(
+            "archive",
+            target,
+            "exists and is of another sweep, other settings or another version: name another, or allow "
+            "--overwrite (overwrite=True)",
+        )
+    if "interrupted" not in ds["status"].values:
+        return ds
+    ds.close()
+    return None
+
+
+class _Batch:
+    """The runs of one sweep on their way through an executor."""
+
+    def __init__(
+        self, scenes: Sequence[Scene], backend: str, report: SweepProgress, kept: KeptRuns | None
+    ) -> None:
+        self._scenes = scenes
+        self._backend = backend
+        self._report = report
+        self._kept = kept
+        self._done: dict[int, Solution] = {}
+        self._reached = [0.0] * len(scenes)
+        self._cancelled = threading.Event()
+
+    @property
+    def left(self) -> int:
+        """Number of runs that are to be computed."""
+        return len(self._scenes) - len(self._done)
+
+    def take_kept(self) -> None:
+        """Read the runs that an unfinished sweep has kept."""
+        assert self._kept is not None
+        for number, scene in enumerate(self._scenes):
+            solution = self._kept.take(scene)
+            if solution is not None:
+                self._done[number] = solution
+                self._reached[number] = 1.0
+        self._report(sum(self._reached), len(self._scenes))
+
+    def run(self, executor: Executor | None, *, in_process: bool) -> bool:
+        """Compute all runs; return whether Ctrl-C ended it early."""
+        try:
+            if executor is None:
+                for number in self._missing():
+                    self._finish(number, _outcome(partial(self._solve_here, number)))
+            else:
+                self._submit(executor, in_process=in_process)
+        except KeyboardInterrupt:
+            self._cancelled.set()
+            return True
+        return False
+
+    def solutions(self) -> list[Solution]:
+        """Solutions in the order of the scenes."""
+        missing = unsolved("interrupted", "the sweep was interrupted before this run was finished")
+        return [self._done.get(number, missing) for number in range(len(self._scenes))]
+
+    def _missing(self) -> list[int]:
+        return [number for number in range(len(self._scenes)) if number not in self._done]
+
+    def _submit(self, executor: Executor, *, in_process: bool) -> None:
+        futures: dict[Future[Solution], int] = {}
+        try:
+            for number in self._missing():
+                if in_process:
+                    future = executor.submit(self._solve_here, number)
+                else:
+                    future = executor.submit(solve, self._scenes[number], self._backend)
+                futures[future] = number
+            for future in as_completed(futures):
+                self._finish(futures[future], _outcome(future.result))
+        except BaseException:
+            self._cancelled.set()
+            for future, number in futures.items():
+                if not future.cancel() and future.done() and future.exception() is None:
+                    self._note(number, future.result())
+            raise
+
+    def _solve_here(self, number: int) -> Solution:
+        duration = self._scenes[number].run.duration
+
+        def on_progress(time: float, events: int) -> None:
+            if self._cancelled.is_set():
+                raise KeyboardInterrupt  # the only way to end a thread's run is from inside
+            self._reached[number] = time / duration
+            self._report(sum(self._reached), len(self._scenes))
+
+        return solve(self._scenes[number], self._backend, on_progress)
+
+    def _finish(self, number: int, solution: Solution) -> None:
+        if solution.status == "interrupted":
+            raise KeyboardInterrupt
+        self._note(number, solution)
+        self._reached[number] = 1.0
+        self._report(sum(self._reached), len(self._scenes))
+
+    def _note(self, number: int, solution: Solution) -> None:
+        if number not in self._done:
+            self._done[number] = solution
+            if self._kept is not None and solution.status == "finished":
+                self._kept.keep(self._scenes[number], solution)
+
+
+def _outcome(result: Callable[[], Solution]) -> Solution:
+    """Return a run's result; one that died with its worker (out of memory) must not take the others along."""
+    try:
+        return result()
+    except SceneError:
+        raise
+    except Exception as error:
+        return unsolved("crashed", f"{type(error).__name__}: {error}")

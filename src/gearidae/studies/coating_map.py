@@ -1,0 +1,253 @@
+"""Coating maps: how the impact response depends on how much of the monolayer is left.
+
+Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Fig. 10: one line for one pair of gears and one torque.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Iterable, Mapping
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from gearidae.analysis.impacts import WIDTH
+from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
+from gearidae.archive import dimension_names
+from gearidae.archive.provenance import provenance
+from gearidae.errors import SceneError
+from gearidae.scene import describe_key
+
+if TYPE_CHECKING:
+    from gearidae.progress import SweepProgress
+    from gearidae.scene import Scene
+
+__all__ = ["coating_map", "open_map", "require_map"]
+
+_FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
+_VARIABLES = (
+    "characteristic_frequency",
+    "uncertainty",
+    "impact_frequency",
+    "impact_uncertainty",
+    "median_gear_speed",
+)
+_SPEED = {
+    "units": "rad s-1",
+    "long_name": "median speed of the gear",
+    "comment": "half the samples of the run are slower",
+}
+_SLOWEST = {
+    "units": "rad s-1",
+    "long_name": "smallest speed of the gear",
+    "comment": "zero or less: it has stopped",
+}
+
+
+def coating_map(
+    scene: Scene,
+    sam_fraction: ArrayLike | None = None,
+    *,
+    over: Mapping[str, Iterable[Any]] | None = None,
+    width: float = WIDTH,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    backend: str = "auto",
+    progress: bool | SweepProgress = False,
+) -> xr.Dataset:
+    """Characteristic frequency against SAM fraction (Teodorescu et al. 2009, Fig. 10).
+
+    Parameters
+    ----------
+    scene : Scene
+        The pair of gears at the torque and the start that signals will be compared with.
+    sam_fraction : array_like, optional
+        Fractions of the coating; by default 51 from 1 to 0.5.
+    over : mapping of str to iterable, optional
+        Values of further keys, such as ``{"drive.torque": [...]}``; one line of the map for each combination.
+    width : float, optional
+        Of the impact windows, in pitches, see `impact_windows`.
+    executor, jobs, backend, progress
+        As for `sweep`.
+
+    Returns
+    -------
+    Dataset, dims (..., sam_fraction, impact)
+        ``characteristic_frequency`` and its standard ``uncertainty`` [Hz], of the first impact; ``impact_frequency``
+        and ``impact_uncertainty`` [Hz] of each; ``median_gear_speed`` and ``min_gear_speed`` [rad/s]. NaN where
+        nothing rings or a run could not go on. The scene and how it was made are attributes.
+
+    Raises
+    ------
+    SceneError
+        If the scene is a roller, or a key, a value or a setting is not allowed.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> scene = gd.preset("teodorescu2009_low_speed")
+    >>> chart = gd.analysis.coating_map(scene, [1.0, 0.8, 0.6, 0.5])  # doctest: +SKIP
+    """
+    from gearidae.runs.sweeping import sweep  # reading and drawing maps must not wait for the solver
+
+    if getattr(scene, "gears", None) is None:
+        raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
+    fractions = _fractions(sam_fraction)
+    keys = {key: list(values) for key, values in (over or {}).items()}
+    if "coating.sam_fraction" in keys:
+        raise SceneError("over", "coating.sam_fraction", "is the map's own axis: give it as sam_fraction")
+    lines: list[xr.Dataset] = []
+    for values in itertools.product(*keys.values()):
+        changes = dict(zip(keys, values, strict=True))
+        # one line at a time: what is kept of a run is a few numbers of some megabytes
+        runs = sweep(
+            scene.replace(changes) if changes else scene,
+            {"coating.sam_fraction": fractions},
+            executor,
+            jobs=jobs,
+            backend=backend,
+            progress=progress,
+        )
+        lines.append(_line(runs, width))
+    held = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
+    chart = _assembled(lines, held)
+    return chart.assign_attrs(_attributes(scene, ("coating.sam_fraction", *keys), lines[0].attrs))
+
+
+def open_map(path: str | os.PathLike[str]) -> xr.Dataset:
+    """Read a coating map that was saved.
+
+    Parameters
+    ----------
+    path : path-like
+        A netCDF file, from `gearidae.archive.save` or ``gearidae coating-map``.
+
+    Returns
+    -------
+    Dataset
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read or is no coating map.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise SceneError("map", path, "there is no such file")
+    try:
+        with xr.open_dataset(source, decode_times=False) as opened:
+            chart = opened.load()
+    except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
+        raise SceneError("map", path, f"is damaged or not a netCDF file ({error})") from error
+    try:
+        return require_map(chart)
+    except SceneError as error:
+        raise SceneError("map", path, error.allowed) from None
+
+
+def require_map(chart: object) -> xr.Dataset:
+    """Make sure that a dataset is a coating map.
+
+    Parameters
+    ----------
+    chart : object
+
+    Returns
+    -------
+    Dataset
+        The same.
+
+    Raises
+    ------
+    SceneError
+        If it is not, naming what is missing.
+    """
+    if not isinstance(chart, xr.Dataset):
+        raise SceneError("map", type(chart).__name__, "must be a Dataset from coating_map")
+    missing = [name for name in _VARIABLES if name not in chart]
+    missing += [name for name in ("sam_fraction", "impact") if name not in chart.dims]
+    missing += [name for name in ("scene",) if name not in chart.attrs]
+    if missing:
+        lacking = ", ".join(missing)
+        raise SceneError(
+            "map", "(dataset)", f"is no coating map: it lacks {lacking}; make one with coating_map"
+        )
+    return chart
+
+
+def _fractions(given: ArrayLike | None) -> list[float]:
+    """Fractions as a list; sweep checks their values."""
+    try:
+        fractions = np.atleast_1d(np.asarray(_FRACTIONS if given is None else given, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise SceneError("sam_fraction", given, "must be a list of numbers") from None
+    if fractions.ndim != 1:
+        raise SceneError("sam_fraction", f"(shape {fractions.shape})", "must be a list of numbers")
+    return [float(value) for value in fractions]
+
+
+def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
+    """One line of the map."""
+    impacts = impact_frequencies(runs, width=width)
+    first = characteristic_frequency(runs, width=width)
+    return xr.Dataset(
+        {
+            "characteristic_frequency": first.drop_vars(["uncertainty", "impacts"]),
+            "uncertainty": first["uncertainty"].drop_vars(["uncertainty", "impacts"]),
+            "impact_frequency": impacts["frequency"],
+            "impact_uncertainty": impacts["uncertainty"],
+            "median_gear_speed": runs["gear_speed"].median("time").assign_attrs(_SPEED),
+            "min_gear_speed": runs["gear_speed"].min("time").assign_attrs(_SLOWEST),
+        },
+        attrs=impacts.attrs,
+    )
+
+
+def _number(scene: Scene, key: str, value: Any) -> Any:
+    """A swept value in SI units, as the scene holds it."""
+    held: Any = scene.replace({key: value}).to_dict()
+    for part in key.split("."):
+        held = held[int(part)] if isinstance(held, list) else held[part]
+    return held
+
+
+def _assembled(lines: list[xr.Dataset], keys: Mapping[str, list[Any]]) -> xr.Dataset:
+    """All lines in one dataset, with a dimension for each further key."""
+    if not keys:
+        return lines[0]
+    names = dimension_names(tuple(keys))
+    joined = xr.concat(lines, dim="line", join="outer", combine_attrs="drop_conflicts")
+    shape = tuple(len(values) for values in keys.values())
+    chart = xr.Dataset(
+        {
+            str(name): xr.Variable(
+                (*names.values(), *variable.dims[1:]),
+                variable.values.reshape(*shape, *variable.shape[1:]),
+                variable.attrs,
+            )
+            for name, variable in joined.transpose("line", ...).data_vars.items()
+        },
+        coords={name: joined[name].variable for name in ("sam_fraction", "impact")},
+    )
+    for key, name in names.items():
+        info = describe_key(key)
+        attrs = {"long_name": f"{key}: {info.description}", "units": info.unit or "1"}
+        chart = chart.assign_coords({name: (name, keys[key], attrs)})
+    return chart
+
+
+def _attributes(scene: Scene, keys: tuple[str, ...], analysis: Mapping[Any, Any]) -> dict[str, Any]:
+    return {
+        **provenance(scene, "mapped the impact response", swept=keys),
+        "title": f"{scene.name}: coating map",
+        "summary": (
+            "Frequency at which the loaded teeth ring after each mesh impact, against the fraction of the contact "
+            "area that the monolayer covers. The attribute 'scene' holds the gears in SI units."
+        ),
+        **{str(key): value for key, value in analysis.items()},
+    }

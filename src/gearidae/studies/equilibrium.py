@@ -1,0 +1,232 @@
+r"""The contact at rest: the force law of a scene's teeth, the gap they settle at, the frequency they would ring at.
+
+One pair in mesh, pressed once to the depth ``joined``, is a spring of stiffness :math:`k = -\partial W/\partial g`
+between the gears' effective mass, and rings with small amplitude at
+
+.. math::
+
+    f = \frac{1}{2\pi}\sqrt{\frac{k}{m_e}}, \qquad \frac{1}{m_e} = \frac{R_1^2}{I_1} + \frac{R_2^2}{I_2} .
+
+Where asperities stay joined (the partly stretched branch) k is larger than on loading, the more so the deeper the
+contact was pressed. Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Eqs. 1-15.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from gearidae.contact.jkr import asperity_of
+from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_value
+from gearidae.errors import SceneError
+from gearidae.mesh.involute import curvature_radii
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = [
+    "MaterialLaw",
+    "PairLaw",
+    "contact_resonance",
+    "leaving_radii",
+    "material_laws",
+    "nearest_gap",
+    "pair_law",
+    "settled_gap",
+]
+
+PairLaw = Callable[..., float]
+
+
+class MaterialLaw(NamedTuple):
+    """Force law of one part of the flanks, see `material_laws`."""
+
+    scale: float
+    limit: float
+    table: NDArray[np.float64]
+
+
+_DEEPEST, _WIDEST = -30.0, GAP_HIGH - 0.1
+"""Gaps between which a balance is sought, in roughnesses."""
+_AFTER = 0.1
+"""Where a pair rings: so far, in pitches, beyond where the pair before it left the mesh."""
+_STEP = 1e-4
+"""Change of the gap over which a stiffness is taken, in roughnesses."""
+_GAP_ERROR = 1e-7
+"""Of the gaps found, in roughnesses; forces change by e^6 in one."""
+
+
+def contact_resonance(scene: Scene, joined: float | None = None) -> float:
+    """Frequency of small oscillations of one pair in mesh under the scene's constant drive torque.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+    joined : float, optional
+        Gap to which the pair has been pressed [m]; asperities that touched there stay joined as far as they stretch. By
+        default the pair has been pressed by the drive torque alone.
+
+    Returns
+    -------
+    float
+        Frequency [Hz]; NaN if the pair does not hold the torque in a stable state.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no gears or no drive torque that presses them together.
+    """
+    if scene.gears is None or scene.drive is None:
+        raise SceneError("scene", scene.name, "must be a scene with gears")
+    if not scene.drive.torque > 0.0:
+        raise SceneError(
+            "drive.torque", scene.drive.torque, "must be positive, or nothing presses the teeth together"
+        )
+    geometry, gears = scene.geometry, scene.gears
+    pinion, gear = geometry.base_radius_pinion, geometry.base_radius_gear
+    law, force = pair_law(scene), scene.drive.torque / pinion
+    place = geometry.path_length - (1.0 - _AFTER) * geometry.base_pitch
+    radius = float(curvature_radii(geometry, place)[2])
+    gap = settled_gap(scene, lambda at: law(at, at, radius) - force)
+    if joined is not None:
+        gap = nearest_gap(scene, lambda at: law(at, joined, radius) - force, min(gap, joined))
+    pressed = gap if joined is None else min(gap, joined)
+    step = _STEP * scene.surface.roughness
+    here = law(gap, pressed, radius)
+    # a pair that swings stays on the branch on which nothing joins or lets go: the stiffer way of the two
+    opening = here - law(gap + step, pressed, radius)
+    closing = law(gap - step, pressed, radius, gap) - here
+    stiffness = max(opening, closing) / step
+    inverse_mass = pinion**2 / gears.pinion_inertia + gear**2 / gears.gear_inertia
+    return math.sqrt(stiffness * inverse_mass) / (2.0 * math.pi) if stiffness > 0.0 else math.nan
+
+
+def pair_law(scene: Scene) -> PairLaw:
+    """Force law of a pair of the scene's teeth.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+
+    Returns
+    -------
+    callable
+        ``law(gap, joined, radius, opened)`` [m] gives the force [N], positive pushes apart. `joined` is the gap to
+        which the pair has been pressed, `opened` (optional) the widest to which it has come since.
+    """
+    roughness, parts = scene.surface.roughness, material_laws(scene)
+
+    def law(gap: float, joined: float, radius: float, opened: float = -math.inf) -> float:
+        at, low, high = gap / roughness, joined / roughness, opened / roughness
+        total = 0.0
+        for scale, limit, table in parts.values():
+            total += scale * law_value(table, at, min(max(low, high - limit), at))[0]
+        return math.sqrt(2.0 * radius * roughness) * float(total)
+
+    return law
+
+
+def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
+    """Force laws of the bare and of the coated part of a scene's teeth, as far as there are such parts.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+
+    Returns
+    -------
+    dict
+        By ``bare`` and ``coated``: force of unit value and unit ``sqrt(2 R sigma)`` [N/m] times the part's share, its
+        stretch limit over the roughness, and its table (see `gearidae.contact.kernels.law`).
+    """
+    assert scene.gears is not None
+    roughness, width = scene.surface.roughness, scene.gears.face_width
+    covered = scene.coating.sam_fraction
+    laws = {}
+    for name, part, surface in (
+        ("coated", covered, scene.coated_surface),
+        ("bare", 1.0 - covered, scene.surface),
+    ):
+        if part > 0.0:
+            asperity = asperity_of(surface)
+            hertz = 4.0 / 3.0 * asperity.modulus * math.sqrt(surface.asperity_radius)
+            scale = part * force_scale(roughness, hertz, surface.asperity_density, width)
+            limit = asperity.stretch_limit / roughness
+            laws[name] = MaterialLaw(scale, limit, law_table(limit, scene.contact.asperity))
+    return laws
+
+
+def leaving_radii(scene: Scene) -> tuple[float, list[float]]:
+    """Reduced radii of the pair at the end of its path of contact, and of those behind it [m].
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    leaving : float
+    staying : list of float
+    """
+    geometry = scene.geometry
+    behind = np.arange(1, math.floor(geometry.contact_ratio) + 1) * geometry.base_pitch
+    reduced = curvature_radii(geometry, geometry.path_length - np.concatenate([[0.0], behind]))[2]
+    return float(reduced[0]), [float(radius) for radius in reduced[1:]]
+
+
+def settled_gap(scene: Scene, balance: Callable[[float], float]) -> float:
+    """Widest gap at which a force balance holds: where teeth that approach come to rest.
+
+    Parameters
+    ----------
+    scene : Scene
+    balance : callable
+        Force less load [N] of a gap [m].
+
+    Returns
+    -------
+    float
+        Gap [m].
+    """
+    sigma = scene.surface.roughness
+    gaps = np.arange(_WIDEST, _DEEPEST, -0.25) * sigma
+    for outer, inner in pairwise(gaps):
+        if balance(float(inner)) > 0.0:
+            return float(brentq(balance, inner, outer, xtol=_GAP_ERROR * sigma))
+    return _DEEPEST * sigma
+
+
+def nearest_gap(scene: Scene, balance: Callable[[float], float], gap: float) -> float:
+    """Gap at which a force balance holds, next to one where it nearly does.
+
+    Parameters
+    ----------
+    scene : Scene
+    balance : callable
+        Force less load [N] of a gap [m].
+    gap : float
+        Where to begin [m].
+
+    Returns
+    -------
+    float
+        Gap [m].
+    """
+    sigma = scene.surface.roughness
+    way = 1.0 if balance(gap) > 0.0 else -1.0
+    near, step = gap, 0.02 * sigma
+    while _DEEPEST * sigma < near < _WIDEST * sigma:
+        far = min(max(near + way * step, _DEEPEST * sigma), _WIDEST * sigma)
+        if (balance(far) > 0.0) != (way > 0.0):
+            return float(brentq(balance, min(near, far), max(near, far), xtol=_GAP_ERROR * sigma))
+        near, step = far, 1.6 * step
+    return near

@@ -1,0 +1,144 @@
+"""The account of a run against what is known of it on paper."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.analysis import run_summary as account_module
+from gearidae.analysis.run_summary import account
+
+CASES = Path(__file__).parents[2] / "cases"
+LOW = gd.preset("teodorescu2009_low_speed")
+FREE = LOW.replace(
+    {  # one flank far from the other, both shafts held back so that nothing touches: two bodies on their own
+        "drive.torque": 0.0,
+        "load.drag": 0.0,
+        "initial.gear_speed": 0.0,
+        "initial.gap": "0.1 um",
+        "run.duration": "1 ms",
+        "run.samples": 1001,
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def braking():
+    scene = gd.load_case(CASES / "braking.toml").replace(
+        {
+            "drive.schedule": [[0.0, 2.43e-11], [2e-3, 0.0]],
+            "run.duration": "14 ms",
+            "run.samples": 14_001,
+            "run.rtol": 1e-7,
+        }
+    )
+    return gd.simulate(scene)
+
+
+def test_dry_resistance_stops_the_gear_and_the_books_balance(braking):
+    told = account(braking)
+    assert told.held_by == "dry resistance"
+    assert told.sticks == told.slips + 1
+    stuck = braking.event_time[braking.event_kind == 6][-1].item()
+    assert told.time_at_rest == pytest.approx(14e-3 - stuck, rel=1e-12, abs=0.0)
+    gears = gd.Scene.from_dict(json.loads(braking.attrs["scene"])).gears
+    kinetic = 0.5 * (gears.gear_inertia + gears.pinion_inertia * 16.0) * 2898.0**2  # teeth 76 to 19
+    # the pinion still trembles against the tooth that holds it
+    trembling = 0.5 * gears.pinion_inertia * braking.pinion_speed[-1].item() ** 2
+    assert trembling < 1e-9 * kinetic
+    assert told.kinetic_change == pytest.approx(trembling - kinetic, rel=1e-12, abs=0.0)
+    # dry resistance of 3e-11 N m over the angle turned
+    turned = (braking.gear_angle[-1] - braking.gear_angle[0]).item()
+    assert told.dry_loss == pytest.approx(3e-11 * turned, rel=1e-12, abs=0.0)
+    # what is lost in the contacts is small, and more than the error of the sum: adhesion only takes
+    assert 0.0 < told.contact_loss < 1e-3 * told.dry_loss
+    assert told.uncertainty < 0.5 * told.contact_loss
+
+
+def test_work_of_a_schedule_on_a_free_pinion():
+    """A torque that grows as t: the pinion gains W = M1^2 T^2 / 8 I1, trapezoids over a thousandth of T."""
+    torque, duration = 1e-14, 1e-4
+    scene = FREE.replace(
+        {"drive.schedule": [[0.0, 0.0], [duration, torque]], "run.duration": duration, "run.rtol": 1e-9}
+    )
+    ds = gd.simulate(scene)
+    told = account(ds)
+    work = (torque * duration) ** 2 / (8.0 * scene.gears.pinion_inertia)
+    assert told.impacts == 0
+    assert told.drive_work == pytest.approx(work, rel=1e-5, abs=0.0)
+    assert told.kinetic_change == pytest.approx(work, rel=1e-5, abs=0.0)
+    assert abs(told.contact_loss) < 1e-5 * work
+    assert told.uncertainty < 1e-5 * work
+
+
+def test_held_at_rest_from_the_beginning_to_the_end():
+    ds = gd.simulate(FREE.replace({"load.torque": 1e-15}))
+    told = account(ds)
+    assert (told.time_at_rest, told.held_by) == (1e-3, "dry resistance")
+    assert (told.top_speed, told.sticks) == (0.0, 0)
+    assert math.isnan(told.time_to_speed)
+
+
+def test_start_up_rests_until_the_first_slip_and_then_comes_to_speed():
+    scene = gd.load_case(CASES / "start_up.toml").replace({"run.duration": "12 ms", "run.samples": 12_001})
+    ds = gd.simulate(scene)
+    told = account(ds)
+    assert told.time_at_rest == ds.event_time[ds.event_kind == 7][0].item()
+    assert 0.0031 - 2e-4 < told.time_at_rest < told.time_to_speed < 0.012  # torque over ratio: 31 % of 10 ms
+    first = np.flatnonzero(ds.gear_speed >= 0.95 * ds.gear_speed.max())[0]
+    assert told.time_to_speed == ds.time[first]
+
+
+def test_adhesion_holds_a_worn_gear_and_lets_a_coated_one_go():
+    worn = account(gd.simulate(LOW.replace({"coating.sam_fraction": 0.4})))
+    assert worn.held_by == "adhesion"
+    assert worn.time_at_rest == 0.0
+    assert 0.1 < worn.time_adhering < 0.3
+    coated = account(gd.simulate(LOW))
+    assert (coated.held_by, coated.time_adhering) == ("", 0.0)
+
+
+def test_pieces_do_not_matter(braking, monkeypatch):
+    whole = account(braking)
+    monkeypatch.setattr(account_module, "PIECE", 1000)
+    pieces = account(braking)
+    for name, value in whole.as_plain().items():
+        if name == "uncertainty":
+            continue  # takes every second sample of each piece
+        expected = value if isinstance(value, str) else pytest.approx(value, rel=1e-9, abs=1e-24)
+        assert pieces.as_plain()[name] == expected
+
+
+def test_without_samples_and_of_rollers():
+    told = account(gd.simulate(LOW.replace({"run.samples": "off"})))
+    assert math.isnan(told.top_speed)
+    assert told.as_plain()["largest_force"] is None
+    assert told.drive_work > 0.0  # the ledger needs no samples
+    assert told.impacts > 0
+    assert account(gd.simulate(gd.preset("roller_slow"))) is None
+
+
+def test_an_archive_without_a_ledger_has_its_work_from_the_samples(braking):
+    """The sums over samples and the ledger are two ways to the same energies."""
+    kept = account(braking)
+    older = braking.copy()
+    del older.attrs["ledger"]
+    told = account(older)
+    for name in ("drive_work", "drag_loss", "dry_loss", "kinetic_change"):
+        # samples every microsecond: trapezoids over speeds that tremble some thousandths
+        assert getattr(told, name) == pytest.approx(getattr(kept, name), rel=1e-3, abs=0.0)
+    assert told.contact_loss == pytest.approx(kept.contact_loss, abs=3.0 * told.uncertainty)
+    assert kept.uncertainty < 1e-3 * told.uncertainty
+    assert math.isnan(told.adhesion_loss)
+    bare = older.isel(time=slice(0, 0))
+    assert math.isnan(account(bare).drive_work)
+
+
+def test_the_account_is_in_the_dataset(tmp_path):
+    ds = gd.simulate(LOW, archive=tmp_path / "run.nc")
+    assert json.loads(ds.attrs["account"]) == account(ds).as_plain()

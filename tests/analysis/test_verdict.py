@@ -1,0 +1,130 @@
+"""Verdicts on runs whose motion is known."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.analysis.verdict import IRREGULAR_ABOVE, outcomes
+from gearidae.archive import combine, to_dataset
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Events, Solution, Statistics
+
+LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 201})
+ROLLER = gd.preset("roller_slow").replace({"run.samples": 201})
+SCHEDULED = LOW.replace({"drive.schedule": [[0.0, 0.0], [0.1, 1e-18]]})
+AT = np.linspace(0.0, 1.0, 201)
+
+
+def solution_of(scene, *, reached=1.0, status="finished", impacts=3):
+    """Make a solution at rest, with contacts made and broken in turn."""
+    time = np.linspace(0.0, scene.run.duration, scene.run.samples)[: round(reached * scene.run.samples)]
+    names = GEAR_COLUMNS if scene.roller is None else ROLLER_COLUMNS
+    kinds = np.array([EventKind.ONSET, EventKind.SEPARATION] * impacts, dtype=np.int8)
+    size = len(kinds)
+    events = Events(
+        np.arange(size) * 1e-9, kinds, np.zeros(size, np.int64), np.zeros(size, np.int8), np.zeros(size)
+    )
+    statistics = Statistics(1, 1, 1, 0, 0, 0, 1, 0.1, "native")
+    return Solution(time, {name: np.zeros(len(time)) for name in names}, events, statistics, status, "")
+
+
+def gear_run(speed, scene=LOW, **options):
+    solution = solution_of(scene, **options)
+    solution.samples["gear_speed"] = speed[: len(solution.time)]
+    return to_dataset(scene, solution)
+
+
+def ripple(share):
+    """Speeds about 1.5 rad/s whose spread is `share` of their mean."""
+    return 1.5 * (1.0 + 0.5 * share * np.cos(40 * np.pi * AT))
+
+
+@pytest.mark.parametrize(
+    ("speed", "verdict"),
+    [
+        (ripple(0.9 * IRREGULAR_ABOVE), "turns smoothly"),
+        (ripple(1.1 * IRREGULAR_ABOVE), "irregular"),
+        (np.where(AT < 0.04, ripple(1.5), 1.5), "turns smoothly"),  # bounces at the start only
+        (1.5 - 2.0 * AT, "sticks"),
+        (np.maximum(1.5 - 2.0 * AT, 0.0), "sticks"),
+        (1.5 * np.abs(1.0 - 2.0 * AT), "sticks"),  # at rest for an instant
+        (np.zeros(201), "sticks"),  # never gets going
+        (np.where(AT < 0.01, 0.0, 1.5), "turns smoothly"),  # starts from rest
+        (np.where(AT < 0.04, 20 * AT * np.cos(80 * np.pi * AT), 1.5), "turns smoothly"),  # and bounces there
+        (np.where(AT < 0.04, 20 * AT, 1.5 - 2.0 * AT), "sticks"),  # from rest, and comes to rest again
+    ],
+)
+def test_gear_verdicts(speed, verdict):
+    (outcome,) = outcomes(gear_run(speed))
+    assert outcome.verdict == verdict
+    assert (outcome.min_speed, outcome.max_speed) == (speed.min(), speed.max())
+
+
+@pytest.mark.parametrize(("speed", "verdict"), [(10 * AT, "runs"), (10 * np.maximum(0.8 - AT, 0.0), "stops")])
+def test_a_schedule_may_change_the_speed(speed, verdict):
+    (outcome,) = outcomes(gear_run(speed, SCHEDULED))
+    assert outcome.verdict == verdict
+
+
+def test_a_run_cut_short_is_unfinished_unless_it_had_stuck():
+    early = {"reached": 0.5, "status": "chatter"}
+    (turning,) = outcomes(gear_run(ripple(0.01), **early))
+    (stuck,) = outcomes(gear_run(1.5 - 4.0 * AT, **early))
+    assert (turning.verdict, turning.status) == ("unfinished", "chatter")
+    assert (stuck.verdict, stuck.status) == ("sticks", "chatter")
+
+
+def test_impacts_are_counted_run_by_run():
+    fractions = [1.0, 0.5]
+    scenes = [LOW.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
+    solutions = [solution_of(scene, impacts=count) for scene, count in zip(scenes, (2, 7), strict=True)]
+    ds = combine(LOW, {"coating.sam_fraction": fractions}, scenes, solutions)
+    assert [(one.label, one.impacts) for one in outcomes(ds)] == [
+        ({"sam_fraction": 1.0}, 2),
+        ({"sam_fraction": 0.5}, 7),
+    ]
+    assert [one.impacts for one in outcomes(ds.sel(sam_fraction=0.5))] == [7]
+
+
+def roller_run(speed, force, *, impacts, lets_go):
+    solution = solution_of(ROLLER, impacts=impacts)
+    solution.samples.update(speed=speed, force=force)
+    if impacts and not lets_go:
+        events = solution.events
+        kept = {field.name: getattr(events, field.name)[:-1] for field in dataclasses.fields(events)}
+        assert kept["kind"][-1] == EventKind.ONSET
+        solution = dataclasses.replace(solution, events=dataclasses.replace(events, **kept))
+    return to_dataset(ROLLER, solution)
+
+
+def test_roller_rebounds_with_the_restitution_of_its_speeds():
+    speed = np.where(AT < 0.5, -0.01, 0.004)
+    force = 2e-5 * np.sin(2 * np.pi * AT) * (AT < 0.75)
+    (outcome,) = outcomes(roller_run(speed, force, impacts=1, lets_go=True))
+    assert outcome.verdict == "rebounds"
+    assert outcome.restitution == pytest.approx(0.4, rel=1e-15, abs=0)
+    assert outcome.peak_force == force.max()
+    assert outcome.pull_off_force == -force.min()
+
+
+def test_roller_that_is_still_in_touch_sticks():
+    (outcome,) = outcomes(roller_run(1e-4 * np.cos(50 * AT), -1e-6 * AT, impacts=1, lets_go=False))
+    assert outcome.verdict == "sticks"
+    assert np.isnan(outcome.restitution)
+    assert outcome.peak_force == 0.0
+
+
+def test_roller_that_has_not_arrived_flies():
+    (outcome,) = outcomes(roller_run(np.full(201, -0.01), np.zeros(201), impacts=0, lets_go=False))
+    assert outcome.verdict == "flies"
+    assert outcome.pull_off_force == 0.0
+
+
+def test_what_is_no_dataset_of_ours_is_refused():
+    ds = gear_run(ripple(0.1))
+    del ds.attrs["scene"]
+    with pytest.raises(gd.SceneError, match="must come from simulate"):
+        outcomes(ds)

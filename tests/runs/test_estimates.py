@@ -1,0 +1,86 @@
+"""Estimates against closed forms, and against what the simulation does."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.contact import line_force
+from gearidae.mesh.involute import curvature_radii
+from gearidae.runs.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+
+LOW = gd.preset("teodorescu2009_low_speed")
+HIGH = gd.preset("teodorescu2009")
+
+
+def test_steady_speeds_of_the_paper():
+    assert steady_speed(LOW) == pytest.approx(1.5, rel=1e-12, abs=0)  # the torque was chosen for it
+    assert steady_speed(HIGH) == pytest.approx(math.sqrt((4 * 2.43e-11 - 3e-11) / 8e-18), rel=1e-12, abs=0)
+    assert steady_speed(HIGH.replace({"drive.torque": 7e-12})) == 0.0
+    assert steady_speed(LOW.replace({"load.drag": 0.0})) == math.inf
+
+
+def test_effective_mass():
+    assert effective_mass(HIGH) == pytest.approx(2.53e-12, rel=2e-3, abs=0)  # rounded figure
+
+
+@pytest.mark.parametrize("fraction", [1.0, 0.5, 0.0])
+def test_at_the_resting_gap_the_tooth_carries_the_drive(fraction):
+    scene = LOW.replace({"coating.sam_fraction": fraction})
+    radius = float(curvature_radii(scene.geometry, scene.geometry.approach)[2])
+    gap = resting_gap(scene)
+    carried = sum(
+        share * line_force(gap, 0.0, radius, scene.gears.face_width, surface)
+        for share, surface in ((fraction, scene.coated_surface), (1.0 - fraction, scene.surface))
+    )
+    # The load is the difference of what pushes and what pulls: some millionths of either on bare silicon, and those
+    # are good to 1e-12.
+    assert float(carried) == pytest.approx(
+        scene.drive.torque / scene.gears.pinion_base_radius, rel=1e-5, abs=0
+    )
+
+
+def ringing(fraction):
+    """Frequency of the last of the start-up's oscillations, small by then, with two pairs in mesh."""
+    scene = LOW.replace({"coating.sam_fraction": fraction})
+    ds = gd.simulate(scene, t_end=0.02, samples=20_001).isel(time=slice(15_000, None))
+    swing = ds.gear_speed.values - ds.gear_speed.values.mean()
+    crossings = np.flatnonzero((swing[:-1] < 0.0) & (swing[1:] >= 0.0))
+    return (len(crossings) - 1) / (ds.time.values[crossings[-1]] - ds.time.values[crossings[0]])
+
+
+def test_natural_frequency_is_that_of_the_simulated_ringing():
+    """In the far tail the stiffness is nearly proportional to the load, so two pairs that share it ring like one.
+
+    The first impacts have joined a few asperities more than touch at rest: a few per cent. The paper reads 1301 Hz.
+    """
+    assert natural_frequency(LOW) == pytest.approx(ringing(1.0), rel=0.05, abs=0)
+    assert natural_frequency(LOW) == pytest.approx(1301.0, rel=0.05, abs=0)
+
+
+def test_worn_teeth_ring_faster_than_those_that_were_never_pressed():
+    estimates = [natural_frequency(LOW.replace({"coating.sam_fraction": f})) for f in (1.0, 0.8, 0.6, 0.5)]
+    assert sorted(estimates) == estimates
+    for estimate, fraction in zip(estimates[1:], (0.8, 0.6, 0.5), strict=True):
+        assert 1.0 < ringing(fraction) / estimate < 2.0
+
+
+def test_nothing_rests_without_a_drive():
+    idle = LOW.replace({"drive.torque": 0.0})
+    assert math.isnan(resting_gap(idle))
+    assert math.isnan(natural_frequency(idle))
+    assert math.isnan(resting_gap(LOW.replace({"drive.torque": 1.0})))  # would crush the teeth
+
+
+def test_hertzian_asperities_close_the_gap():
+    """Without adhesion the far tail is all repulsion: the resting gap is larger than with it."""
+    assert resting_gap(LOW.replace({"contact.asperity": "hertz"})) > resting_gap(LOW)
+
+
+@pytest.mark.parametrize("estimate", [effective_mass, steady_speed, resting_gap, natural_frequency])
+def test_a_roller_has_none_of_these(estimate):
+    with pytest.raises(gd.SceneError, match="no gears"):
+        estimate(gd.preset("roller_slow"))

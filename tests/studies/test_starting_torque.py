@@ -1,0 +1,107 @@
+"""Starting torque: the static pull against closed forms, the search against its own definition."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.analysis import starting_torque, static_starting_torque
+from gearidae.contact import line_force
+from gearidae.studies.equilibrium import pair_law
+from gearidae.studies.release import holding_forces
+
+SCENE = gd.preset("teodorescu2009_low_speed")
+FORCE = SCENE.drive.torque / SCENE.gears.pinion_base_radius
+
+
+def at(fraction, **changes):
+    return SCENE.replace({"coating.sam_fraction": fraction, **changes})
+
+
+def test_pair_law_is_the_line_force_of_both_surfaces():
+    """The tables against the quadrature, on loading and stretched; both are good to better than 1e-9."""
+    scene, radius, width = at(0.7), 9e-6, SCENE.gears.face_width
+    law = pair_law(scene)
+    for gap, joined in ((30e-9, 30e-9), (30e-9, 29.5e-9), (33e-9, 27e-9)):
+        parts = [
+            part * float(line_force(gap, gap - joined, radius, width, surface))
+            for part, surface in ((0.7, scene.coated_surface), (0.3, scene.surface))
+        ]
+        assert law(gap, joined, radius) == pytest.approx(
+            sum(parts), rel=1e-7, abs=1e-9 * max(map(abs, parts))
+        )
+
+
+def test_nothing_holds_without_adhesion():
+    assert holding_forces(at(0.3, **{"contact.asperity": "hertz"}), FORCE, 3) == [0.0, 0.0, 0.0]
+    assert static_starting_torque(at(0.3, **{"contact.asperity": "hertz"})) == 0.0
+
+
+def test_hold_grows_with_every_exit_and_with_wear():
+    holds = np.array([holding_forces(at(fraction), FORCE, 4) for fraction in (0.7, 0.6, 0.5, 0.4)])
+    assert (np.diff(holds, axis=1) > 0.0).all()
+    assert (np.diff(holds, axis=0) > 0.0).all()
+
+
+def test_bare_surfaces_hold_with_what_the_fully_stretched_contact_can_pull():
+    """No more than its largest tension times the steepest slope of the tip at which asperities are still joined."""
+    bare, law = at(0.0), pair_law(at(0.0))
+    radius, sigma = 10.04e-6, SCENE.surface.roughness
+    (hold,) = holding_forces(bare, FORCE, 1)
+    tension = -min(law(gap, -math.inf, radius) for gap in np.linspace(0.0, 8.0, 400) * sigma)
+    slope = math.sqrt(2.0 * 8.0 * sigma / SCENE.mesh.tip_relief_radius)
+    assert 0.0 < hold < tension * slope
+
+
+def test_static_torque_is_where_drive_and_hold_balance():
+    scene = at(0.5)
+    torque = static_starting_torque(scene, impacts=2)
+    pinion = SCENE.gears.pinion_base_radius
+    assert max(holding_forces(scene, torque / pinion, 2)) == pytest.approx(torque / pinion, rel=5e-3, abs=0)
+    assert static_starting_torque(scene, impacts=3) > torque
+    assert static_starting_torque(at(1.0)) == 0.0  # adhesion of the monolayer does not hold
+
+
+def test_dry_resistance_adds_to_the_static_torque():
+    dry = 1e-17
+    ratio = SCENE.geometry.base_radius_pinion / SCENE.geometry.base_radius_gear
+    assert static_starting_torque(at(1.0, **{"load.torque": dry})) == pytest.approx(dry * ratio)
+    assert static_starting_torque(at(0.5, **{"load.torque": dry}), impacts=1) >= dry * ratio
+
+
+def test_simulated_torque_turns_and_a_smaller_one_sticks():
+    found = starting_torque(SCENE, [1.0, 0.5], impacts=1, tolerance=0.5)
+    whole, worn = found.sel(sam_fraction=1.0), found.sel(sam_fraction=0.5)
+    assert float(whole.simulated_torque) == float(whole.static_torque) == 0.0
+    assert found.simulated_torque.attrs["units"] == "N m"
+    turns, sticks = float(worn.simulated_torque), float(worn.simulated_stuck)
+    assert sticks < turns <= 1.5 * sticks
+    pitch = 2.0 * math.pi / SCENE.gears.gear_teeth
+    for torque, expected in ((turns, True), (sticks, False)):
+        run = gd.simulate(
+            at(
+                0.5,
+                **{
+                    "drive.torque": torque,
+                    "initial.gear_speed": 0.0,
+                    "run.duration": 3.0,
+                    "run.samples": 1001,
+                },
+            )
+        )
+        assert bool(run.gear_angle[-1] - run.gear_angle[0] >= pitch) is expected
+
+
+def test_wrong_settings_are_named():
+    for call, message in (
+        (lambda: static_starting_torque(gd.preset("roller_slow")), "must be a scene with gears"),
+        (lambda: static_starting_torque(SCENE, impacts=0), "impacts = 0"),
+        (lambda: static_starting_torque(SCENE, lowest=-1.0), "lowest = -1.0"),
+        (lambda: starting_torque(SCENE, tolerance=0.0), "tolerance"),
+        (lambda: starting_torque(SCENE, [2.0]), r"coating\.sam_fraction"),
+    ):
+        with pytest.raises(gd.SceneError, match=message):
+            call()
