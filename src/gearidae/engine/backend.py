@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from gearidae.compiled import say_compiling
 from gearidae.engine.changeover import change_over, deepen
 from gearidae.engine.integrate.driver import Block, Ending, Tally
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import Problem, make_problem
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.problem import Problem
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Ledger, Solution, Statistics
@@ -79,22 +79,15 @@ def load_driver(backend: str) -> ModuleType:
 
 _COMPILED = {"native": "native", "portable": "residual"}  # a module that is compiled with each driver
 
-_ready: set[tuple[str, float, bool]] = set()
+_ready: set[tuple[str, int, bool]] = set()
 
 
 def ready_driver(backend: str, problem: Problem) -> ModuleType:
     """Load a driver and have all that it needs for this kind of problem compiled, or read from disk, by a tiny run."""
     driver = load_driver(backend)
-    kind = (backend, float(problem.data[at.KIND]), bool(problem.data[at.NODES] > 0.0))
+    kind = (backend, int(problem.model.scene.kind), bool(problem.model.scene.nodes > 0))
     if kind not in _ready:
-        tiny = replace(
-            problem,
-            data=problem.data.copy(),
-            start=problem.start.copy(),
-            end=min(problem.end, TINY),
-            knots=np.zeros(0),
-        )
-        for _ in driver.run(tiny, 1e-3, 2, Tally()):
+        for _ in driver.run(problem.shortened(TINY), 1e-3, 2, Tally()):
             pass
         _ready.add(kind)
     return driver
@@ -128,7 +121,8 @@ def run_blocks(
     if problem.elastic is None:
         yield from _run_bodies(problem, rtol, samples, driver, tally, resume)
         return
-    rigid = resume is None or problem.fits(resume, driver.COUNTERS)
+    bodies = problem if resume is None else problem.of_checkpoint(resume)
+    rigid = bodies is problem
     if rigid and not (resume is not None and problem.outgrown(resume)):
         for block in driver.run(problem, rtol, samples, tally, resume):
             resume = block.checkpoint
@@ -136,7 +130,8 @@ def run_blocks(
         if tally.ending is not Ending.DEFLECTION or resume is None:
             return
         tally.ending = Ending.FINISHED
-    bodies = problem.elastic()
+    if rigid:
+        bodies = problem.elastic()
     problem.skipped["elastic_deflection"] = 0
     if rigid and resume is not None:
         log.info(
@@ -156,7 +151,7 @@ def _run_bodies(
 ) -> Iterator[Block]:
     """Run a problem that stays with its contact model; nodes that are pressed too deep are laid out anew."""
     if resume is not None:
-        problem = problem.at_depth(resume, driver.COUNTERS)
+        problem = problem.of_checkpoint(resume)
     while True:
         if resume is not None and problem.deeper is not None and problem.outgrown(resume):
             deeper = problem.deeper()
@@ -372,11 +367,9 @@ def outlook(
         If the scene is beyond what the engine can do.
     """
     problem = make_problem(scene)
-    counters = load_driver(backend).COUNTERS
-    if checkpoint is not None and not problem.fits(checkpoint, counters):
+    if checkpoint is not None and problem.of_checkpoint(checkpoint).depth > 0:
         problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
-    size = problem.checkpoint(0.0, problem.start, np.zeros(counters, np.int64)).size
-    return size, problem.skipped
+    return problem.checkpoint(0.0, problem.start).size, problem.skipped
 
 
 def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Ledger:
@@ -395,13 +388,9 @@ def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Le
     SceneError
         If the checkpoint is not of this scene.
     """
-    counters = np.zeros(load_driver(backend).COUNTERS, np.int64)
-    problem = make_problem(scene)
-    if problem.elastic is not None and not problem.fits(checkpoint, counters.size):
-        problem = problem.elastic()
-    problem = problem.at_depth(checkpoint, counters.size)
+    problem = make_problem(scene).of_checkpoint(checkpoint)
     state = np.empty(problem.start.size)
-    time = problem.restore(checkpoint, state, counters)
+    time = problem.restore(checkpoint, state)
     return problem.ledger(time, state, np.zeros_like(state))
 
 

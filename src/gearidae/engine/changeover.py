@@ -2,28 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
-from numpy.typing import NDArray
 
-from gearidae.engine.elastic.nodes import (
-    book_points,
-    first_unknown,
-    meet_nodes,
-    point_count,
-    point_weights,
-    row,
-)
+from gearidae.engine.elastic.histories import book_points, init_nodes
+from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, profile_of, row_of
 from gearidae.engine.elastic.static_solve import SETTLED, settle_nodes
-from gearidae.engine.energy.balance import carry_ledger
-from gearidae.engine.model import layout as at
+from gearidae.engine.energy.balance import carry_balance
 from gearidae.engine.model.problem import Problem
-from gearidae.engine.model.tooth_pairs import history_slot
+from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 
 __all__ = ["change_over", "deepen"]
-
-Floats = NDArray[np.float64]
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
 
@@ -31,8 +19,9 @@ _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is
 def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     """Checkpoint from which the elastic problem goes on where the asperity problem stopped.
 
-    The motion, the mesh and what every pair remembers are kept. The deflections are those that the pressures cause
-    (some hundredths of the roughness, which is when this happens), and every node is stretched as its pair was.
+    The whole state is kept: motion, mesh, dry resistance, sums and what every pair remembers. The deflections are those
+    that the pressures cause (some hundredths of the roughness, which is when this happens), and every node is stretched
+    as its pair was.
 
     Parameters
     ----------
@@ -43,34 +32,32 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     checkpoint : ndarray
         Where the asperity problem stands.
     """
-    d, source = new.data, old.data
-    motion = old.start.size
-    state = np.empty(motion)
-    counters = np.empty(checkpoint.size - int(source[at.LOADING_AT]) - motion - 1, np.int64)
-    time = old.restore(checkpoint, state, counters)
-    d[at.TURNS : at.PASSED] = source[at.TURNS : at.PASSED]
-    for law in (at.DRIVE_AT, at.LOAD_AT):
-        d[int(d[law]) + at.LAW_SEGMENT] = source[int(source[law]) + at.LAW_SEGMENT]
-    y = np.concatenate([state, np.zeros(new.start.size - motion)])
-    slots = int(source[at.SLOTS])
-    d[[history_slot(d, k // int(d[at.SLOTS]), k) + at.PAIR for k in range(int(d[at.TOTAL_SLOTS]))]] = math.nan
-    for k in range(int(source[at.TOTAL_SLOTS])):
-        coast = k // slots
-        start = int(source[at.HISTORIES]) + int(source[at.HISTORY]) * k
-        if math.isnan(source[start + at.PAIR]):
-            continue
-        slot = history_slot(d, coast, int(source[start + at.PAIR]))
-        d[slot : slot + at.BRANCHES] = source[start : start + at.BRANCHES]
-    d[at.LAST_TIME] = time
+    m, source = new.model, old.model
+    state = np.empty(old.start.size)
+    time = old.restore(checkpoint, state)
+    _take_over(source, m)
+    y = np.concatenate([state, np.zeros(new.start.size - state.size)])
     # what is joined goes with the gaps along the contact, and these with the pressures of what is joined
     for _ in range(_ROUNDS):
         before = y.copy()
-        _join(d, y)
-        settle_nodes(d, time, y)
+        _join(m, y)
+        settle_nodes(m, time, y)
         if np.max(np.abs(y - before)) <= SETTLED:
             break
-    carry_ledger(source, state, d, y)
-    return new.checkpoint(time, y, counters)
+    carry_balance(source, state, m, y)
+    return new.checkpoint(time, y)
+
+
+def _take_over(source: Model, m: Model) -> None:
+    """Take the state over, with the histories in the slots that the new model has for them."""
+    slots, own = int(source.scene.slots), int(m.scene.slots)
+    histories = [(k // slots, h.copy()) for k, h in enumerate(source.state.history[: source.scene.histories])]
+    assign(m.state, source.state)
+    m.state.bound_exceeded = 0
+    m.state.history["pair"] = EMPTY
+    for coast, h in histories:
+        if h.pair != EMPTY:
+            assign(m.state.history[coast * own + (int(h.pair) & (own - 1))], h)
 
 
 def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
@@ -88,60 +75,51 @@ def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     checkpoint : ndarray
         Where the old one stands.
     """
-    d, source = new.data, old.data
-    changing = int(source[at.LOADING_AT])
+    m, source = new.model, old.model
     state = np.empty(old.start.size)
-    counters = np.empty(checkpoint.size - changing - state.size - 1, np.int64)
-    time = old.restore(checkpoint, state, counters)
-    lowest = d[at.LOWEST_GAP]
-    d[:changing] = source[:changing]
-    d[[at.LOWEST_GAP, at.PASSED]] = lowest, 0.0
-    nodes = int(d[at.NODES])
-    points, grid, weights = point_count(nodes), int(d[at.GRID_AT]), point_weights(d)
-    kinds = [(at.ROW_SHARE, nodes, grid, 0.0)]
-    kinds += [(at.ROW_JOINED + material, points, weights - points, 1.0) for material in range(2)]
-    y = state.copy()
-    for k in range(int(d[at.TOTAL_SLOTS])):
-        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * k
-        first = first_unknown(d, slot)
-        y[first : first + nodes] = _along(source, d, grid, state[first : first + nodes])
-        for kind, count, profile, curved in kinds:
-            own = row(d, slot, kind)
-            before = source[own : own + count] - curved * source[profile : profile + count]
-            d[own : own + count] = _along(source, d, profile, before) + curved * d[profile : profile + count]
-    settle_nodes(d, time, y)
-    for k in range(int(d[at.TOTAL_SLOTS])):
-        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * k
-        first, gaps = first_unknown(d, slot), row(d, slot, at.ROW_GAP)
-        d[gaps : gaps + nodes] = d[slot + at.LAST_GAP] + d[grid : grid + nodes] + y[first : first + nodes]
-        for material in range(2):
-            book_points(d, slot, material)
-    carry_ledger(source, state, d, y)
-    return new.checkpoint(time, y, counters)
+    time = old.restore(checkpoint, state)
+    assign(m.state, source.state)
+    m.state.bound_exceeded = 0
+    m.rows[m.scene.node_rows_at : m.scene.error_weights_at] = source.rows[
+        source.scene.node_rows_at : source.scene.error_weights_at
+    ]
+    nodes, y = int(m.scene.nodes), state.copy()
+    for k in range(int(m.scene.histories)):
+        first = first_unknown(m, k)
+        y[first : first + nodes] = _along(source, m, state[first : first + nodes], False)
+        row_of(m, k, SHARE)[:] = _along(source, m, row_of(source, k, SHARE), False)
+        for material in range(MATERIALS):
+            heights = row_of(source, k, JOINED + material) - profile_of(source, True)
+            row_of(m, k, JOINED + material)[:] = _along(source, m, heights, True) + profile_of(m, True)
+    settle_nodes(m, time, y)
+    for k in range(int(m.scene.histories)):
+        first = first_unknown(m, k)
+        gap = m.state.history[k].gap
+        row_of(m, k, GAP)[:] = gap + profile_of(m, False) + y[first : first + nodes]
+        for material in range(MATERIALS):
+            book_points(m, k, material)
+    carry_balance(source, state, m, y)
+    return new.checkpoint(time, y)
 
 
-def _along(source: Floats, d: Floats, profile: int, values: Floats) -> Floats:
+def _along(source: Model, m: Model, values: Floats, finer: bool) -> Floats:
     """Carry values from places along the old contact to those along the new one, flat beyond the last."""
     # takes a sixth of a second to import, and few runs need it
     from scipy.interpolate import PchipInterpolator
 
-    span = slice(profile, profile + values.size)
-    here, there = np.sqrt(source[span]), np.sqrt(d[span])
+    here, there = np.sqrt(profile_of(source, finer)), np.sqrt(profile_of(m, finer))
     return np.asarray(PchipInterpolator(here, values)(np.minimum(there, here[-1])))
 
 
-def _join(d: Floats, y: Floats) -> None:
+def _join(m: Model, y: Floats) -> None:
     """Stretch every point as its pair is stretched."""
-    points = point_count(int(d[at.NODES]))
-    for k in range(int(d[at.TOTAL_SLOTS])):
-        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * k
-        if math.isnan(d[slot + at.PAIR]):
+    for k in range(int(m.scene.histories)):
+        h = m.state.history[k]
+        if h.pair == EMPTY:
             continue
-        gap = d[slot + at.LAST_GAP]
-        meet_nodes(d, slot, y, gap)
-        for material in range(2):
-            first = row(d, slot, at.ROW_JOINED + material)
-            d[first : first + points] += d[slot + at.JOINED + material] - gap
-            if d[slot + at.JOINED + material] < gap:
-                d[slot + at.STRETCHED] = 1.0
-            book_points(d, slot, material)
+        init_nodes(m, k, y, float(h.gap))
+        for material in range(MATERIALS):
+            row_of(m, k, JOINED + material)[:] += h.joined[material] - h.gap
+            if h.joined[material] < h.gap:
+                h.stretched = 1
+            book_points(m, k, material)

@@ -22,8 +22,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import pieces
 from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
 from gearidae.contact.kernels.law import H_STRETCH, law_value
-from gearidae.engine.model import layout
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import Flank
@@ -238,12 +237,12 @@ def _states(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers
 
 def _limits(scene: Scene) -> _Limits:
     """Take from the engine what it takes for contact."""
-    data, sigma = make_problem(scene).data, scene.surface.roughness
+    constants, sigma = make_problem(scene).model.scene, scene.surface.roughness
     return _Limits(
-        cutoff=float(data[layout.CUTOFF]) * sigma,
-        engage=float(data[layout.ENGAGE]) * sigma,
-        reach=float(data[layout.REACH]) * scene.geometry.base_pitch,
-        load=float(data[layout.FORCE]),
+        cutoff=float(constants.cutoff) * sigma,
+        engage=float(constants.contact_gap) * sigma,
+        reach=float(constants.reach) * scene.geometry.base_pitch,
+        load=float(constants.force_unit),
     )
 
 

@@ -19,13 +19,13 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import influence, stiffness_matrix
-from gearidae.engine.model import layout as at
+from gearidae.engine.elastic.rows import node_weights
 from gearidae.engine.model.residual import held, jacobian
-from gearidae.engine.model.tooth_pairs import first_pair, history_slot, last_pair, pair_gap
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.tooth_pairs import history_of, pair_at, pair_gap, pairs_touching
 
 __all__ = [
     "assemble",
@@ -33,9 +33,8 @@ __all__ = [
     "factorise",
     "solve_blocks",
     "store_size",
+    "unknowns",
 ]
-
-Floats = NDArray[np.float64]
 
 _MOTION: Final = 0  # sizes: states of motion, nodes, blocks
 _NODES: Final = 1
@@ -49,84 +48,86 @@ _RHO: Final = 9
 
 
 @compiled
-def store_size(d: Floats) -> int:
+def store_size(m: Model) -> int:
     """Numbers that `assemble` wants."""
-    n = int(d[at.NODES])
-    return _FIRST + int(d[at.TOTAL_SLOTS]) * (_RHO + 2 * n + n * n)
+    n = m.scene.nodes
+    return _FIRST + m.scene.histories * (_RHO + 2 * n + n * n)
+
+
+@compiled
+def unknowns(store: Floats) -> int:
+    """Unknowns of the equations in a store."""
+    return int(store[_MOTION]) + int(store[_NODES]) * int(store[_BLOCKS])
 
 
 @compiled(makes_arrays=True)
-def assemble(d: Floats, t: float, cj: float, y: Floats, store: Floats) -> None:
+def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
     """Work out the Jacobian ``dF/dy + cj dF/dy'`` by blocks.
 
     Parameters
     ----------
-    d : ndarray
-        The scene, see `layout`.
+    m : Model
     t, cj : float
         Time over tau, and IDA's leading coefficient.
     y : ndarray
         State.
-    store : ndarray, shape (store_size(d),)
+    store : ndarray, shape (store_size(m),)
         Filled in.
     """
-    roller = d[at.KIND] == at.ROLLER
+    roller = m.scene.kind == ROLLER
     motion = 2 if roller else 4
-    n = int(d[at.NODES])
-    store[_MOTION], store[_NODES], store[_BLOCKS] = motion, n, d[at.TOTAL_SLOTS]
+    n = m.scene.nodes
+    store[_MOTION], store[_NODES], store[_BLOCKS] = motion, n, m.scene.histories
     small = np.empty(motion * motion)
-    jacobian(d, t, cj, y, small)
+    jacobian(m, t, cj, y, small)
     for i in range(motion):
         for j in range(motion):
             store[_SMALL + motion * i + j] = small[i + motion * j]
     size = _RHO + 2 * n + n * n
-    for block in range(int(d[at.TOTAL_SLOTS])):
+    for block in range(m.scene.histories):
         store[_FIRST + size * block] = 0.0
     if roller:
-        slot = int(d[at.HISTORIES])
-        if d[slot + at.LOADED] != 0.0:
-            _assemble_pair(d, slot, store)
-            store[_FIRST + _BETA + at.V] = -d[at.GEAR_SHARE]
-            store[_FIRST + _GAMMA + at.U] = 1.0
+        if m.state.history[0].loaded != 0:
+            _assemble_pair(m, 0, store)
+            store[_FIRST + _BETA + V] = -m.scene.gear_inverse_mass
+            store[_FIRST + _GAMMA + U] = 1.0
         return
-    for coast in range(2):
+    reach = pairs_touching(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
         sign = 1.0 - 2.0 * coast
-        if d[at.HALF_BACKLASH] - sign * y[at.U] >= d[at.CUTOFF]:
+        gap, _, slope, _ = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+        if gap >= m.scene.cutoff:
             continue
-        for pair in range(first_pair(d, coast, y[at.PHASE]), last_pair(d, coast, y[at.PHASE]) + 1):
-            gap, _, slope, _ = pair_gap(d, coast, pair, y[at.U], y[at.V], y[at.PHASE], y[at.W])
-            if gap >= d[at.CUTOFF]:
-                continue
-            slot = history_slot(d, coast, pair)
-            start = _assemble_pair(d, slot, store)
-            store[start + _BETA + at.V] = sign * d[at.PINION_SHARE]
-            if not held(d):
-                store[start + _BETA + at.W] = -sign * d[at.GEAR_SHARE] * (1.0 + slope)
-            store[start + _GAMMA + at.U] = -sign
-            store[start + _GAMMA + at.PHASE] = sign * slope / d[at.PHASE_RATE]
+        start = _assemble_pair(m, history_of(m, coast, pair), store)
+        store[start + _BETA + V] = sign * m.scene.pinion_inverse_mass
+        if not held(m):
+            store[start + _BETA + W] = -sign * m.scene.gear_inverse_mass * (1.0 + slope)
+        store[start + _GAMMA + U] = -sign
+        store[start + _GAMMA + PHASE] = sign * slope / m.scene.phase_rate
 
 
 @compiled(makes_arrays=True)
-def _assemble_pair(d: Floats, slot: int, store: Floats) -> int:
+def _assemble_pair(m: Model, history: int, store: Floats) -> int:
     """Fill a pair's block but for beta and gamma, which are set to zero; its offset."""
-    n = int(d[at.NODES])
+    n = m.scene.nodes
     size = _RHO + 2 * n + n * n
-    start = _FIRST + size * ((slot - int(d[at.HISTORIES])) // int(d[at.HISTORY]))
+    start = _FIRST + size * history
     store[start : start + _RHO] = 0.0
     store[start] = 1.0
-    weights = int(d[at.GRID_AT]) + n
+    weights, length = node_weights(m), m.state.history[history].length
     rho = store[start + _RHO : start + _RHO + n]
     c = store[start + _RHO + n : start + _RHO + 2 * n]
     block = store[start + _RHO + 2 * n : start + size].reshape(n, n)  # column by column
     slopes, kappa = np.empty((n, n)), np.empty((n, n))
-    stiffness_matrix(d, slot, slopes)
-    influence(d, d[slot + at.LENGTH], kappa)
+    stiffness_matrix(m, history, slopes)
+    influence(m, length, kappa)
     rho[:] = c[:] = block[:] = 0.0
     for j in range(n):
         for k in range(n):
             slope = slopes[k, j]
             if slope != 0.0:
-                rho[j] += d[slot + at.LENGTH] * d[weights + k] * slope
+                rho[j] += length * weights[k] * slope
                 for i in range(n):
                     block[j, i] -= kappa[k, i] * slope
         for i in range(n):
@@ -268,9 +269,9 @@ def solve_blocks(store: Floats, b: Floats, x: Floats) -> None:
 
 
 @compiled
-def dense_jacobian(d: Floats, t: float, cj: float, y: Floats, store: Floats, out: Floats) -> None:
+def dense_jacobian(m: Model, t: float, cj: float, y: Floats, store: Floats, out: Floats) -> None:
     """The same Jacobian as a full matrix, row by row, for solvers that know no blocks; `store` is overwritten."""
-    assemble(d, t, cj, y, store)
+    assemble(m, t, cj, y, store)
     motion, n = int(store[_MOTION]), int(store[_NODES])
     size = _RHO + 2 * n + n * n
     out[:] = 0.0

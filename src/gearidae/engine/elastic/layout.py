@@ -17,15 +17,14 @@ from gearidae.compiled import compiled
 from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_nodes
 from gearidae.contact.jkr import asperity_of, contact_modulus
 from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_table, law_value
-from gearidae.engine.elastic.nodes import point_count
-from gearidae.engine.model.layout import FINER
+from gearidae.engine.elastic.rows import FINER, point_count
 from gearidae.scene import Scene
 
 __all__ = [
     "DEPTH_HIGH",
     "NODES",
     "RIGID_DEFLECTION",
-    "Footing",
+    "ContactBounds",
     "NodeGrid",
     "deepest_gap",
     "node_grid",
@@ -58,7 +57,7 @@ _SETTLED = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Footing:
+class ContactBounds:
     """Where a scene's contacts take place.
 
     Attributes
@@ -118,14 +117,14 @@ def _line_grid(reach: float, width: float, modulus: float, nodes: int) -> LineGr
 
 
 def node_grid(
-    scene: Scene, footing: Footing, force_unit: float, deepest: float, nodes: int | None = None
+    scene: Scene, bounds: ContactBounds, force_unit: float, deepest: float, nodes: int | None = None
 ) -> NodeGrid:
     """Lay out the nodes of every pair.
 
     Parameters
     ----------
     scene : Scene
-    footing : Footing
+    bounds : ContactBounds
     force_unit : float
         Reference load [N].
     deepest : float
@@ -136,15 +135,15 @@ def node_grid(
     nodes = nodes or next(count for gap, count in NODES_BY_DEPTH if deepest >= gap)
     sigma = scene.surface.roughness
     modulus = contact_modulus(scene.surface.youngs_modulus, scene.surface.poisson_ratio)
-    unit = math.sqrt(2.0 * footing.radius * sigma)
+    unit = math.sqrt(2.0 * bounds.radius * sigma)
     reach = unit * math.sqrt(TAIL + _stretch(scene) + max(-deepest, 0.0))
-    orders = ORDERS if footing.longest > footing.shortest else 1
-    middle = 0.5 * (footing.longest + footing.shortest)
-    half = 0.5 * (footing.longest - footing.shortest) or 1.0
+    orders = ORDERS if bounds.longest > bounds.shortest else 1
+    middle = 0.5 * (bounds.longest + bounds.shortest)
+    half = 0.5 * (bounds.longest - bounds.shortest) or 1.0
     places = np.polynomial.chebyshev.chebpts1(orders)
-    grids = [_line_grid(reach * (middle + half * p), footing.width, modulus, nodes) for p in places]
+    grids = [_line_grid(reach * (middle + half * p), bounds.width, modulus, nodes) for p in places]
     # pressures are in reference loads per face width and unit length
-    pressure = force_unit / (footing.width * unit)
+    pressure = force_unit / (bounds.width * unit)
     values = np.stack([grid.compliance.T for grid in grids]) * (pressure / sigma)
     powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
     x, weights = place_nodes(reach / unit, nodes)
@@ -163,7 +162,7 @@ def _stretch(scene: Scene) -> float:
     return max(asperity_of(s).stretch_limit / s.roughness for s, share in shares if share > 0.0)
 
 
-def deepest_gap(scene: Scene, footing: Footing) -> float:
+def deepest_gap(scene: Scene, bounds: ContactBounds) -> float:
     """Lowest gap to which energy and load press an elastic contact, in roughnesses, with a little to spare.
 
     The static curve of a closing contact is followed until its work has taken up the energy, or to its fold, or to the
@@ -171,16 +170,16 @@ def deepest_gap(scene: Scene, footing: Footing) -> float:
     """
     depth = 4.0
     while True:
-        lowest = _followed(scene, footing, depth)
+        lowest = _followed(scene, bounds, depth)
         if not math.isnan(lowest) or depth >= DEPTH_HIGH:
             lowest = -DEPTH_HIGH if math.isnan(lowest) else lowest
-            return max(min(lowest, footing.start) - 0.5, -DEPTH_HIGH)
+            return max(min(lowest, bounds.start) - 0.5, -DEPTH_HIGH)
         depth = min(2.0 * depth, DEPTH_HIGH)
 
 
-def _followed(scene: Scene, footing: Footing, depth: float) -> float:
+def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
     """Gap at which a closing contact has taken up its energy or folds; NaN if it does neither down to a depth."""
-    grid, middle, surfaces = _static(scene, footing, -depth)
+    grid, middle, surfaces = _static(scene, bounds, -depth)
     n = grid.nodes
     profile, weights = grid.body[:n], grid.body[n : 2 * n]
     deflection = np.zeros(n)
@@ -201,25 +200,25 @@ def _followed(scene: Scene, footing: Footing, depth: float) -> float:
                 break
         if not change < _SETTLED or np.linalg.det(matrix) <= 0.0:
             return float(gap) + _STEP
-        force = float(footing.longest * weights @ pressure)
+        force = float(bounds.longest * weights @ pressure)
         work += 0.5 * (force + last) * _STEP * scene.surface.roughness
         last = force
-        if work > footing.energy and force > footing.load:
+        if work > bounds.energy and force > bounds.load:
             return float(gap)
     return math.nan
 
 
 def _static(
-    scene: Scene, footing: Footing, deepest: float
+    scene: Scene, bounds: ContactBounds, deepest: float
 ) -> tuple[NodeGrid, Floats, list[tuple[Floats, float]]]:
     """Nodes of the widest contact in newtons, its influence coefficients, and its surfaces' laws with their scales."""
     sigma, fraction = scene.surface.roughness, scene.coating.sam_fraction
-    grid = node_grid(scene, footing, 1.0, deepest, NODES)
+    grid = node_grid(scene, bounds, 1.0, deepest, NODES)
     n = grid.nodes
     powers = grid.body[2 * n : (2 + grid.orders * n) * n].reshape(grid.orders, n, n)
-    x = (footing.longest - grid.middle) / grid.half
+    x = (bounds.longest - grid.middle) / grid.half
     kappa = np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
-    unit = footing.width * math.sqrt(2.0 * footing.radius * sigma)
+    unit = bounds.width * math.sqrt(2.0 * bounds.radius * sigma)
     surfaces = []
     for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
         if share > 0.0:
@@ -240,7 +239,7 @@ def _loading(table: Floats, gaps: Floats) -> Floats:
     return out
 
 
-def rigid_limit(scene: Scene, footing: Footing) -> tuple[float, bool]:
+def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     """Gap down to which the bodies hardly give way, and whether that will do.
 
     Returns
@@ -251,7 +250,7 @@ def rigid_limit(scene: Scene, footing: Footing) -> tuple[float, bool]:
     enough : bool
         Whether neither an impact nor the load is certain to press the teeth closer than that, nor do they begin there.
     """
-    grid, kappa, surfaces = _static(scene, footing, -4.0)
+    grid, kappa, surfaces = _static(scene, bounds, -4.0)
     profile, weights = grid.body[: grid.nodes], grid.body[grid.nodes : 2 * grid.nodes]
     work, last = 0.0, 0.0
     step = 0.125
@@ -259,10 +258,10 @@ def rigid_limit(scene: Scene, footing: Footing) -> tuple[float, bool]:
         pressure = np.zeros(grid.nodes)
         for table, scale in surfaces:
             pressure += scale * _loading(table, gap + profile)[0]
-        force = float(footing.longest * weights @ pressure)
+        force = float(bounds.longest * weights @ pressure)
         work += 0.5 * (force + last) * step * scene.surface.roughness
         last = force
         if abs(kappa[0] @ pressure) > RIGID_DEFLECTION:
-            deep_enough = work > footing.impact and force > footing.load
-            return float(gap) + step, bool(deep_enough and footing.start > gap + step)
-    return -4.0, footing.start > -4.0
+            deep_enough = work > bounds.impact and force > bounds.load
+            return float(gap) + step, bool(deep_enough and bounds.start > gap + step)
+    return -4.0, bounds.start > -4.0

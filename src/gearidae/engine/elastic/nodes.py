@@ -8,7 +8,7 @@ that of the rigid profiles and the deflection of both bodies under all the press
     h_i = g + s_i^2 + d_i, \qquad d_i = \sum_k \kappa_{ik}(\ell)\, p(h_k, \zeta_k), \qquad
     W = \ell \sum_i w_i\, p(h_i, \zeta_i),
 
-lengths in roughnesses, :math:`\ell` the length of the footprint, which changes along the path of contact with the
+lengths in roughnesses, :math:`\ell` the contact length, which changes along the path of contact with the
 radius R. The deflections d are unknowns of the integration beside the motion.
 
 The pressure of a closing contact is smooth. What stretched asperities add to it has a kink where they let go, a place
@@ -27,89 +27,45 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.contact.bulk import STENCIL
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import loading_value, stretched_value
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.tooth_pairs import material_stretch
+from gearidae.engine.elastic.rows import (
+    JOINED,
+    PRESSURE,
+    SHARE,
+    SLOPE,
+    STIFFNESS,
+    add_to_nodes,
+    first_node,
+    first_unknown,
+    influence_powers,
+    node_profile,
+    node_weights,
+    point_gaps,
+    point_weights,
+    row,
+    shares_of_nodes,
+    to_points,
+)
+from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 
 __all__ = [
-    "book_points",
     "farthest_joined",
-    "first_unknown",
-    "follow_nodes",
-    "history_size",
     "influence",
-    "join_nodes",
-    "meet_nodes",
+    "mark_out_of_reach",
     "middle_gap",
     "node_force",
     "node_rates",
     "node_residual",
-    "point_count",
-    "point_gaps",
-    "point_weights",
     "pressure_shares",
-    "row",
     "stiffness_matrix",
-    "unload",
 ]
 
-Floats = NDArray[np.float64]
-
-_MOVED = 1e-5  # roughnesses; over less than this the share of a node in the motion cannot be told
-_LARGEST_SHARE = 4.0
 _BEGUN = 1e-9  # roughnesses of stretch
 _NOTHING = 6.5  # standard deviations: beyond, heights have 1e-9 of the density in the middle
-
-
-@compiled
-def first_unknown(d: Floats, slot: int) -> int:
-    """Place in the state of a history's first deflection, that of the middle."""
-    motion = 2 if d[at.KIND] == at.ROLLER else 4
-    block = (slot - int(d[at.HISTORIES])) // int(d[at.HISTORY])
-    return motion + block * int(d[at.NODES])
-
-
-@compiled
-def point_count(nodes: int) -> int:
-    """Points of a contact with so many nodes, the nodes among them."""
-    return at.FINER * (nodes - 1) + 1
-
-
-@compiled
-def history_size(nodes: int) -> int:
-    """Numbers in the history of a pair with so many nodes."""
-    return at.NODE_ROWS + at.ROWS * nodes + at.POINT_ROWS * point_count(nodes)
-
-
-@compiled
-def row(d: Floats, slot: int, kind: int) -> int:
-    """Offset of a row of numbers, one per node or one per point, in a pair's history."""
-    n = int(d[at.NODES])
-    if kind < at.ROWS:
-        return slot + at.NODE_ROWS + kind * n
-    return slot + at.NODE_ROWS + at.ROWS * n + (kind - at.ROWS) * point_count(n)
-
-
-@compiled
-def point_weights(d: Floats) -> int:
-    """Offset of the weights of the points, between their profile and their shares of the nodes."""
-    n = int(d[at.NODES])
-    return int(d[at.GRID_AT]) + 2 * n + int(d[at.ORDERS]) * n * n + point_count(n)
-
-
-@compiled
-def point_gaps(d: Floats, slot: int, y: Floats, gap: float, out: Floats) -> None:
-    """Gaps at the points of a pair."""
-    n, weights = int(d[at.NODES]), point_weights(d)
-    points, first = point_count(n), first_unknown(d, slot)
-    _to_points(d, y[first : first + n], out)
-    for k in range(points):
-        out[k] += gap + d[weights - points + k]
 
 
 @compiled
@@ -119,295 +75,199 @@ def farthest_joined(middle: float) -> float:
 
 
 @compiled
-def _first_node(point: int, n: int) -> int:
-    """First of the nodes that have shares in a point."""
-    return min(max(point // at.FINER - STENCIL // 2 + 1, 0), n - STENCIL)
+def middle_gap(m: Model, k: int, y: Floats, gap: float) -> float:
+    """Gap in the middle of a contact: the pair's own, opened by the deflection of an elastic one."""
+    return gap if m.scene.nodes == 0 else gap + y[first_unknown(m, k)]
 
 
 @compiled
-def _to_points(d: Floats, values: Floats, out: Floats) -> None:
-    """Interpolate from nodes to points."""
-    n = values.size
-    points = point_count(n)
-    shares = point_weights(d) + points
-    for k in range(points):
-        first = _first_node(k, n)
-        total = 0.0
-        for i in range(STENCIL):
-            total += d[shares + STENCIL * k + i] * values[first + i]
-        out[k] = total
+def mark_out_of_reach(m: Model) -> None:
+    """Mark every pair as out of reach, before those within reach are evaluated."""
+    for k in range(m.scene.histories):
+        m.state.history[k].loaded = 0
 
 
 @compiled(makes_arrays=True)
-def _to_nodes(d: Floats, values: Floats, out: Floats) -> None:
-    """Add to the nodes what points have, such that both weigh the same."""
-    n = out.size
-    points, weights = point_count(n), point_weights(d)
-    total = np.zeros(n)
-    for k in range(points):
-        value = d[weights + k] * values[k]
-        if value != 0.0:
-            first = _first_node(k, n)
-            for i in range(STENCIL):
-                total[first + i] += d[weights + points + STENCIL * k + i] * value
-    node_weights = int(d[at.GRID_AT]) + n
-    for i in range(n):
-        out[i] += total[i] / d[node_weights + i]
-
-
-@compiled
-def middle_gap(d: Floats, slot: int, y: Floats, gap: float) -> float:
-    """Gap in the middle of a contact: the pair's own, opened by the deflection of an elastic one."""
-    return gap if d[at.NODES] == 0.0 else gap + y[first_unknown(d, slot)]
-
-
-@compiled
-def unload(d: Floats) -> None:
-    """Mark every pair as out of reach, before those within reach are evaluated."""
-    for k in range(int(d[at.TOTAL_SLOTS])):
-        d[int(d[at.HISTORIES]) + int(d[at.HISTORY]) * k + at.LOADED] = 0.0
-
-
-@compiled
 def node_force(
-    d: Floats, slot: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
+    m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> tuple[float, float]:
     """Force of one pair at given deflections and its slope in the pair's gap, scaled.
 
-    The pressures and their slopes are left in the pair's history. Within a step that has turned the pair round, the
+    The pressures and their slopes are left in the pair's rows. Within a step that has turned the pair round, the
     nodes' histories first go through the turning point, each by its share in the motion.
+
+    Parameters
+    ----------
+    m : Model
+    k : int
+        Index of the pair's history.
+    known : bool
+        Whether that is about this pair.
+    t : float
+        Time over tau.
+    y : ndarray
+        State.
+    gap, rate, length : float
+        The pair's gap, gap rate and contact length.
     """
-    n = int(d[at.NODES])
-    first, grid = first_unknown(d, slot), int(d[at.GRID_AT])
-    pressure, slope = row(d, slot, at.ROW_PRESSURE), row(d, slot, at.ROW_SLOPE)
-    stiff, weights = row(d, slot, at.ROW_STIFFNESS), point_weights(d)
-    loading, points = int(d[at.LOADING_AT]), point_count(n)
+    n, first = m.scene.nodes, first_unknown(m, k)
+    profile, weights = node_profile(m), node_weights(m)
+    pressure, slope, stiff = row(m, k, PRESSURE), row(m, k, SLOPE), row(m, k, STIFFNESS)
     for i in range(n):
-        h = gap + d[grid + i] + y[first + i]
-        d[pressure + i], d[slope + i] = loading_value(d, loading, h)
-    d[stiff : stiff + points] = 0.0
+        h = gap + profile[i] + y[first + i]
+        pressure[i], slope[i] = loading_value(m.tables, m.scene.loading_at, h)
+    stiff[:] = 0.0
     if known:
-        _add_stretched(d, slot, t, y, gap, rate)
+        _add_stretched(m, k, t, y, gap, rate)
     force = 0.0
     stiffness = 0.0
     for i in range(n):
-        force += d[grid + n + i] * d[pressure + i]
-        stiffness += d[grid + n + i] * d[slope + i]
-    for k in range(points):
-        stiffness += d[weights + k] * d[stiff + k]
-    d[slot + at.LOADED] = 1.0
-    d[slot + at.LENGTH] = length
+        force += weights[i] * pressure[i]
+        stiffness += weights[i] * slope[i]
+    finer = point_weights(m)
+    for i in range(m.scene.points):
+        stiffness += finer[i] * stiff[i]
+    m.state.history[k].loaded = 1
+    m.state.history[k].length = length
     return force * length, stiffness * length
 
 
 @compiled(makes_arrays=True)
-def _add_stretched(d: Floats, slot: int, t: float, y: Floats, gap: float, rate: float) -> None:
+def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: float) -> None:
     """Add the pressure of stretched asperities to that of the nodes, and note its slopes at the points."""
-    n, way = int(d[at.NODES]), d[slot + at.WAY]
-    turned = way * rate < 0.0
-    if not turned and way < 0.0 and d[slot + at.STRETCHED] == 0.0:
+    h = m.state.history[k]
+    turned = h.direction * rate < 0.0
+    if not turned and h.direction < 0.0 and h.stretched == 0:
         return
-    points, stiff = point_count(n), row(d, slot, at.ROW_STIFFNESS)
+    points, stiff = m.scene.points, row(m, k, STIFFNESS)
     # bodies that part stretch what is joined: where they seem not to, the errors of the deflection say so, and Newton's
     # iteration must not take the soft slope of closing on for that of what comes
-    opening = way > 0.0 and not turned
+    opening = h.direction > 0.0 and not turned
     gaps, turning, added = np.empty(points), np.empty(points), np.zeros(points)
-    point_gaps(d, slot, y, gap, gaps)
+    point_gaps(m, k, y, gap, gaps)
     if turned:
-        span = t - d[at.LAST_TIME]
-        back = extreme_gap(span, d[slot + at.LAST_GAP], d[slot + at.LAST_RATE], gap, rate) - gap
-        share = row(d, slot, at.ROW_SHARE)
-        _to_points(d, d[share : share + n], turning)
-        for k in range(points):
-            turning[k] = gaps[k] + turning[k] * back
-    for material in range(2):
-        limit = material_stretch(d, material)
+        back = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate) - gap
+        to_points(m, row(m, k, SHARE), turning)
+        for i in range(points):
+            turning[i] = gaps[i] + turning[i] * back
+    for material in range(MATERIALS):
+        limit = m.scene.material[material].stretch_limit
         if limit == 0.0:
             continue
-        record = at.MATERIALS + at.MATERIAL * material
-        table, scale = d[int(d[record + at.M_TABLE]) :], d[record + at.M_FORCE]
-        heights = row(d, slot, at.ROW_JOINED + material)
-        farthest = farthest_joined(d[heights])
-        for k in range(points):
-            joined = d[heights + k]
+        table = m.tables[m.scene.material[material].table_at :]
+        scale = m.scene.material[material].force_scale
+        heights = row(m, k, JOINED + material)
+        farthest = farthest_joined(heights[0])
+        for i in range(points):
+            joined = heights[i]
             if joined > farthest:
                 break
             if turned:
-                joined = joined_height(joined, turning[k], limit)
-            if gaps[k] > joined:
-                q, dq = stretched_value(table, gaps[k], joined)
-                added[k] += scale * q
-                d[stiff + k] += scale * dq
+                joined = joined_height(joined, turning[i], limit)
+            if gaps[i] > joined:
+                q, dq = stretched_value(table, gaps[i], joined)
+                added[i] += scale * q
+                stiff[i] += scale * dq
             elif opening:
-                d[stiff + k] += scale * stretched_value(table, gaps[k] + _BEGUN, gaps[k])[1]
-    pressure = row(d, slot, at.ROW_PRESSURE)
-    _to_nodes(d, added, d[pressure : pressure + n])
+                stiff[i] += scale * stretched_value(table, gaps[i] + _BEGUN, gaps[i])[1]
+    add_to_nodes(m, added, row(m, k, PRESSURE))
 
 
-@compiled
-def stiffness_matrix(d: Floats, slot: int, out: Floats) -> None:
+@compiled(makes_arrays=True)
+def stiffness_matrix(m: Model, k: int, out: Floats) -> None:
     """Slopes of a pair's pressures in the gaps of its nodes, after `node_force`.
 
     Parameters
     ----------
-    d : ndarray
-        See `layout`.
-    slot : int
-        The pair's history.
+    m : Model
+    k : int
+        Index of the pair's history.
     out : ndarray, shape (n, n)
-        ``out[k, j]`` becomes the slope of the pressure at k in the gap at j.
+        ``out[i, j]`` becomes the slope of the pressure at i in the gap at j.
     """
-    n = int(d[at.NODES])
-    points, weights, stiff = point_count(n), point_weights(d), row(d, slot, at.ROW_STIFFNESS)
-    slope, node_weights = row(d, slot, at.ROW_SLOPE), int(d[at.GRID_AT]) + n
+    n = m.scene.nodes
+    finer, shares, weights = point_weights(m), shares_of_nodes(m), node_weights(m)
+    slope, stiff = row(m, k, SLOPE), row(m, k, STIFFNESS)
     out[:] = 0.0
-    for k in range(points):
-        stiffness = d[weights + k] * d[stiff + k]
+    for point in range(m.scene.points):
+        stiffness = finer[point] * stiff[point]
         if stiffness != 0.0:
-            first, shares = _first_node(k, n), weights + points + STENCIL * k
+            first, own = first_node(point, n), STENCIL * point
             for i in range(STENCIL):
-                factor = d[shares + i] * stiffness
+                factor = shares[own + i] * stiffness
                 for j in range(STENCIL):
-                    out[first + i, first + j] += factor * d[shares + j]
-    for k in range(n):
-        for j in range(n):
-            out[k, j] /= d[node_weights + k]
-        out[k, k] += d[slope + k]
-
-
-@compiled(makes_arrays=True)
-def pressure_shares(d: Floats, slot: int, out: Floats) -> None:
-    """Slopes of the nodes' pressures in the pair's gap along its last motion, after `node_force`."""
-    n = int(d[at.NODES])
-    share, slope, stiff = (
-        row(d, slot, at.ROW_SHARE),
-        row(d, slot, at.ROW_SLOPE),
-        row(d, slot, at.ROW_STIFFNESS),
-    )
-    moved = np.empty(point_count(n))
-    _to_points(d, d[share : share + n], moved)
-    for k in range(moved.size):
-        moved[k] *= d[stiff + k]
+                    out[first + i, first + j] += factor * shares[own + j]
     for i in range(n):
-        out[i] = d[slope + i] * d[share + i]
-    _to_nodes(d, moved, out)
+        for j in range(n):
+            out[i, j] /= weights[i]
+        out[i, i] += slope[i]
 
 
 @compiled(makes_arrays=True)
-def influence(d: Floats, length: float, out: Floats) -> None:
+def pressure_shares(m: Model, k: int, out: Floats) -> None:
+    """Slopes of the nodes' pressures in the pair's gap along its last motion, after `node_force`."""
+    share, slope, stiff = row(m, k, SHARE), row(m, k, SLOPE), row(m, k, STIFFNESS)
+    moved = np.empty(m.scene.points)
+    to_points(m, share, moved)
+    for i in range(moved.size):
+        moved[i] *= stiff[i]
+    for i in range(m.scene.nodes):
+        out[i] = slope[i] * share[i]
+    add_to_nodes(m, moved, out)
+
+
+@compiled(makes_arrays=True)
+def influence(m: Model, length: float, out: Floats) -> None:
     """Influence coefficients, column by column.
 
     Parameters
     ----------
-    d : ndarray
-        See `layout`.
+    m : Model
     length : float
-        Length of the footprint.
+        Contact length.
     out : ndarray, shape (n, n)
         ``out[k, i]`` becomes ``kappa_ik``.
     """
-    n, orders = int(d[at.NODES]), int(d[at.ORDERS])
-    first = int(d[at.GRID_AT]) + 2 * n
-    kappa = d[first : first + orders * n * n].reshape(orders, n, n)
-    x = (length - d[at.LENGTH_MIDDLE]) / d[at.LENGTH_HALF]
+    n, orders = m.scene.nodes, m.scene.orders
+    kappa = influence_powers(m)
+    x = (length - m.scene.length_middle) / m.scene.length_half_range
     for k in range(n):
         for i in range(n):
             out[k, i] = kappa[orders - 1, k, i]
-        for m in range(orders - 2, -1, -1):
+        for order in range(orders - 2, -1, -1):
             for i in range(n):
-                out[k, i] = out[k, i] * x + kappa[m, k, i]
+                out[k, i] = out[k, i] * x + kappa[order, k, i]
 
 
 @compiled(makes_arrays=True)
-def node_residual(d: Floats, y: Floats, out: Floats) -> None:
+def node_residual(m: Model, y: Floats, out: Floats) -> None:
     """Equations of the nodes, from the pressures that the forces have just left: deflections are those they cause."""
-    n, orders = int(d[at.NODES]), int(d[at.ORDERS])
-    start = int(d[at.GRID_AT]) + 2 * n
-    kappa = d[start : start + orders * n * n].reshape(orders, n, n)
-    for block in range(int(d[at.TOTAL_SLOTS])):
-        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * block
-        first = first_unknown(d, slot)
+    n, orders = m.scene.nodes, m.scene.orders
+    kappa = influence_powers(m)
+    for history in range(m.scene.histories):
+        first = first_unknown(m, history)
         own = out[first : first + n]
         for i in range(n):
             own[i] = y[first + i]
-        if d[slot + at.LOADED] == 0.0:
+        if m.state.history[history].loaded == 0:
             continue
-        pressure = row(d, slot, at.ROW_PRESSURE)
-        x = (d[slot + at.LENGTH] - d[at.LENGTH_MIDDLE]) / d[at.LENGTH_HALF]
+        pressure = row(m, history, PRESSURE)
+        x = (m.state.history[history].length - m.scene.length_middle) / m.scene.length_half_range
         power = 1.0
-        for m in range(orders):
+        for order in range(orders):
             for k in range(n):
-                p = power * d[pressure + k]
+                p = power * pressure[k]
                 if p != 0.0:
                     for i in range(n):
-                        own[i] -= kappa[m, k, i] * p
+                        own[i] -= kappa[order, k, i] * p
             power *= x
 
 
-@compiled
-def node_rates(d: Floats, yp: Floats) -> None:
-    """Rates of the deflections at an accepted time, as far as the nodes' shares in the last motion tell."""
-    n = int(d[at.NODES])
-    for block in range(int(d[at.TOTAL_SLOTS])):
-        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * block
-        first, share = first_unknown(d, slot), row(d, slot, at.ROW_SHARE)
-        near = d[slot + at.PAIR] == d[slot + at.PAIR] and d[slot + at.LAST_GAP] < d[at.CUTOFF]
-        for i in range(n):
-            yp[first + i] = (d[share + i] - 1.0) * d[slot + at.LAST_RATE] if near else 0.0
-
-
-# -- histories -------------------------------------------------------------------------------------------------
-
-
-@compiled
-def meet_nodes(d: Floats, slot: int, y: Floats, gap: float) -> None:
-    """Start the histories along a contact: nothing is joined yet."""
-    n, first, grid = int(d[at.NODES]), first_unknown(d, slot), int(d[at.GRID_AT])
-    before, share = row(d, slot, at.ROW_GAP), row(d, slot, at.ROW_SHARE)
-    for i in range(n):
-        d[before + i] = gap + d[grid + i] + y[first + i]
-        d[share + i] = 1.0
-    d[slot + at.STRETCHED] = 0.0
-    for material in range(2):
-        joined = row(d, slot, at.ROW_JOINED + material)
-        point_gaps(d, slot, y, gap, d[joined : joined + point_count(n)])
-        book_points(d, slot, material)
-
-
-@compiled
-def follow_nodes(d: Floats, slot: int, y: Floats, gap: float) -> None:
-    """Note the nodes' gaps at an accepted time, before the pair's own, and how far they have moved with it."""
-    n, first, grid = int(d[at.NODES]), first_unknown(d, slot), int(d[at.GRID_AT])
-    before, share = row(d, slot, at.ROW_GAP), row(d, slot, at.ROW_SHARE)
-    moved = gap - d[slot + at.LAST_GAP]
-    for i in range(n):
-        h = gap + d[grid + i] + y[first + i]
-        if abs(moved) > _MOVED:
-            d[share + i] = min(max((h - d[before + i]) / moved, 0.0), _LARGEST_SHARE)
-        d[before + i] = h
-
-
 @compiled(makes_arrays=True)
-def join_nodes(d: Floats, slot: int, y: Floats, gap: float) -> None:
-    """Take the joined heights at a turning point."""
-    points = point_count(int(d[at.NODES]))
-    gaps = np.empty(points)
-    point_gaps(d, slot, y, gap, gaps)
-    d[slot + at.STRETCHED] = 0.0
-    for material in range(2):
-        limit = material_stretch(d, material)
-        joined = row(d, slot, at.ROW_JOINED + material)
-        for k in range(points if limit > 0.0 else 0):
-            d[joined + k] = joined_height(d[joined + k], gaps[k], limit)
-            if gaps[k] > d[joined + k]:
-                d[slot + at.STRETCHED] = 1.0
-        book_points(d, slot, material)
-
-
-@compiled
-def book_points(d: Floats, slot: int, material: int) -> None:
-    """Note the energy of what is joined at the points, which changes when the joined heights do."""
-    joined, booked = row(d, slot, at.ROW_JOINED + material), row(d, slot, at.ROW_BOOKED + material)
-    joining, number = d[at.ENERGIES + at.ENERGY * material + at.E_JOINING], int(d[at.NUMBER_AT])
-    for k in range(point_count(int(d[at.NODES])) if joining != 0.0 else 0):
-        d[booked + k] = -joining * loading_value(d, number, d[joined + k])[0]
+def node_rates(m: Model, yp: Floats) -> None:
+    """Rates of the deflections at an accepted time, as far as the nodes' shares in the last motion tell."""
+    for k in range(m.scene.histories):
+        first, share, h = first_unknown(m, k), row(m, k, SHARE), m.state.history[k]
+        near = h.pair != EMPTY and h.gap < m.scene.cutoff
+        for i in range(m.scene.nodes):
+            yp[first + i] = (share[i] - 1.0) * h.gap_rate if near else 0.0

@@ -2,41 +2,55 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from numba import carray, types  # type: ignore[attr-defined]
+from numba.np.numpy_support import from_dtype
 
 from gearidae.compiled import compiled_callback
-from gearidae.engine.elastic import calls as calls
-from gearidae.engine.elastic import nodes
+from gearidae.engine.elastic import calls, histories, nodes
 from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_length_force, nodes_stored
-from gearidae.engine.sundials.memory import MANY
+from gearidae.engine.model.state import SCENE, STATE, WORK, Model
 
 __all__ = ["answer"]
 
-_INT, _REAL = types.int64, types.float64
-_REALS = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+_INT = types.int64
+_REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+_RECORDS = [types.CPointer(from_dtype(dtype)) for dtype in (SCENE, STATE, WORK)]  # type: ignore[no-untyped-call]
+_ARRAYS = [_REALS, _INT] * 4
 
 
-@compiled_callback(types.void(_INT, _REALS, _INT, _INT, _REAL, _REALS, _REAL, _REAL, _REAL, _REALS, _REALS))
-def answer(question, scene, slot, known, t, state, gap, rate, length, filled, answers):  # type: ignore[no-untyped-def]
-    """Answer one of the questions of `node_calls`, in two numbers or in the vector to be filled."""
-    d, y, out = carray(scene, (MANY,)), carray(state, (MANY,)), carray(filled, (MANY,))
+@compiled_callback(types.void(*_RECORDS, *_ARRAYS, *calls.QUESTION, _REALS))
+def answer(  # type: ignore[no-untyped-def]
+    scene, state, work, tables, n_tables, rows, n_rows, motion, n_motion, filled, n_filled,
+    kind, k, known, t, gap, rate, length, answers,
+):  # fmt: skip
+    """Answer one of the questions of `calls`, in two numbers or in the vector to be filled."""
+    m = Model(
+        carray(scene, (1,))[0],
+        carray(state, (1,))[0],
+        carray(work, (1,))[0],
+        carray(tables, (n_tables,)),
+        carray(rows, (n_rows,)),
+    )
+    y, out = carray(motion, (n_motion,)), carray(filled, (n_filled,))
     two = carray(answers, (2,))
     two[0] = two[1] = 0.0
-    if question == calls.FORCE:
-        two[0], two[1] = nodes.node_force(d, slot, known != 0, t, y, gap, rate, length)
-    elif question == calls.RESIDUAL:
-        nodes.node_residual(d, y, out)
-    elif question == calls.RATES:
-        nodes.node_rates(d, out)
-    elif question == calls.MEET:
-        nodes.meet_nodes(d, slot, y, gap)
-    elif question == calls.FOLLOW:
-        nodes.follow_nodes(d, slot, y, gap)
-    elif question == calls.JOIN:
-        nodes.join_nodes(d, slot, y, gap)
-    elif question == calls.STORED:
-        two[0] = nodes_stored(d, slot, t, y, gap, rate, length)
-    elif question == calls.JOINING_LOSS:
-        two[0] = nodes_joining_loss(d, slot, y, gap)
+    if kind == calls.FORCE:
+        two[0], two[1] = nodes.node_force(m, k, known != 0, t, y, gap, rate, length)
+    elif kind == calls.RESIDUAL:
+        nodes.node_residual(m, y, out)
+    elif kind == calls.RATES:
+        nodes.node_rates(m, out)
+    elif kind == calls.INIT:
+        histories.init_nodes(m, k, y, gap)
+    elif kind == calls.FOLLOW:
+        histories.follow_nodes(m, k, y, gap)
+    elif kind == calls.JOIN:
+        histories.join_nodes(m, k, y, gap)
+    elif kind == calls.STORED:
+        two[0] = nodes_stored(m, k, t, y, gap, rate, length)
+    elif kind == calls.JOINING_LOSS:
+        two[0] = nodes_joining_loss(m, k, y, gap)
     else:
-        two[0], two[1] = nodes_length_force(d, slot, t, y, gap, rate, length)
+        two[0], two[1] = nodes_length_force(m, k, t, y, gap, rate, length)

@@ -6,26 +6,20 @@ two, which leaves two equations for the corrections of v and w; a roller keeps o
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gearidae.compiled import compiled
-from gearidae.engine.model import layout as at
 from gearidae.engine.model.residual import held, motion
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 
 __all__ = ["correct"]
 
-Floats = NDArray[np.float64]
-
 
 @compiled(inline=True)
-def correct(d: Floats, t: float, cj: float, y: Floats, yp: Floats, delta: Floats) -> float:
+def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats) -> float:
     """Solve ``(dF/dy + cj dF/dy') delta = -F``, the static error's own slopes left out as in `residual.jacobian`.
 
     Parameters
     ----------
-    d : ndarray
-        The scene, see `layout`.
+    m : Model
     t, cj : float
         Time over tau, and what the rates change by with the state.
     y, yp, delta : ndarray, shape (4,) or (2,)
@@ -37,19 +31,19 @@ def correct(d: Floats, t: float, cj: float, y: Floats, yp: Floats, delta: Floats
         Squared frequency of the motion, over 1 / tau^2: an upper estimate from the slopes of the forces, with the rate
         at which resistance slows the motion down added at twice its value.
     """
-    force_u, force_phase, relief_u, relief_phase = motion(d, t, y, yp, delta)
+    force_u, force_phase, relief_u, relief_phase = motion(m, t, y, yp, delta)
     step = 1.0 / cj
-    of_u, of_v = delta[at.U], delta[at.V]
-    if d[at.KIND] == at.ROLLER:
-        slope = d[at.GEAR_SHARE] * force_u
-        delta[at.V] = -(of_v + slope * step * of_u) / (cj - slope * step)
-        delta[at.U] = (delta[at.V] - of_u) * step
+    of_u, of_v = delta[U], delta[V]
+    if m.scene.kind == ROLLER:
+        slope = m.scene.gear_inverse_mass * force_u
+        delta[V] = -(of_v + slope * step * of_u) / (cj - slope * step)
+        delta[U] = (delta[V] - of_u) * step
         return abs(slope)
-    of_phase, of_w = delta[at.PHASE], delta[at.W]
-    a1, turning, damping = d[at.PINION_SHARE], d[at.PHASE_RATE], d[at.DAMPING]
-    a2 = 0.0 if held(d) else d[at.GEAR_SHARE]
+    of_phase, of_w = delta[PHASE], delta[W]
+    a1, turning, damping = m.scene.pinion_inverse_mass, m.scene.phase_rate, m.scene.damping
+    a2 = 0.0 if held(m) else m.scene.gear_inverse_mass
     torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase
-    drag = 2.0 * d[at.DRAG] * abs(y[at.W])
+    drag = 2.0 * m.scene.drag * abs(y[W])
     # du = (dv - of_u) step and dphase = (turning dw - of_phase) step, put into the rows of v and w
     v_v = cj + a1 * (damping + force_u * step)
     v_w = cj + a1 * force_phase * turning * step
@@ -58,9 +52,9 @@ def correct(d: Floats, t: float, cj: float, y: Floats, yp: Floats, delta: Floats
     right_v = a1 * (force_u * of_u + force_phase * of_phase) * step - of_v
     right_w = -a2 * (torque_u * of_u + torque_phase * of_phase) * step - of_w
     share = 1.0 / (v_v * w_w - v_w * w_v)
-    delta[at.V] = (right_v * w_w - v_w * right_w) * share
-    delta[at.W] = (v_v * right_w - w_v * right_v) * share
-    delta[at.U] = (delta[at.V] - of_u) * step
-    delta[at.PHASE] = (turning * delta[at.W] - of_phase) * step
+    delta[V] = (right_v * w_w - v_w * right_w) * share
+    delta[W] = (v_v * right_w - w_v * right_v) * share
+    delta[U] = (delta[V] - of_u) * step
+    delta[PHASE] = (turning * delta[W] - of_phase) * step
     slowing = 2.0 * ((a1 + a2) * damping + a2 * drag)
     return a1 * abs(force_u) + a2 * abs(torque_u) + slowing * slowing

@@ -5,27 +5,32 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
 from gearidae.records import Ledger
 
 __all__ = [
     "BLOCK_EVENTS",
     "BLOCK_ROWS",
     "BLOCK_STEPS",
-    "CODES",
+    "BOUND_EXCEEDED",
+    "CHATTER",
     "CONVERGENCE_FAILURES_HIGH",
     "Block",
     "Ending",
+    "Output",
     "Tally",
     "ending_of_flag",
+    "fill_tally",
     "sample_time",
 ]
 
-Floats = NDArray[np.float64]
+COUNTERS = tuple(name for name in PROGRESS.names or () if name != "next_sample")
+"""Work counters that a run keeps."""
 
 BLOCK_ROWS = 16_384
 """Samples in a full block."""
@@ -76,7 +81,7 @@ class Ending(Enum):
 
 CONVERGENCE_FAILURES_HIGH = 40
 """Failures of Newton's iteration in one step, each of which quarters it: a step out of long flight lands in a tooth."""
-CODES = (1, 2)
+CHATTER, BOUND_EXCEEDED = 1, 2
 """What a driver may end a run with of its own: crowded events, a gap beyond the model's bound."""
 
 _FLAGS = {
@@ -84,13 +89,13 @@ _FLAGS = {
     -2: Ending.TOO_ACCURATE,
     -3: Ending.STEP_UNDERFLOW,
     -4: Ending.NO_CONVERGENCE,
-    1: Ending.CHATTER,
+    CHATTER: Ending.CHATTER,
 }
 
 
 def ending_of_flag(flag: int, elastic: bool = False) -> Ending:
-    """Name an error flag of IDA's (negative) or one of `CODES`."""
-    if flag == CODES[1]:
+    """Name an error flag of IDA's (negative) or one of the driver's own."""
+    if flag == BOUND_EXCEEDED:
         return Ending.TOO_DEEP if elastic else Ending.DEFLECTION
     return _FLAGS.get(flag, Ending.SOLVER_FAILURE)
 
@@ -146,6 +151,54 @@ class Tally:
         if self.fold_gap is not None:
             return f"{self.ending.message}, at a gap of {self.fold_gap:.6g} m"
         return self.ending.message
+
+
+def fill_tally(tally: Tally, progress: Record) -> None:
+    """Take a driver's counters over."""
+    for name in COUNTERS:
+        setattr(tally, name, int(progress[name]))
+
+
+class Output(NamedTuple):
+    """Samples and events of a block, before it is handed out.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (BLOCK_ROWS, columns)
+    events : ndarray, shape (BLOCK_EVENTS, 5)
+    """
+
+    rows: Floats
+    events: Floats
+
+    @classmethod
+    def empty(cls, columns: int) -> Output:
+        """Room for a block."""
+        return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, 5)))
+
+    def block(
+        self, m: Model, time: float, checkpoint: Floats | None = None, ledger: Ledger | None = None
+    ) -> Block:
+        """Hand out what there is, and begin anew.
+
+        Parameters
+        ----------
+        m : Model
+        time : float
+            Reached, over tau.
+        checkpoint, ledger
+            See `Block`.
+        """
+        driver = m.work.driver
+        block = Block(
+            self.rows[: driver.rows].copy(),
+            self.events[: driver.events].copy(),
+            time * float(m.scene.time_unit),
+            checkpoint,
+            ledger,
+        )
+        driver.rows = driver.events = 0
+        return block
 
 
 @compiled

@@ -14,23 +14,15 @@ tolerance: what it leaves is no smooth function of time, and steps and orders ar
 from __future__ import annotations
 
 import math
-from typing import Final
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.correction import correct
-from gearidae.engine.integrate.step_control import furthest_back, overshoots, set_pace
-from gearidae.engine.model import layout as at
-from gearidae.engine.sundials import memory as ptr
-from gearidae.engine.sundials import names as sun
+from gearidae.engine.integrate.step_control import below_gap_bound, control_step, max_stable_order
+from gearidae.engine.model.state import Floats, Model
 
-__all__ = ["iterate", "make_solver"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+__all__ = ["Attempt", "iterate"]
 
 MOST: Final = 4  # corrections
 SLOWEST: Final = 0.9  # a correction this large, over the last, is called divergence
@@ -41,109 +33,102 @@ LEAST: Final = 1e-4  # of that estimate
 FAILED: Final = 902  # what SUNDIALS answers with shorter steps
 
 
-@compiled
-def make_solver(context: int, desk: Floats, where: Ints, functions: Ints) -> int:
-    """Make a nonlinear solver of SUNDIALS that iterates here.
+class Attempt(NamedTuple):
+    """A step that IDA tries, as it lets a nonlinear solver see it.
 
-    Parameters
+    Attributes
     ----------
-    context : int
-        SUNDIALS' context.
-    desk : ndarray, shape (DESK,)
-        See `gearidae.engine.integrate.adams`; must outlive the solver.
-    where : ndarray of int64, shape (5,)
-        From `gearidae.engine.sundials.names.newton_places`.
-    functions : ndarray of int64, shape (3,)
-        Addresses of the functions that answer for the type, iterate, and are told of the equations.
-    """
-    record = sun.SUNNonlinSolNewEmpty(context)
-    fields = ptr.words(record)
-    fields[where[0]] = desk.ctypes.data
-    ptr.replace(record, where[1:], functions)
-    return record
-
-
-@compiled(inline=True)
-def iterate(
-    n: int,
-    desk: Floats,
-    d: Floats,
-    t: float,
-    step: float,
-    cj: float,
-    predicted: Floats,
-    rates: Floats,
-    correction: Floats,
-    y: Floats,
-    yp: Floats,
-    delta: Floats,
-    weights: Floats,
-    tolerance: float,
-) -> int:
-    """Correct a prediction until what is left is far below the tolerance.
-
-    Parameters
-    ----------
-    n : int
-        Unknowns.
-    desk : ndarray, shape (DESK,)
-        See `gearidae.engine.integrate.adams`.
-    d : ndarray
-        The scene, see `layout`.
     t, step : float
         End and length of the step, over tau. The length is no difference of times, which rounding would spoil.
-    cj, predicted, rates : float, ndarray of shape (n,)
-        IDA's leading coefficient, the state to start from and IDA's rates for it.
+    cj : float
+        IDA's leading coefficient.
+    tolerance : float
+        Of Newton's iteration.
+    predicted, rates : ndarray, shape (n,)
+        The state to start from and IDA's rates for it.
     correction, y, yp : ndarray, shape (n,)
         The sum of all corrections, zero at first, and state and rates with it.
     delta : ndarray, shape (n,)
         Work space.
     weights : ndarray, shape (n,)
         Of the norm; set to those by which IDA is to judge the step, see `gearidae.engine.integrate.step_control`.
-    tolerance : float
+    """
+
+    t: float
+    step: float
+    cj: float
+    tolerance: float
+    predicted: Floats
+    rates: Floats
+    correction: Floats
+    y: Floats
+    yp: Floats
+    delta: Floats
+    weights: Floats
+
+
+@compiled(inline=True)
+def iterate(n: int, m: Model, attempt: Attempt) -> int:
+    """Correct a prediction until what is left is far below the tolerance.
+
+    Parameters
+    ----------
+    n : int
+        Unknowns.
+    m : Model
+    attempt : Attempt
 
     Returns
     -------
     int
         0, or what SUNDIALS has to be told.
     """
-    by_adams = desk[adams.ADAMS] != 0.0
+    a, cj, correction, predicted = m.work.adams, attempt.cj, attempt.correction, attempt.predicted
+    by_adams = a.used != 0
     if by_adams:
-        first = int(d[at.WEIGHTS_AT])
+        first = m.scene.error_weights_at
         for j in range(n):  # an attempt that has failed has left others
-            weights[j] = d[first + j]
-        cj = adams.rates_at_end(n, desk, step, furthest_back(desk, step), predicted, correction)
+            attempt.weights[j] = m.rows[first + j]
+        cj = adams.rates_at_end(n, a, attempt.step, max_stable_order(a, attempt.step), predicted, correction)
     else:
-        desk[adams.USED] = 0.0
-        desk[adams.SINCE] += 1.0
+        a.order_used = 0
+        a.attempts += 1
         for j in range(n):
-            desk[adams.PREDICTED_RATES + j] = rates[j]
-    desk[adams.NEW_STEP] = step
-    desk[adams.GAIN] *= GROWTH
+            a.predicted_rates[j] = attempt.rates[j]
+    a.new_step = attempt.step
+    a.contraction_rate *= GROWTH
     last = math.inf
     for _ in range(MOST):
-        for j in range(n):
-            y[j] = predicted[j] + correction[j]
-            yp[j] = cj * correction[j] + desk[adams.PREDICTED_RATES + j]
-        desk[adams.FASTEST] = correct(d, t, cj, y, yp, delta)
-        desk[adams.EVALUATIONS] += 1.0
-        for j in range(n):
-            correction[j] += delta[j]
-        norm = math.sqrt(adams.squares(n, delta, 0, weights) / n)
+        norm = _correct(n, m, attempt, cj)
         if last < math.inf:
             if norm > SLOWEST * last:
                 break
-            desk[adams.GAIN] = max(norm / last, LEAST)
-        if norm <= NOTHING * tolerance or desk[adams.GAIN] * norm <= SHARE * tolerance:
+            a.contraction_rate = max(norm / last, LEAST)
+        converged = a.contraction_rate * norm <= SHARE * attempt.tolerance
+        if norm <= NOTHING * attempt.tolerance or converged:
             for j in range(n):
-                desk[adams.NEW_STATE + j] = predicted[j] + correction[j]
-                desk[adams.NEW_RATES + j] = cj * correction[j] + desk[adams.PREDICTED_RATES + j]
-            if overshoots(d, desk):
+                a.new_state[j] = predicted[j] + correction[j]
+                a.new_differences[0, j] = cj * correction[j] + a.predicted_rates[j]
+            if below_gap_bound(m, a):
                 return FAILED
             if by_adams:
-                set_pace(n, desk, d, step, correction, weights)
+                control_step(n, m, attempt.step, correction, attempt.weights)
             return 0
         last = norm
-    desk[adams.FAILURES] += 1.0
-    desk[adams.GAIN] = 1.0
+    a.failures += 1
+    a.contraction_rate = 1.0
     return FAILED
+
+
+@compiled(inline=True)
+def _correct(n: int, m: Model, attempt: Attempt, cj: float) -> float:
+    """Make one correction; its norm."""
+    a = m.work.adams
+    for j in range(n):
+        attempt.y[j] = attempt.predicted[j] + attempt.correction[j]
+        attempt.yp[j] = cj * attempt.correction[j] + a.predicted_rates[j]
+    a.omega_sq = correct(m, attempt.t, cj, attempt.y, attempt.yp, attempt.delta)
+    a.evaluations += 1
+    for j in range(n):
+        attempt.correction[j] += attempt.delta[j]
+    return math.sqrt(adams.weighed_squares(n, attempt.delta, attempt.weights) / n)

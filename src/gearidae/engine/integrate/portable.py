@@ -2,8 +2,8 @@
 
 Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. The formulas are
 IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.integrate.adams`); histories and
-events are
-dealt with as in the native driver. Between steps it interpolates for itself, because the API has no dense output.
+events are dealt with as in the native driver (`gearidae.engine.integrate.epilogue`). Between steps it interpolates for
+itself, because the API has no dense output.
 """
 
 from __future__ import annotations
@@ -12,166 +12,149 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from sksundae.ida import IDA
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.elastic.static_solve import fold_gap
-from gearidae.engine.energy.balance import enter, follow
-from gearidae.engine.events.events import (
-    CROWDED,
-    EVENTS_AT_ONCE,
-    RESTART,
-    accept,
-    guard,
-    handle,
-    ledger_can_wait,
-    pass_knot,
-)
+from gearidae.engine.energy.balance import restart_quadrature
+from gearidae.engine.events.events import guard
+from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate.driver import (
-    BLOCK_EVENTS,
     BLOCK_ROWS,
+    BOUND_EXCEEDED,
     CHECKPOINT_STEPS,
-    CODES,
     CONVERGENCE_FAILURES_HIGH,
     Block,
     Ending,
+    Output,
     Tally,
     ending_of_flag,
+    fill_tally,
     sample_time,
 )
-from gearidae.engine.integrate.start import PHASE_HIGH, first_step, rebase, set_rates
-from gearidae.engine.model import layout as at
+from gearidae.engine.integrate.epilogue import ROOT, STOP, finish_step, has_room, prepare_restart
+from gearidae.engine.integrate.start import first_step, set_rates
 from gearidae.engine.model.observe import observe
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.residual import jacobian, residual
-from gearidae.engine.model.tooth_pairs import in_flight
-from gearidae.records import Ledger
+from gearidae.engine.model.state import Floats, Model, Record
 
 __all__ = ["run"]
 
-Floats = NDArray[np.float64]
-
 _BLOCK_STEPS = 5_000  # some tenths of a second
-_TSTOP, _ROOT = 1, 2  # flags of IDA's
 _POINTS = 6  # returns that an interpolation looks back over
 _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third point
-
-
-# The run's counters, kept in checkpoints.
-_NEXT_SAMPLE, _STEPS, _RESIDUALS, _JACOBIANS, _GUARD_CALLS, _RESTARTS, _FLIGHT, COUNTERS = range(8)
 
 
 def run(
     problem: Problem, rtol: float, total: int, tally: Tally, resume: Floats | None = None
 ) -> Iterator[Block]:
     """Run a problem, block by block; see `gearidae.engine.integrate.native.run`."""
-    d, y, t = problem.data, problem.start.copy(), 0.0
-    yp = np.zeros_like(y)
-    problem.set_tolerance(rtol)
-    counters = np.zeros(COUNTERS, np.int64)
-    output = _Output(problem, total)
-    if resume is not None:
-        t = problem.restore(resume, y, counters)
-        output.next_sample = int(counters[_NEXT_SAMPLE])
-        tally.steps, tally.residual_evaluations, tally.jacobian_evaluations = map(int, counters[1:4])
-        tally.guard_evaluations, tally.restarts, tally.flight_steps = map(int, counters[4:])
-    else:
-        output.sample(t, y, _Trail(t, y, y))
-    knots = [*problem.knots[int(d[at.NEXT_KNOT]) :], problem.end]
-    solver, trail = _start(problem, rtol, t, y, knots[0])
-    since = 0
-    elastic = d[at.NODES] > 0.0
-    while knots:
-        result = solver.step(knots[-1], method="onestep", tstop=knots[0])
-        since += 1
-        flag = result.status
-        if flag < 0 or not np.isfinite(result.y).all():
-            tally.ending = ending_of_flag(flag) if flag < 0 else Ending.NOT_FINITE
-            if elastic:
-                tally.note_fold(fold_gap(d, t) * d[at.SIGMA])
+    m = problem.prepare(rtol, total)
+    y, out = problem.start.copy(), Output.empty(len(problem.columns))
+    driver, progress = m.work.driver, m.state.progress
+    driver.time = 0.0 if resume is None else problem.restore(resume, y)
+    solver = _Solver(problem, m, y)
+    if resume is None:
+        yield from _samples(m, out, y, solver.trail)
+    solver.start(y)
+    between = (np.zeros_like(y), np.zeros_like(y))
+    while driver.done == 0 and driver.error == 0:
+        flag, y, yp = solver.step()
+        if driver.error != 0:
             break
-        t, y, yp = result.t, result.y, result.yp
-        trail.add(t, y, yp)
-        tally.steps += flag != _ROOT
-        yield from output.sample(t, y, trail)
-        accept(d, t, y)
-        if flag != _ROOT or not ledger_can_wait(d, t, y):
-            follow(d, t, y, yp, flag != 0 or d[at.PASSED] != 0.0)
-        tally.flight_steps += in_flight(d)
-        restart = d[at.KIND] == at.GEARS and abs(y[at.PHASE]) > PHASE_HIGH
-        if flag == _ROOT:
-            solver.forget_events()
-            output.event_count, action = handle(d, t, y, output.events, output.event_count)
-            restart |= action == RESTART
-            if action == CROWDED:
-                tally.ending = Ending.CHATTER
-                break
-        elif flag == _TSTOP:
-            knots.pop(0)
-            if knots:
-                output.event_count = pass_knot(d, t, output.events, output.event_count)
-                restart = True
-        if d[at.PASSED] != 0.0:
-            tally.ending = ending_of_flag(CODES[1], elastic)
-            tally.restarts += 1
-            solver.count(tally)
-            yield output.flush(t, problem.ledger(t, y, yp), _checkpoint(problem, t, y, output, tally))
-            return
-        checkpoint = since >= CHECKPOINT_STEPS
-        if (restart or checkpoint) and knots:
-            follow(d, t, y, yp, True)
-            rebase(d, y)
-            tally.restarts += 1
-            solver.count(tally)
+        yield from _samples(m, out, y, solver.trail)
+        if not has_room(m, out.events):
+            yield out.block(m, driver.time)
+        afresh = finish_step(m, y, yp, between, flag, out.events)
+        if driver.error == BOUND_EXCEEDED:
+            progress.restarts += 1
+        checkpoint = driver.since >= CHECKPOINT_STEPS
+        if (afresh or checkpoint) and driver.done == 0 and driver.error == 0:
+            prepare_restart(m, y, yp)
+            solver.count()
             if checkpoint:
-                since = 0
-                yield output.flush(t, problem.ledger(t, y, yp), _checkpoint(problem, t, y, output, tally))
-            solver, trail = _start(problem, rtol, t, y, knots[0])
-        elif since % _BLOCK_STEPS == 0 or output.event_count > BLOCK_EVENTS - EVENTS_AT_ONCE:
-            yield output.flush(t, problem.ledger(t, y, yp))
-    solver.count(tally)
-    yield output.flush(
-        t, problem.ledger(t, y, yp), None if knots else _checkpoint(problem, t, y, output, tally)
-    )
+                driver.since = 0
+                yield _ready(problem, m, out, tally, y, yp)
+            solver.start(y)
+        elif driver.since % _BLOCK_STEPS == 0:
+            fill_tally(tally, progress)
+            yield out.block(m, driver.time, None, problem.ledger(driver.time, y, yp))
+    solver.count()
+    fill_tally(tally, progress)
+    tally.ending = solver.ending or ending_of_flag(int(driver.error), bool(m.scene.nodes > 0))
+    if driver.error < 0 and m.scene.nodes > 0:
+        tally.note_fold(fold_gap(m, driver.time) * m.scene.length_unit)
+    if driver.done != 0 or driver.error == BOUND_EXCEEDED:
+        yield _ready(problem, m, out, tally, y, yp)
+    else:
+        yield out.block(m, driver.time, None, problem.ledger(driver.time, y, yp))
 
 
-def _checkpoint(problem: Problem, t: float, y: Floats, output: _Output, tally: Tally) -> Floats:
-    counters = [
-        output.next_sample,
-        tally.steps,
-        tally.residual_evaluations,
-        tally.jacobian_evaluations,
-        tally.guard_evaluations,
-        tally.restarts,
-        tally.flight_steps,
-    ]
-    return problem.checkpoint(t, y, np.array(counters, np.int64))
+def _ready(problem: Problem, m: Model, out: Output, tally: Tally, y: Floats, yp: Floats) -> Block:
+    """Hand out a block with a checkpoint."""
+    fill_tally(tally, m.state.progress)
+    time = float(m.work.driver.time)
+    return out.block(m, time, problem.checkpoint(time, y), problem.ledger(time, y, yp))
+
+
+def _samples(m: Model, out: Output, y: Floats, trail: _Trail) -> Iterator[Block]:
+    """Write the samples up to the time reached; hands out full blocks on the way."""
+    driver, progress = m.work.driver, m.state.progress
+    total, end = int(m.scene.samples), float(m.scene.end)
+    while (
+        progress.next_sample < total
+        and (time := sample_time(progress.next_sample, total, end)) <= driver.time
+    ):
+        observe(m, time, y if time == driver.time else trail.at(time), out.rows[driver.rows])
+        progress.next_sample += 1
+        driver.rows += 1
+        if driver.rows == BLOCK_ROWS:
+            yield out.block(m, time)
 
 
 class _Solver:
     """scikit-sundae's IDA over fresh callbacks, since it keeps the event history on the function it is given."""
 
-    def __init__(self, problem: Problem, atol: Floats, step: float) -> None:
-        d, n = problem.data, problem.start.size
+    def __init__(self, problem: Problem, m: Model, y: Floats) -> None:
+        self._m, self._atol = m, m.scene.rtol * problem.tolerance_scale
+        self._driver: Record = m.work.driver
         self._guard_calls = 0
+        self._last: Any = None
+        self.ending: Ending | None = None
+        self.trail = _Trail(self._driver.time, y, y)
+
+    def start(self, y: Floats) -> None:
+        """Set consistent rates and the first step, and start a fresh IDA at the time reached."""
+        m, t, yp = self._m, float(self._driver.time), np.zeros_like(y)
+        set_rates(m, t, y, yp)
+        restart_quadrature(m, t, y, yp)
+        stop = next_stop(m)
+        self._make(y.size, first_step(m, t, y, yp, stop - t))
+        self._ida.init_step(t, y, yp)
+        self._stop = stop
+        self._last = None
+        self.trail = _Trail(t, y, yp)
+
+    def _make(self, n: int, step: float) -> None:
+        m = self._m
         column_major = np.empty(n * n)
-        blocks = np.empty(store_size(d) if d[at.NODES] > 0.0 else 0)
+        blocks = np.empty(store_size(m) if m.scene.nodes > 0 else 0)
 
         def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
-            residual(d, t, y, yp, out)
+            residual(m, t, y, yp, out)
 
         def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
             if blocks.size > 0:
-                dense_jacobian(d, t, cj, y, blocks, out)
+                dense_jacobian(m, t, cj, y, blocks, out)
                 return
-            jacobian(d, t, cj, y, column_major)
+            jacobian(m, t, cj, y, column_major)
             out[:] = column_major.reshape(n, n).T
 
         def falling(t: float, y: Floats, yp: Floats, out: Floats) -> None:
             self._guard_calls += 1
-            out[0] = guard(d, t, y)
+            out[0] = guard(m, t, y)
 
         vars(falling)["direction"] = [-1]
         self._history = vars(falling)  # scikit-sundae keeps the events there
@@ -181,81 +164,41 @@ class _Solver:
             eventsfn=falling,
             num_events=1,
             rtol=0.0,
-            atol=atol,
+            atol=self._atol,
             first_step=step,
             max_num_steps=10_000_000,
             max_conv_fails=CONVERGENCE_FAILURES_HIGH,
         )
-        self._last: Any = None
 
-    def begin(self, t: float, y: Floats, yp: Floats) -> None:
-        self._ida.init_step(t, y, yp)
+    def step(self) -> tuple[int, Floats, Floats]:
+        """Go on to the end of the next step, a stop or a root; a failure is noted as the driver's error."""
+        driver = self._driver
+        result = self._ida.step(self._m.scene.end, method="onestep", tstop=self._stop)
+        self._last = result
+        driver.since += 1
+        flag = int(result.status)
+        if flag < 0 or not np.isfinite(result.y).all():
+            driver.error = flag if flag < 0 else -1
+            self.ending = None if flag < 0 else Ending.NOT_FINITE
+            return flag, result.y, result.yp
+        driver.time = result.t
+        self._m.state.progress.steps += flag != ROOT
+        self.trail.add(result.t, result.y, result.yp)
+        if flag == ROOT:
+            # drop the history, which would be copied whole at every further step
+            for name in ("_i", "_t", "_y", "_yp"):
+                self._history[name].clear()
+        return flag if flag in (STOP, ROOT) else 0, result.y, result.yp
 
-    def step(self, t: float, method: str, tstop: float) -> Any:
-        self._last = self._ida.step(t, method=method, tstop=tstop)
-        return self._last
-
-    def forget_events(self) -> None:
-        """Drop the history, which would be copied whole at every further step."""
-        for name in ("_i", "_t", "_y", "_yp"):
-            self._history[name].clear()
-
-    def count(self, tally: Tally) -> None:
+    def count(self) -> None:
         """Add this solver's counters."""
+        progress = self._m.state.progress
         if self._last is not None:
-            tally.residual_evaluations += int(self._last.nfev)
-            tally.jacobian_evaluations += int(self._last.njev)
-        tally.guard_evaluations += self._guard_calls
-
-
-def _start(problem: Problem, rtol: float, t: float, y: Floats, stop: float) -> tuple[_Solver, _Trail]:
-    """Set consistent rates and the first step, and start a fresh IDA at t."""
-    d, yp = problem.data, np.zeros_like(y)
-    set_rates(d, t, y, yp)
-    enter(d, t, y, yp)
-    step = first_step(d, t, y, yp, problem.tolerance_scale, rtol, stop - t)
-    solver = _Solver(problem, rtol * problem.tolerance_scale, step)
-    solver.begin(t, y, yp)
-    return solver, _Trail(t, y, yp)
-
-
-class _Output:
-    """Collects samples and events into blocks."""
-
-    def __init__(self, problem: Problem, total: int) -> None:
-        self._problem, self._total = problem, total
-        self.next_sample = 0
-        self._rows = np.empty((BLOCK_ROWS, len(problem.columns)))
-        self._row_count = 0
-        self.events = np.empty((BLOCK_EVENTS, 5))
-        self.event_count = 0
-
-    def sample(self, t: float, y: Floats, trail: _Trail) -> Iterator[Block]:
-        """Write the samples up to t; hands out full blocks on the way."""
-        blocks = []
-        while (
-            self.next_sample < self._total
-            and (at_time := sample_time(self.next_sample, self._total, self._problem.end)) <= t
-        ):
-            state = y if at_time == t else trail.at(at_time)
-            observe(self._problem.data, at_time, state, self._rows[self._row_count])
-            self.next_sample += 1
-            self._row_count += 1
-            if self._row_count == BLOCK_ROWS:
-                blocks.append(self.flush(at_time))
-        return iter(blocks)
-
-    def flush(self, t: float, ledger: Ledger | None = None, checkpoint: Floats | None = None) -> Block:
-        """Hand out what has been collected."""
-        block = Block(
-            self._rows[: self._row_count].copy(),
-            self.events[: self.event_count].copy(),
-            t * self._problem.time_unit,
-            checkpoint,
-            ledger,
-        )
-        self._row_count = self.event_count = 0
-        return block
+            progress.residual_evaluations += int(self._last.nfev)
+            progress.jacobian_evaluations += int(self._last.njev)
+            self._last = None
+        progress.guard_evaluations += self._guard_calls
+        self._guard_calls = 0
 
 
 class _Trail:

@@ -5,14 +5,14 @@ guard is looked at once, at the state that the step has left; only where it has 
 the ends of the step. The state between the ends is that of the formula that the step was made with.
 
 A root is found by inverse interpolation, and no more sharply than the states are known: `SHARPNESS` times the
-relative tolerance of a step. Most take two looks at the guard. Where IDA iterates by itself and AS_IDA is set, the
+relative tolerance of a step. Most take two looks at the guard. Where IDA iterates by itself and ``as_ida`` is set, the
 search is IDA's (regula falsi after Illinois down to rounding, Hiebert and Shampine, SAND80-0180), the state at a
 step's end is its interpolant, and roots and states are those that IDA finds by itself to the last bit.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,24 +20,12 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine.events.events import guard
 from gearidae.engine.integrate import adams
-from gearidae.engine.sundials import memory as ptr
+from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
+from gearidae.engine.sundials.ida_memory import IDA, YP, Y
 
-__all__ = ["AS_IDA", "CALLS", "SEARCH", "SHARP", "SHARPNESS", "next_time", "start_search", "state_at"]
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-LOW: Final = 0  # the guard where the interval to look at begins
-LOW_TIME: Final = 1
-STEP_END: Final = 2  # time at the end of the step
-REST: Final = 3  # 1 after a root: the rest of its step has not been looked at
-STOP: Final = 4  # 1 while a stop waits for the roots before it
-STOP_TIME: Final = 5
-CALLS: Final = 6  # of the guard, so far
-AS_IDA: Final = 7  # 1 to search as IDA does, and take the state at a step's end from its interpolant
-SHARP: Final = 8  # how sharply to find a root, over the length of the interval
-SEARCH: Final = 9
+__all__ = ["SHARPNESS", "Stepper", "next_time", "start_search", "state_at"]
 
 SHARPNESS: Final = 0.01
 """Of the relative tolerance; a tenth of it changes no number of steps beyond scatter, ten times as much some."""
@@ -46,127 +34,125 @@ TRIES: Final = 3  # by which the interval has to be halved, or is halved
 _ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
 
 
-@compiled
-def _look(d: Floats, t: float, y: Floats, search: Floats) -> float:
-    """Look at the guard."""
-    search[CALLS] += 1.0
-    return guard(d, t, y)
+class Stepper(NamedTuple):
+    """What a native run steps with.
 
-
-@compiled
-def start_search(d: Floats, t: float, y: Floats, search: Floats) -> None:
-    """Begin at a time at which IDA has been started."""
-    search[LOW], search[LOW_TIME] = _look(d, t, y, search), t
-    search[REST] = search[STOP] = 0.0
-
-
-@compiled
-def state_at(solver: int, vectors: Ints, desk: Floats, t: float, y: Floats, yp: Floats) -> None:
-    """State and rates at a time within the last step.
-
-    Parameters
+    Attributes
     ----------
-    solver : int
-        Address of IDA.
-    vectors : ndarray of int64, shape (2,)
-        Addresses of the vectors over `y` and `yp`.
-    desk : ndarray, shape (DESK,)
-        See `gearidae.engine.integrate.adams`.
-    t : float
-        Time over tau.
-    y, yp : ndarray, shape (n,)
-        Changed.
+    handles : ndarray of int64
+        Of SUNDIALS' objects, see `gearidae.engine.sundials.ida_memory`.
+    m : Model
+    y, yp, dky, spare : ndarray, shape (n,)
+        State and rates at the time reached, and work space.
+    clock : ndarray, shape (1,)
+        Time reached, over tau.
     """
-    if desk[adams.USED] > 0.0:
-        adams.between(desk, t, y, yp)
+
+    handles: NDArray[np.int64]
+    m: Model
+    y: Floats
+    yp: Floats
+    dky: Floats
+    spare: Floats
+    clock: Floats
+
+
+@compiled
+def _look(s: Stepper, t: float) -> float:
+    """Look at the guard."""
+    s.m.work.search.evaluations += 1
+    return guard(s.m, t, s.y)
+
+
+@compiled
+def start_search(s: Stepper) -> None:
+    """Begin at a time at which IDA has been started."""
+    search = s.m.work.search
+    search.low, search.low_time = _look(s, s.clock[0]), s.clock[0]
+    search.rest = search.stop = 0
+
+
+@compiled
+def state_at(s: Stepper, t: float) -> None:
+    """Set state and rates to those at a time within the last step."""
+    if s.m.work.adams.order_used > 0:
+        adams.between(s.m.work.adams, t, s.y, s.yp)
     else:
-        sun.IDAGetSolution(solver, t, vectors[0], vectors[1])
+        sun.IDAGetSolution(s.handles[IDA], t, s.handles[Y], s.handles[YP])
 
 
 @compiled(inline=True)
-def next_time(
-    solver: int,
-    vectors: Ints,
-    desk: Floats,
-    d: Floats,
-    y: Floats,
-    yp: Floats,
-    clock: Floats,
-    end: float,
-    search: Floats,
-) -> int:
+def next_time(s: Stepper) -> int:
     """Go on to the end of the next step, a stop or a root, whichever comes first.
-
-    Parameters
-    ----------
-    solver, vectors, desk, y, yp
-        See `state_at`.
-    d : ndarray
-        The scene, see `layout`.
-    clock : ndarray, shape (1,)
-        Time over tau; changed.
-    end : float
-        Time in the direction of which to go.
-    search : ndarray, shape (SEARCH,)
-        Where the search stands.
 
     Returns
     -------
     int
         IDA's flag.
     """
-    if search[REST] != 0.0:
-        search[LOW], search[LOW_TIME] = _look(d, clock[0], y, search), clock[0]
-        if abs(search[STEP_END] - clock[0]) <= _rounding(solver, search):
-            search[REST] = 0.0
-    rest = search[REST] != 0.0
+    search = s.m.work.search
+    if search.rest != 0:
+        search.low, search.low_time = _look(s, s.clock[0]), s.clock[0]
+        if abs(search.step_end - s.clock[0]) <= _rounding(s):
+            search.rest = 0
+    rest = search.rest != 0
     if rest:
-        clock[0] = search[STEP_END]
-        state_at(solver, vectors, desk, clock[0], y, yp)
-    elif search[STOP] != 0.0:
-        return _stop(solver, vectors, desk, y, yp, clock, search)
+        s.clock[0] = search.step_end
+        state_at(s, s.clock[0])
+    elif search.stop != 0:
+        return _stop(s)
     else:
-        flag = sun.IDASolve(solver, end, clock.ctypes.data, vectors[0], vectors[1], sun.IDA_ONE_STEP)
+        flag = _step(s)
         if flag < 0:
             return flag
-        adams.keep(desk, clock[0], yp)
-        if search[AS_IDA] != 0.0:
-            sun.IDAGetSolution(solver, clock[0], vectors[0], vectors[1])
-        if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
-            search[STOP], search[STOP_TIME] = 1.0, clock[0]
-            sun.IDAGetCurrentTime(solver, clock.ctypes.data)
-            state_at(solver, vectors, desk, clock[0], y, yp)
-    high = _look(d, clock[0], y, search)
-    if search[LOW] > 0.0 > high:
-        search[STEP_END] = clock[0]
-        search[REST] = 1.0
-        if search[AS_IDA] != 0.0:
-            _find_as_ida(solver, vectors, desk, d, y, yp, clock, high, search)
+    high = _look(s, s.clock[0])
+    if search.low > 0.0 > high:
+        search.step_end = s.clock[0]
+        search.rest = 1
+        if search.as_ida != 0:
+            _find_as_ida(s, high)
         else:
-            _find(solver, vectors, desk, d, y, yp, clock, high, search)
+            _find(s, high)
         return sun.IDA_ROOT_RETURN
-    search[LOW], search[LOW_TIME] = high, clock[0]
-    search[REST] = 0.0
-    if search[STOP] != 0.0 and not rest:
-        return _stop(solver, vectors, desk, y, yp, clock, search)
+    search.low, search.low_time = high, s.clock[0]
+    search.rest = 0
+    if search.stop != 0 and not rest:
+        return _stop(s)
     return 0
 
 
+@compiled(inline=True)
+def _step(s: Stepper) -> int:
+    """Let IDA take a step; its flag."""
+    search, vectors = s.m.work.search, s.handles
+    flag = sun.IDASolve(
+        vectors[IDA], s.m.scene.end, s.clock.ctypes.data, vectors[Y], vectors[YP], sun.IDA_ONE_STEP
+    )
+    if flag < 0:
+        return flag
+    adams.keep(s.m.work.adams, s.clock[0], s.yp)
+    if search.as_ida != 0:
+        sun.IDAGetSolution(vectors[IDA], s.clock[0], vectors[Y], vectors[YP])
+    if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
+        search.stop, search.stop_time = 1, s.clock[0]
+        sun.IDAGetCurrentTime(vectors[IDA], s.clock.ctypes.data)
+        state_at(s, s.clock[0])
+    return flag
+
+
 @compiled
-def _stop(
-    solver: int, vectors: Ints, desk: Floats, y: Floats, yp: Floats, clock: Floats, search: Floats
-) -> int:
+def _stop(s: Stepper) -> int:
     """Return at a stop, now that all roots before it are through."""
-    search[STOP] = 0.0
-    clock[0] = search[STOP_TIME]
-    state_at(solver, vectors, desk, clock[0], y, yp)
+    s.m.work.search.stop = 0
+    s.clock[0] = s.m.work.search.stop_time
+    state_at(s, s.clock[0])
     return sun.IDA_TSTOP_RETURN
 
 
 @compiled
-def _rounding(solver: int, search: Floats) -> float:
+def _rounding(s: Stepper) -> float:
     """What times of this step may differ by."""
-    return _ROUNDING * (abs(search[STEP_END]) + abs(ptr.step(solver)))
+    return _ROUNDING * (abs(s.m.work.search.step_end) + abs(memory.step(s.handles[IDA])))
 
 
 @compiled
@@ -180,20 +166,11 @@ def _inverse(a: float, at_a: float, b: float, at_b: float, c: float, at_c: float
 
 
 @compiled
-def _find(
-    solver: int,
-    vectors: Ints,
-    desk: Floats,
-    d: Floats,
-    y: Floats,
-    yp: Floats,
-    clock: Floats,
-    high: float,
-    search: Floats,
-) -> None:
+def _find(s: Stepper, high: float) -> None:
     """Find when the guard has fallen, which is above zero at the interval's beginning and `high` at its end."""
-    a, b, low = search[LOW_TIME], clock[0], search[LOW]
-    tolerance = max(_rounding(solver, search), search[SHARP] * (b - a))
+    search = s.m.work.search
+    a, b, low = search.low_time, s.clock[0], search.low
+    tolerance = max(_rounding(s), search.sharpness * (b - a))
     c, left, here = a, low, b  # what was an end before, the guard there, and where the state is taken
     tries, wide = 0, b - a
     # near the root the chord shows how far it is: there is no need to close in on it from both sides
@@ -209,32 +186,23 @@ def _find(
             if slow:
                 here = 0.5 * (a + b)
         here = min(max(here, a + 0.25 * tolerance), b - 0.25 * tolerance)
-        state_at(solver, vectors, desk, here, y, yp)
-        value = _look(d, here, y, search)
+        state_at(s, here)
+        value = _look(s, here)
         if value < 0.0:
             c, left, b, high = b, high, here, value
         else:
             c, left, a, low = a, low, here, value
-    clock[0] = b
+    s.clock[0] = b
     if here != b:
-        state_at(solver, vectors, desk, b, y, yp)
+        state_at(s, b)
 
 
 @compiled
-def _find_as_ida(
-    solver: int,
-    vectors: Ints,
-    desk: Floats,
-    d: Floats,
-    y: Floats,
-    yp: Floats,
-    clock: Floats,
-    high: float,
-    search: Floats,
-) -> None:
+def _find_as_ida(s: Stepper, high: float) -> None:
     """Find the same as IDA does."""
-    tolerance = _rounding(solver, search)
-    a, b, low = search[LOW_TIME], clock[0], search[LOW]
+    tolerance = _rounding(s)
+    search = s.m.work.search
+    a, b, low = search.low_time, s.clock[0], search.low
     weight = 1.0
     side, before = 0, -1  # which end has moved: 1 the upper, 2 the lower
     while abs(b - a) > tolerance:
@@ -249,12 +217,12 @@ def _find_as_ida(
             middle = a + inward * (b - a)
         if abs(b - middle) < 0.5 * tolerance:
             middle = b - inward * (b - a)
-        state_at(solver, vectors, desk, middle, y, yp)
-        value = _look(d, middle, y, search)
+        state_at(s, middle)
+        value = _look(s, middle)
         before = side
         if value < 0.0:
             b, high, side = middle, value, 1
         else:
             a, low, side = middle, value, 2
-    clock[0] = b
-    state_at(solver, vectors, desk, b, y, yp)
+    s.clock[0] = b
+    state_at(s, b)

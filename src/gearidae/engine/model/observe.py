@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gearidae.compiled import compiled
-from gearidae.engine.model import layout as at
 from gearidae.engine.model.residual import mesh_forces, roller_force
-from gearidae.engine.model.tooth_pairs import first_pair, last_pair, pair_gap, static_error
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
 
 __all__ = ["observe"]
 
-Floats = NDArray[np.float64]
-
 
 @compiled
-def observe(d: Floats, t: float, y: Floats, row: Floats) -> None:
+def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     """Write one sample.
 
     Parameters
     ----------
-    d : ndarray
-        The scene with the histories as they are at t, see `layout`.
+    m : Model
+        With the histories as they are at t.
     t : float
         Time over tau.
     y : ndarray, shape (n,)
@@ -32,31 +27,31 @@ def observe(d: Floats, t: float, y: Floats, row: Floats) -> None:
     row : ndarray, shape (9,) or (3,)
         `GEAR_COLUMNS` or `ROLLER_COLUMNS` in SI units.
     """
-    length, speed = d[at.SIGMA], d[at.SIGMA] / d[at.TAU]
-    u, v = y[at.U], y[at.V]
-    if d[at.KIND] == at.ROLLER:
-        force, _ = roller_force(d, t, y)
-        row[0], row[1], row[2] = u * length, v * speed, force * d[at.FORCE]
+    length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
+    u, v = y[U], y[V]
+    if m.scene.kind == ROLLER:
+        force, _ = roller_force(m, t, y)
+        row[0], row[1], row[2] = u * length, v * speed, force * m.scene.force_unit
         return
-    phase, w = y[at.PHASE], y[at.W]
-    force, relief, _, _, _, _ = mesh_forces(d, t, y)
+    phase, w = y[PHASE], y[W]
+    force, relief, _, _, _, _ = mesh_forces(m, t, y)
     e1 = 0.0
-    if d[at.ERROR_ORDERS] != 0.0:
-        _, _, e1, _ = static_error(d, u, phase)
-    radius = d[at.GEAR_RADIUS]
+    if m.scene.error_count != 0:
+        _, _, e1, _ = static_error(m, u, phase)
+    radius = m.scene.gear_radius
     row[0] = w * speed / radius
-    row[1] = (v + w) * speed / (d[at.PINION_RADIUS] * (1.0 - e1))
-    row[2] = (d[at.TURNS] + phase) * d[at.BASE_PITCH] / radius
+    row[1] = (v + w) * speed / (m.scene.pinion_radius * (1.0 - e1))
+    row[2] = (m.state.turns + phase) * m.scene.base_pitch / radius
     row[3] = u * length
-    row[4] = force * d[at.FORCE]
-    row[5] = radius * (force + relief) * d[at.FORCE]
+    row[4] = force * m.scene.force_unit
+    row[5] = radius * (force + relief) * m.scene.force_unit
     touching = 0.0
-    for coast in range(2):
-        smallest = math.inf
-        for pair in range(first_pair(d, coast, phase), last_pair(d, coast, phase) + 1):
-            gap, _, _, _ = pair_gap(d, coast, pair, u, v, phase, w)
-            smallest = min(smallest, gap)
-            if gap < d[at.ENGAGE]:
-                touching += 1.0
-        row[6 + coast] = smallest * length
+    row[6] = row[7] = math.inf
+    reach = all_pairs(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        gap, _, _, _ = pair_gap(m, coast, pair, u, v, phase, w)
+        row[6 + coast] = min(row[6 + coast], gap * length)
+        if gap < m.scene.contact_gap:
+            touching += 1.0
     row[8] = touching

@@ -2,55 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 from numba import carray, types  # type: ignore[attr-defined]
-from numpy.typing import NDArray
 
-from gearidae.compiled import compiled_callback
-from gearidae.engine.elastic.block_jacobian import assemble, factorise, solve_blocks
-from gearidae.engine.integrate.newton import iterate
-from gearidae.engine.model import layout as at
+from gearidae.compiled import compiled, compiled_callback
+from gearidae.engine.elastic.block_jacobian import assemble, factorise, solve_blocks, unknowns
+from gearidae.engine.integrate.newton import Attempt, iterate
 from gearidae.engine.model.residual import jacobian, residual
 from gearidae.engine.sundials import memory as ptr
 from gearidae.engine.sundials import names as sun
+from gearidae.engine.sundials.ida_memory import Functions
 from gearidae.engine.sundials.vectors import vector_operations
 
-__all__ = ["Callbacks", "callbacks"]
+__all__ = ["callbacks"]
 
 # This loads the library as well, without which the functions below would abort the process.
 if _reason := sun.unavailable():
     raise ImportError(_reason)
 
-Ints = NDArray[np.int64]
-
 _PTR, _INT, _REAL = types.intp, types.int32, types.float64
-_REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
-
-
-@dataclass(frozen=True, slots=True)
-class Callbacks:
-    """Addresses of what SUNDIALS calls.
-
-    Attributes
-    ----------
-    model : ndarray of int64, shape (3,)
-        Residual, Jacobian (0 if nobody asks for it), error weights.
-    steps : ndarray of int64, shape (2,) or (0,)
-        Set-up and solution of a linear solver of ours; none where SUNDIALS has to solve, or nothing is left to.
-    newton : ndarray of int64, shape (3,) or (0,)
-        What a nonlinear solver of ours answers, see `gearidae.engine.integrate.newton`; none where SUNDIALS iterates.
-    vectors : ndarray of int64, shape (4,) or (0,)
-        Operations on vectors, see `gearidae.engine.sundials.vectors`; none where SUNDIALS has its own.
-    """
-
-    model: Ints
-    steps: Ints
-    newton: Ints
-    vectors: Ints
 
 
 _JACOBIAN = types.int32(
@@ -60,14 +33,14 @@ _JACOBIAN = types.int32(
     types.intp,
     types.intp,
     types.intp,
-    _REALS,
+    types.intp,
     types.intp,
     types.intp,
     types.intp,
 )
 
 
-_RESIDUAL = types.int32(types.float64, types.intp, types.intp, types.intp, _REALS)
+_RESIDUAL = types.int32(types.float64, types.intp, types.intp, types.intp, types.intp)
 
 
 @compiled_callback(_RESIDUAL)
@@ -75,12 +48,13 @@ def _unasked(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
     return -1  # IDA wants a residual, but whether it vanishes is asked by Newton's iteration alone
 
 
-@compiled_callback(_INT(_PTR, _PTR, _REALS))
+@compiled_callback(_INT(_PTR, _PTR, _PTR))
 def _weights(yy, weights, data):  # type: ignore[no-untyped-def]
-    d, out = carray(data, (ptr.MANY,)), ptr.numbers(weights)
-    first = int(d[at.WEIGHTS_AT])
-    for i in range(int(d[at.STATES])):
-        out[i] = d[first + i]
+    m = ptr.model_at(data)
+    out = ptr.numbers(weights, m.scene.states)
+    first = m.scene.error_weights_at
+    for i in range(m.scene.states):
+        out[i] = m.rows[first + i]
     return 0
 
 
@@ -90,7 +64,9 @@ def _residual() -> Any:
 
     @compiled_callback(_RESIDUAL)
     def evaluate(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
-        residual(carray(data, (ptr.MANY,)), t, ptr.numbers(yy), ptr.numbers(yp), ptr.numbers(rr))
+        m = ptr.model_at(data)
+        n = m.scene.states
+        residual(m, t, ptr.numbers(yy, n), ptr.numbers(yp, n), ptr.numbers(rr, n))
         return 0
 
     return evaluate
@@ -102,8 +78,9 @@ def _dense() -> Any:
 
     @compiled_callback(_JACOBIAN)
     def dense(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-        d = carray(data, (ptr.MANY,))
-        jacobian(d, t, cj, ptr.numbers(yy), carray(sun.SUNDenseMatrix_Data(matrix), (16,)))
+        m = ptr.model_at(data)
+        n = m.scene.states
+        jacobian(m, t, cj, ptr.numbers(yy, n), carray(sun.SUNDenseMatrix_Data(matrix), (n * n,)))
         return 0
 
     return dense
@@ -115,26 +92,33 @@ def _bodies() -> tuple[Any, ...]:
 
     @compiled_callback(_JACOBIAN)
     def blocks(t, cj, yy, yp, rr, matrix, data, tmp1, tmp2, tmp3):  # type: ignore[no-untyped-def]
-        d, store = carray(data, (ptr.MANY,)), carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,))
-        assemble(d, t, cj, ptr.numbers(yy), store)
+        m = ptr.model_at(data)
+        assemble(m, t, cj, ptr.numbers(yy, m.scene.states), _store(matrix))
         return 0
 
     @compiled_callback(_INT(_PTR, _PTR))
     def set_up(linear, matrix):  # type: ignore[no-untyped-def]
-        return factorise(carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,)))
+        return factorise(_store(matrix))
 
     @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL))
     def solve(linear, matrix, x, b, tolerance):  # type: ignore[no-untyped-def]
-        store = carray(sun.SUNDenseMatrix_Data(matrix), (ptr.MANY,))
-        solve_blocks(store, ptr.numbers(b), ptr.numbers(x))
+        store = _store(matrix)
+        n = unknowns(store)
+        solve_blocks(store, ptr.numbers(b, n), ptr.numbers(x, n))
         return 0
 
     return blocks, set_up, solve
 
 
+@compiled(makes_arrays=True)
+def _store(matrix: int) -> Any:
+    """Numbers of a matrix that is one column."""
+    return carray(sun.SUNDenseMatrix_Data(matrix), (sun.SUNDenseMatrix_Rows(matrix),))
+
+
 @cache
-def _newton(n: int, content: int) -> tuple[Any, ...]:
-    """Make the functions of a nonlinear solver for n unknowns, its content at this place of its record."""
+def _newton(n: int) -> tuple[Any, ...]:
+    """Make the functions of a nonlinear solver for n unknowns."""
 
     @compiled_callback(_INT(_PTR))
     def kind(newton):  # type: ignore[no-untyped-def]
@@ -143,22 +127,20 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
     @compiled_callback(_INT(_PTR, _PTR, _PTR, _PTR, _REAL, _INT, _PTR))
     def solve(newton, start, correction, weights, tolerance, renew, solver):  # type: ignore[no-untyped-def]
         t, predicted, rates, yy, yp, rr, cj, data = ptr.system(solver)
-        return iterate(
-            n,
-            ptr.reals(ptr.words(newton)[content]),
-            ptr.reals(data),
+        attempt = Attempt(
             t,
             ptr.step(solver),
             cj,
-            ptr.numbers(predicted),
-            ptr.numbers(rates),
-            ptr.numbers(correction),
-            ptr.numbers(yy),
-            ptr.numbers(yp),
-            ptr.numbers(rr),
-            ptr.numbers(weights),
             tolerance,
+            ptr.numbers(predicted, n),
+            ptr.numbers(rates, n),
+            ptr.numbers(correction, n),
+            ptr.numbers(yy, n),
+            ptr.numbers(yp, n),
+            ptr.numbers(rr, n),
+            ptr.numbers(weights, n),
         )
+        return iterate(n, ptr.model_at(data), attempt)
 
     @compiled_callback(_INT(_PTR, _PTR))
     def note_equations(newton, function):  # type: ignore[no-untyped-def]
@@ -168,7 +150,7 @@ def _newton(n: int, content: int) -> tuple[Any, ...]:
 
 
 @cache
-def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Callbacks:
+def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Functions:
     """Return the functions for n states; they are made on first use, and once.
 
     Parameters
@@ -189,9 +171,9 @@ def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Callbacks:
     elif as_ida:
         model = (_residual(), _dense(), _weights)
     else:
-        newton, vectors = _newton(n, int(sun.newton_places()[0])), vector_operations(n)
+        newton, vectors = _newton(n), vector_operations(n)
         model = (_unasked, None, _weights)
-    return Callbacks(
+    return Functions(
         *(
             np.array([f.address if f else 0 for f in part], np.int64)
             for part in (model, steps, newton, vectors)

@@ -1,43 +1,62 @@
-"""A solver of SUNDIALS, opened and closed by compiled code."""
+"""IDA's memory: a solver of SUNDIALS, opened and closed by compiled code."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.block_jacobian import store_size
-from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
-from gearidae.engine.integrate.newton import make_solver
-from gearidae.engine.model import layout as at
-from gearidae.engine.sundials import memory as ptr
+from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 
-__all__ = ["DKY", "HANDLES", "SOLVER", "YP", "Y", "close", "open_solver"]
+__all__ = ["HANDLES", "IDA", "YP", "Functions", "Places", "Y", "close_solver", "open_solver"]
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 # Handles: addresses of what SUNDIALS has made.
-CONTEXT, SOLVER, Y, YP, DKY, MATRIX, LINEAR, NEWTON, HANDLES = range(9)
+CONTEXT, IDA, Y, YP, DKY, MATRIX, LINEAR, NEWTON, HANDLES = range(9)
+
+
+class Functions(NamedTuple):
+    """Addresses of what SUNDIALS calls, arrays of int64.
+
+    Attributes
+    ----------
+    model : ndarray, shape (3,)
+        Residual, Jacobian (0 if nobody asks for it), error weights.
+    steps : ndarray, shape (2,) or (0,)
+        Set-up and solution of a linear solver of ours; none where SUNDIALS has to solve, or nothing is left to.
+    newton : ndarray, shape (3,) or (0,)
+        What a nonlinear solver of ours answers, see `gearidae.engine.integrate.newton`; none where SUNDIALS iterates.
+    vectors : ndarray, shape (4,) or (0,)
+        Operations on vectors, see `gearidae.engine.sundials.vectors`; none where SUNDIALS has its own.
+    """
+
+    model: Ints
+    steps: Ints
+    newton: Ints
+    vectors: Ints
+
+
+class Places(NamedTuple):
+    """Where SUNDIALS keeps the functions of linear solvers, nonlinear solvers and vectors.
+
+    See `gearidae.engine.sundials.names.places`, `newton_places` and `vector_places`.
+    """
+
+    linear: Ints
+    newton: Ints
+    vector: Ints
 
 
 @compiled(makes_arrays=True)
 def open_solver(
-    handles: Ints,
-    model: Ints,
-    steps: Ints,
-    newton: Ints,
-    vectors: Ints,
-    where: Ints,
-    newton_where: Ints,
-    vector_where: Ints,
-    desk: Floats,
-    d: Floats,
-    y: Floats,
-    yp: Floats,
-    dky: Floats,
+    handles: Ints, pointers: Ints, functions: Functions, places: Places, m: Model, vectors: tuple[Floats, ...]
 ) -> int:
     """Create IDA with solvers of our own over the caller's arrays; 0 if all went well.
 
@@ -45,48 +64,50 @@ def open_solver(
     ----------
     handles : ndarray of int64, shape (HANDLES,)
         Filled in.
-    model, steps, newton, vectors : ndarray of int64
-        See `gearidae.engine.sundials.callbacks.Callbacks`.
-    where, newton_where, vector_where : ndarray of int64
-        From `gearidae.engine.sundials.names.places`, `newton_places` and `vector_places`.
-    desk : ndarray, shape (DESK,)
-        See `gearidae.engine.integrate.adams`; must outlive the solver.
-    d, y, yp, dky : ndarray
-        User data, state, rates and work space: must outlive the solver.
+    pointers : ndarray of int64, shape (POINTERS,)
+        Filled in with where the model lies; must outlive the solver, as the model and the vectors must.
+    functions : Functions
+    places : Places
+    m : Model
+    vectors : tuple of three ndarrays, shape (n,)
+        State, rates and work space.
     """
+    y, yp, dky = vectors
     n = y.size
     flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
     if flag != 0:
         return flag
+    memory.note_addresses(m, pointers)
     context = handles[CONTEXT]
     sun.SUNContext_ClearErrHandlers(context)
     handles[Y] = sun.N_VMake_Serial(n, y.ctypes.data, context)
     handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
     handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
     sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
-    if vectors.size > 0:
+    if functions.vectors.size > 0:
         for vector in (Y, YP, DKY):
-            ptr.replace(handles[vector], vector_where, vectors)
+            memory.replace(handles[vector], places.vector, functions.vectors)
     solver = sun.IDACreate(context)
-    handles[SOLVER] = solver
-    flag |= sun.IDAInit(solver, model[0], d[at.LAST_TIME], handles[Y], handles[YP])
-    flag |= sun.IDAWFtolerances(solver, model[2])
-    flag |= sun.IDASetUserData(solver, d.ctypes.data)
-    if newton.size > 0:
-        desk[adams.OWN] = 1.0
-        handles[NEWTON] = make_solver(context, desk, newton_where, newton)
+    handles[IDA] = solver
+    flag |= sun.IDAInit(solver, functions.model[0], m.state.time, handles[Y], handles[YP])
+    flag |= sun.IDAWFtolerances(solver, functions.model[2])
+    flag |= sun.IDASetUserData(solver, pointers.ctypes.data)
+    m.work.adams.own = 1 if functions.newton.size > 0 else 0
+    if functions.newton.size > 0:
+        handles[NEWTON] = sun.SUNNonlinSolNewEmpty(context)
+        memory.replace(handles[NEWTON], places.newton, functions.newton)
         flag |= sun.IDASetNonlinearSolver(solver, handles[NEWTON])
     else:
-        _make_linear_solver(handles, steps, where, d, y)
+        _make_linear_solver(handles, functions.steps, places.linear, m, y)
         flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
-        flag |= sun.IDASetJacFn(solver, model[1])
+        flag |= sun.IDASetJacFn(solver, functions.model[1])
     flag |= sun.IDASetMaxNumSteps(solver, -1)
     flag |= sun.IDASetMaxConvFails(solver, CONVERGENCE_FAILURES_HIGH)
     return flag
 
 
 @compiled
-def _make_linear_solver(handles: Ints, steps: Ints, where: Ints, d: Floats, y: Floats) -> None:
+def _make_linear_solver(handles: Ints, steps: Ints, where: Ints, m: Model, y: Floats) -> None:
     """Make SUNDIALS' dense solver, or one with set-up and solution of our own."""
     context = handles[CONTEXT]
     if steps.size == 0:
@@ -99,16 +120,16 @@ def _make_linear_solver(handles: Ints, steps: Ints, where: Ints, d: Floats, y: F
     handles[LINEAR] = sun.SUNLinSol_Dense(single, other, context)
     sun.SUNMatDestroy(other)
     sun.N_VDestroy(single)
-    handles[MATRIX] = sun.SUNDenseMatrix(store_size(d), 1, context)
-    ptr.replace(handles[LINEAR], where, steps)
+    handles[MATRIX] = sun.SUNDenseMatrix(store_size(m), 1, context)
+    memory.replace(handles[LINEAR], where, steps)
 
 
 @compiled(makes_arrays=True)
-def close(handles: Ints) -> None:
+def close_solver(handles: Ints) -> None:
     """Free what `open_solver` has made."""
     cell = np.empty(1, np.int64)
-    if handles[SOLVER] != 0:
-        cell[0] = handles[SOLVER]
+    if handles[IDA] != 0:
+        cell[0] = handles[IDA]
         sun.IDAFree(cell.ctypes.data)
     if handles[NEWTON] != 0:
         sun.SUNNonlinSolFreeEmpty(handles[NEWTON])

@@ -107,12 +107,12 @@ def places() -> NDArray[np.int64]:
 
 @cache
 def newton_places() -> NDArray[np.int64]:
-    """Where SUNDIALS keeps a nonlinear solver's content and functions, found like `places`.
+    """Where SUNDIALS keeps a nonlinear solver's functions, found like `places`.
 
     Returns
     -------
-    ndarray of int64, shape (5,)
-        Places of the content and of the table in a nonlinear solver's record, those of `OF_NEWTON` in the table.
+    ndarray of int64, shape (4,)
+        Place of the table in a nonlinear solver's record, those of `OF_NEWTON` in the table.
 
     Raises
     ------
@@ -121,16 +121,10 @@ def newton_places() -> NDArray[np.int64]:
     """
     with _bench() as (context, vector, _):
         newton = _call("SUNNonlinSol_Newton", vector, context)
-        empty = _call("SUNNonlinSolNewEmpty", context)
         table = _table_place(newton, context)
         functions = _operations(newton, table, 13, OF_NEWTON, "nonlinear solvers")
-        own, bare = _words(newton, table), _words(empty, table)
-        content = next((k for k in range(table) if own[k] != 0 and bare[k] == 0), table)
-        if content == table:
-            raise RuntimeError("SUNDIALS keeps the content of its nonlinear solvers in an unknown place")
-        _call("SUNNonlinSolFreeEmpty", _address(empty))
         _call("SUNNonlinSolFree_Newton", _address(newton))
-    return np.array([content, table, *functions], dtype=np.int64)
+    return np.array([table, *functions], dtype=np.int64)
 
 
 @cache
@@ -217,6 +211,7 @@ N_VDestroy = _declare("N_VDestroy", types.void, _PTR)
 N_VEnableFusedOps_Serial = _declare("N_VEnableFusedOps_Serial", _INT, _PTR, _INT)
 SUNDenseMatrix = _declare("SUNDenseMatrix", _PTR, types.int32, types.int32, _PTR)
 SUNDenseMatrix_Data = _declare("SUNDenseMatrix_Data", _REALS, _PTR)
+SUNDenseMatrix_Rows = _declare("SUNDenseMatrix_Rows", types.int32, _PTR)
 SUNMatDestroy = _declare("SUNMatDestroy", types.void, _PTR)
 SUNLinSol_Dense = _declare("SUNLinSol_Dense", _PTR, _PTR, _PTR, _PTR)
 SUNLinSolFree = _declare("SUNLinSolFree", _INT, _PTR)

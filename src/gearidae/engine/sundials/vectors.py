@@ -13,7 +13,7 @@ from typing import Any
 from numba import carray, types  # type: ignore[attr-defined]
 
 from gearidae.compiled import compiled_callback
-from gearidae.engine.integrate.adams import squares
+from gearidae.engine.integrate.adams import weighed_squares
 from gearidae.engine.sundials import memory as ptr
 
 __all__ = ["vector_operations"]
@@ -29,29 +29,29 @@ def vector_operations(n: int) -> tuple[Any, ...]:
 
     @compiled_callback(_REAL(_PTR, _PTR))
     def norm(x, weights):  # type: ignore[no-untyped-def]
-        return math.sqrt(squares(n, ptr.numbers(x), 0, ptr.numbers(weights)) / n)
+        return math.sqrt(weighed_squares(n, ptr.numbers(x, n), ptr.numbers(weights, n)) / n)
 
     @compiled_callback(types.void(_REAL, _PTR, _REAL, _PTR, _PTR))
     def linear_sum(a, x, b, y, z):  # type: ignore[no-untyped-def]
-        first, second, out = ptr.numbers(x), ptr.numbers(y), ptr.numbers(z)
+        first, second, out = ptr.numbers(x, n), ptr.numbers(y, n), ptr.numbers(z, n)
         for j in range(n):
             out[j] = a * first[j] + b * second[j]
 
     @compiled_callback(_INT(_INT, _REALS, _WORDS, _PTR))
     def combination(count, factors, vectors, z):  # type: ignore[no-untyped-def]
-        out, c, x = ptr.numbers(z), carray(factors, (ptr.MANY,)), carray(vectors, (ptr.MANY,))
+        out, c, x = ptr.numbers(z, n), carray(factors, (count,)), carray(vectors, (count,))
         for j in range(n):
             total = 0.0
             for i in range(count):
-                total += c[i] * ptr.numbers(x[i])[j]
+                total += c[i] * ptr.numbers(x[i], n)[j]
             out[j] = total
         return 0
 
     @compiled_callback(_INT(_INT, _REAL, _WORDS, _REAL, _WORDS, _WORDS))
     def linear_sums(count, a, xs, b, ys, zs):  # type: ignore[no-untyped-def]
-        x, y, z = carray(xs, (ptr.MANY,)), carray(ys, (ptr.MANY,)), carray(zs, (ptr.MANY,))
+        x, y, z = carray(xs, (count,)), carray(ys, (count,)), carray(zs, (count,))
         for i in range(count):
-            first, second, out = ptr.numbers(x[i]), ptr.numbers(y[i]), ptr.numbers(z[i])
+            first, second, out = ptr.numbers(x[i], n), ptr.numbers(y[i], n), ptr.numbers(z[i], n)
             for j in range(n):
                 out[j] = a * first[j] + b * second[j]
         return 0

@@ -1,0 +1,75 @@
+"""Histories of an elastic contact's nodes and points: begun, followed to an accepted time, taken at a turning point."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearidae.compiled import compiled
+from gearidae.contact.history import joined_height
+from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.elastic.rows import (
+    BOOKED,
+    GAP,
+    JOINED,
+    SHARE,
+    first_unknown,
+    node_profile,
+    point_gaps,
+    row,
+)
+from gearidae.engine.model.state import MATERIALS, Floats, Model
+
+__all__ = ["book_points", "follow_nodes", "init_nodes", "join_nodes"]
+
+_MOVED = 1e-5  # roughnesses; over less than this the share of a node in the motion cannot be told
+_LARGEST_SHARE = 4.0
+
+
+@compiled(makes_arrays=True)
+def init_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
+    """Start the histories along a contact: nothing is joined yet."""
+    first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, SHARE)
+    for i in range(m.scene.nodes):
+        before[i] = gap + profile[i] + y[first + i]
+        share[i] = 1.0
+    m.state.history[k].stretched = 0
+    for material in range(MATERIALS):
+        point_gaps(m, k, y, gap, row(m, k, JOINED + material))
+        book_points(m, k, material)
+
+
+@compiled(makes_arrays=True)
+def follow_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
+    """Note the nodes' gaps at an accepted time, before the pair's own, and how far they have moved with it."""
+    first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, SHARE)
+    moved = gap - m.state.history[k].gap
+    for i in range(m.scene.nodes):
+        h = gap + profile[i] + y[first + i]
+        if abs(moved) > _MOVED:
+            share[i] = min(max((h - before[i]) / moved, 0.0), _LARGEST_SHARE)
+        before[i] = h
+
+
+@compiled(makes_arrays=True)
+def join_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
+    """Take the joined heights at a turning point."""
+    points = m.scene.points
+    gaps = np.empty(points)
+    point_gaps(m, k, y, gap, gaps)
+    m.state.history[k].stretched = 0
+    for material in range(MATERIALS):
+        limit, joined = m.scene.material[material].stretch_limit, row(m, k, JOINED + material)
+        for i in range(points if limit > 0.0 else 0):
+            joined[i] = joined_height(joined[i], gaps[i], limit)
+            if gaps[i] > joined[i]:
+                m.state.history[k].stretched = 1
+        book_points(m, k, material)
+
+
+@compiled(makes_arrays=True)
+def book_points(m: Model, k: int, material: int) -> None:
+    """Note the energy of what is joined at the points, which changes when the joined heights do."""
+    joined, booked = row(m, k, JOINED + material), row(m, k, BOOKED + material)
+    joining = m.scene.material[material].joining_energy
+    for i in range(m.scene.points if joining != 0.0 else 0):
+        booked[i] = -joining * loading_value(m.tables, m.scene.number_at, joined[i])[0]

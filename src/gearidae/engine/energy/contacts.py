@@ -1,0 +1,96 @@
+"""What contacts store, and what their asperities lose by joining."""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled
+from gearidae.contact.kernels.energy import stretched_energy
+from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
+from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_stored
+from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.tooth_pairs import (
+    all_pairs,
+    contact_length,
+    energy_branch,
+    history_of,
+    pair_at,
+    pair_gap,
+)
+
+__all__ = ["joined_energy", "joining_loss", "stored_energy"]
+
+
+@compiled
+def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
+    """What joined asperities of a pair store beyond the loading branch per length, and its slope in the gap."""
+    energy = slope = 0.0
+    for material in range(MATERIALS):
+        limit = m.scene.material[material].stretch_limit
+        if limit == 0.0:
+            continue
+        scale = m.scene.material[material].force_scale
+        stretch = gap - m.state.history[k].joined[material]
+        if stretch <= 0.0:
+            energy += scale * m.state.history[k].booked[material]
+            continue
+        table = m.tables[m.scene.material[material].energy_at :]
+        joined = m.state.history[k].joined[material]
+        if stretch < limit and m.scene.branch_length > 0 and branch_length(table) > 0:
+            branch = m.rows[energy_branch(m, k, material) :]
+            if branch[B_PIECES] == 0.0:
+                set_branch(table, joined, branch)
+            e, de = branch_value(branch, stretch)
+        else:
+            e, de = stretched_energy(table, m.state.history[k].booked[material], gap, joined)
+        energy += scale * e
+        slope += scale * de
+    return energy, slope
+
+
+@compiled
+def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
+    """What all contacts store, and the part of it that asperities joined since the last turning point have lost.
+
+    Parameters
+    ----------
+    m : Model
+        With the histories as they are at `y`.
+    y : ndarray
+        State.
+
+    Returns
+    -------
+    stored, pending : float
+        Scaled; the true stored energy is their difference.
+    """
+    stored = pending = 0.0
+    reach = all_pairs(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        k = history_of(m, coast, pair)
+        gap, rate, length = y[U], y[V], 1.0
+        if m.scene.kind == GEARS:
+            gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+            length = contact_length(m, inside)
+        if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
+            continue
+        if m.scene.nodes > 0:
+            stored += length * nodes_stored(m, k, m.state.time, y, gap, rate, length)
+            pending += length * nodes_joining_loss(m, k, y, gap)
+            continue
+        energy, _ = joined_energy(m, k, gap)
+        stored += length * (loading_value(m.tables, m.scene.potential_at, gap)[0] + energy)
+        pending += length * joining_loss(m, k, gap)
+    return stored, pending
+
+
+@compiled
+def joining_loss(m: Model, k: int, gap: float) -> float:
+    """What the asperities that a closing contact has joined since its last turning point have lost, per length."""
+    loss = 0.0
+    number = loading_value(m.tables, m.scene.number_at, gap)[0]
+    for material in range(MATERIALS):
+        if m.scene.material[material].stretch_limit > 0.0 and gap < m.state.history[k].joined[material]:
+            joining = m.scene.material[material].joining_energy
+            scale = m.scene.material[material].force_scale
+            loss += scale * (joining * number + m.state.history[k].booked[material])
+    return loss

@@ -1,0 +1,81 @@
+"""Quadrature of powers over one or several steps, from values and rates at both ends."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from gearidae.compiled import compiled
+
+__all__ = ["Ends", "correction", "error_estimate", "integral", "integral_of_cube", "torque_work"]
+
+
+class Ends(NamedTuple):
+    """A quantity and its rate at the beginning and at the end of an interval."""
+
+    start: float
+    start_rate: float
+    end: float
+    end_rate: float
+
+
+@compiled
+def torque_work(h: float, travel: float, force: Ends, speed: Ends) -> tuple[float, float]:
+    """Work of a torque along a travel, and how far it may be out.
+
+    The mean of the torque does its part exactly, and its change that at the mean speed nearly so; what is in doubt is
+    the work at the speed's deviation.
+    """
+    work = 0.5 * (force.start + force.end) * travel
+    if force.start_rate == 0.0 and force.end_rate == 0.0:
+        return work, 0.0
+    mean, half = travel / h, 0.5 * (force.end - force.start)
+    a, b = speed.start - mean, speed.end - mean
+    start, end = force.start_rate * a - half * speed.start_rate, force.end_rate * b + half * speed.end_rate
+    slow = mean * correction(h, force.start_rate, force.end_rate)
+    return work + slow + integral(h, -half * a, half * b, start, end), error_estimate(
+        h, half * a, half * b, start, end
+    )
+
+
+@compiled
+def error_estimate(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
+    """By how much the corrected trapezoidal rule may be out: its correction, times the share that this has in it."""
+    corrected = abs(correction(h, rate0, rate1))
+    if corrected == 0.0:
+        return 0.0
+    return corrected * corrected / (corrected + 0.5 * h * (abs(f0) + abs(f1)))
+
+
+@compiled
+def integral(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
+    """Corrected trapezoidal rule: exact for cubics."""
+    return 0.5 * h * (f0 + f1) + correction(h, rate0, rate1)
+
+
+@compiled
+def correction(h: float, rate0: float, rate1: float) -> float:
+    """What the rates correct the trapezoidal rule by."""
+    return h * h / 12.0 * (rate0 - rate1)
+
+
+@compiled
+def integral_of_cube(h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float) -> float:
+    """Integral of the cube of a speed's magnitude.
+
+    That of the speed itself is known, the travel: what is left to the quadrature is of second order in the speed's
+    deviation from its mean.
+    """
+    mean = travel / h
+    if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # it has turned round
+        q0, q1 = w0 * abs(w0), w1 * abs(w1)
+        return integral(h, q0 * w0, q1 * w1, 3.0 * q0 * rate0, 3.0 * q1 * rate1)
+    a, b = w0 - mean, w1 - mean
+    # of the cube of mean and deviation, the deviation itself leaves nothing
+    rest = integral(
+        h,
+        (3.0 * mean + a) * a * a,
+        (3.0 * mean + b) * b * b,
+        3.0 * (2.0 * mean + a) * a * rate0,
+        3.0 * (2.0 * mean + b) * b * rate1,
+    )
+    return abs(mean * mean * travel + rest)

@@ -1,0 +1,63 @@
+"""Stick and slip: dry resistance at the gear is set-valued, so that its beginning and end are events."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gearidae.compiled import compiled
+from gearidae.engine.energy.motion import kinetic_energy
+from gearidae.engine.events.record import record
+from gearidae.engine.model.residual import mesh_forces
+from gearidae.engine.model.state import LOAD, Floats, Model, V, W
+from gearidae.engine.model.torque import torque_force
+from gearidae.records import EventKind, Flank
+
+__all__ = ["dry_guard", "note_slip", "stick_or_slip"]
+
+_NO_FORCE: Final = 1e-12  # of the reference load: less than this neither holds a gear nor moves it from rest
+_STICK, _SLIP, _NO_FLANK = float(EventKind.STICK), float(EventKind.SLIP), float(Flank.NONE)
+
+
+@compiled(inline=True)
+def dry_guard(m: Model, t: float, y: Floats) -> float:
+    """Slip speed, or what is left of the dry resistance of a gear held at rest."""
+    if m.state.slip == 0.0:
+        return _hold_guard(m, t, y)
+    # a slip too slow to be told from rest may turn back a little before it is called one
+    return y[W] * m.state.slip + (0.0 if m.state.slipping != 0 else 2.0 * m.scene.rest_speed)
+
+
+@compiled
+def _hold_guard(m: Model, t: float, y: Floats) -> float:
+    """What is left of the dry resistance of a gear held at rest."""
+    return max(torque_force(m, LOAD, t), 0.0) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
+
+
+@compiled
+def _push(m: Model, t: float, y: Floats) -> float:
+    """Force on a gear at rest, from the mesh."""
+    force, relief, _, _, _, _ = mesh_forces(m, t, y)
+    return force + m.scene.damping * y[V] + relief
+
+
+@compiled(inline=True)
+def note_slip(m: Model, y: Floats) -> None:
+    """Note at an accepted time that a slip has become faster than the speed told from rest."""
+    if m.scene.dry != 0 and y[W] * m.state.slip > m.scene.rest_speed:
+        m.state.slipping = 1
+
+
+@compiled
+def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> int:
+    """Set-valued dry resistance: it holds the gear as long as it can, and gives way as the load pushes."""
+    before = kinetic_energy(m, y)
+    y[W] = 0.0
+    m.state.slipping = 0
+    m.state.energy.dry_loss += before - kinetic_energy(m, y)
+    push = _push(m, t, y)
+    slipping = m.state.slip != 0.0
+    if slipping and abs(push) <= max(torque_force(m, LOAD, t), 0.0) + _NO_FORCE:
+        m.state.slip = 0.0
+        return record(m, events, count, t, _STICK, 0, _NO_FLANK, 0.0)
+    m.state.slip = 1.0 if push > 0.0 else -1.0
+    return count if slipping else record(m, events, count, t, _SLIP, 0, _NO_FLANK, 0.0)

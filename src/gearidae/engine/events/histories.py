@@ -1,0 +1,90 @@
+"""The pairs' histories between events: begun, followed from one accepted time to the next, and cleared."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearidae.compiled import compiled
+from gearidae.engine.elastic.calls import follow_nodes, init_nodes
+from gearidae.engine.elastic.nodes import middle_gap
+from gearidae.engine.events.dry_resistance import dry_guard, note_slip, stick_or_slip
+from gearidae.engine.events.mesh_marks import set_marks
+from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
+from gearidae.engine.model.tooth_pairs import (
+    gap_and_rate,
+    history_of,
+    nearest_gap,
+    pair_at,
+    pairs_touching,
+    set_joined,
+)
+
+__all__ = ["accept", "begin"]
+
+
+@compiled(inline=True)
+def accept(m: Model, t: float, y: Floats) -> None:
+    """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
+    m.state.time = t
+    note_slip(m, y)
+    for coast in range(1 if m.scene.kind == ROLLER else 2):
+        if nearest_gap(m, coast, y) < m.scene.cutoff:
+            m.state.near[coast] = 1
+        elif m.state.near[coast] != 0:
+            clear_history(m, coast)
+    reach = pairs_touching(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        k = history_of(m, coast, pair)
+        h = m.state.history[k]
+        gap, rate = gap_and_rate(m, coast, pair, y)
+        if h.pair != pair or gap >= m.scene.cutoff:
+            init_history(m, k, pair, gap, middle_gap(m, k, y, gap))
+            if m.scene.nodes > 0:
+                init_nodes(m, k, y, gap)
+        elif m.scene.nodes > 0:
+            follow_nodes(m, k, y, gap)
+        h.gap, h.gap_rate = gap, rate
+        if gap < m.scene.lowest_gap:
+            m.state.bound_exceeded = 1
+        if h.direction == 0.0:
+            h.direction = float(np.sign(rate))
+
+
+@compiled
+def clear_history(m: Model, coast: int) -> None:
+    """Empty a flank's histories: none of its pairs is near."""
+    m.state.near[coast] = 0
+    for k in range(m.scene.slots):
+        m.state.history[coast * m.scene.slots + k].pair = EMPTY
+
+
+@compiled
+def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None:
+    """Start the history of a pair on which nothing is joined yet."""
+    h = m.state.history[k]
+    if h.pair != pair:
+        h.pair = pair
+        h.in_contact = 1 if gap < m.scene.contact_gap else 0
+        for material in range(MATERIALS):
+            if m.scene.material[material].stretch_limit > 0.0:
+                set_joined(m, k, material, middle)
+    for material in range(MATERIALS):
+        h.joined[material] = middle  # beyond the cut-off its branch does not matter
+        if gap >= m.scene.cutoff:
+            h.booked[material] = 0.0
+        h.fully_stretched[material] = 0
+    h.direction = 0.0
+
+
+@compiled(makes_arrays=True)
+def begin(m: Model, t: float, y: Floats) -> None:
+    """Set the histories and mesh marks for a start at `y`."""
+    for coast in range(1 if m.scene.kind == ROLLER else 2):
+        clear_history(m, coast)
+    accept(m, t, y)
+    if m.scene.kind == GEARS:
+        set_marks(m, y[PHASE])
+        if m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0:  # nothing holds it from the start
+            stick_or_slip(m, t, y, np.empty((EVENTS_AT_ONCE, 5)), 0)

@@ -1,0 +1,80 @@
+"""Mesh entries and exits: the phase crosses a mark of the mesh."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled
+from gearidae.engine.events.record import record
+from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model
+from gearidae.engine.model.tooth_pairs import gap_and_rate
+from gearidae.records import EventKind
+
+__all__ = ["cross_mark", "crossed_mark", "mark_guard", "set_marks"]
+
+_MESH_ENTRY, _MESH_EXIT = float(EventKind.MESH_ENTRY), float(EventKind.MESH_EXIT)
+_KINDS: Final = 4
+
+
+@compiled(inline=True)
+def mark_guard(m: Model, y: Floats) -> float:
+    """Distance of the phase from the nearest mark."""
+    return min(y[PHASE] - m.state.mark_low, m.state.mark_high - y[PHASE])
+
+
+@compiled(inline=True)
+def crossed_mark(m: Model, y: Floats) -> bool:
+    """Whether the phase has crossed one of its marks."""
+    return bool(not m.state.mark_low <= y[PHASE] < m.state.mark_high)
+
+
+@compiled
+def _mark(m: Model, k: int) -> float:
+    """Phase of the first mark of each kind: drive entry and exit, coast exit and entry (it runs the other way)."""
+    if k == 0:
+        return 0.0
+    if k == 1:
+        return m.scene.contact_ratio
+    if k == 2:
+        return m.scene.coast_phase
+    return m.scene.coast_phase - m.scene.contact_ratio
+
+
+@compiled
+def set_marks(m: Model, phase: float) -> None:
+    """Bracket the phase by the nearest mesh entries and exits of either flank."""
+    low, high = -math.inf, math.inf
+    for k in range(_KINDS):
+        mark = _mark(m, k)
+        whole = math.floor(phase - mark)
+        low, high = max(low, whole + mark), min(high, whole + 1 + mark)
+    m.state.mark_low, m.state.mark_high = low, high
+
+
+@compiled
+def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int:
+    """Mesh entry or exit at the mark just crossed; then bracket the phase anew from the far side."""
+    forward = y[PHASE] >= m.state.mark_high
+    crossed = m.state.mark_high if forward else m.state.mark_low
+    low, high = -math.inf, math.inf
+    for k in range(_KINDS):
+        mark = _mark(m, k)
+        whole = math.floor(crossed - mark + 0.5)
+        here = mark + whole
+        if abs(crossed - here) < 1e-9:
+            coast = COAST if k >= 2 else DRIVE
+            begins = (k == 0 or k == 3) == forward
+            _, rate = gap_and_rate(m, coast, whole, y)
+            count = record(m, events, count, t, _MESH_ENTRY if begins else _MESH_EXIT, whole, coast, rate)
+        else:
+            here = mark + math.floor(crossed - mark)
+            if not forward:
+                here += 1.0
+        # a mark comes out a rounding error before or behind what has been crossed: the phase is on its far side
+        if forward:
+            low, high = max(low, min(here, crossed)), min(high, here + 1.0)
+        else:
+            low, high = max(low, here - 1.0), min(high, max(here, crossed))
+    m.state.mark_low, m.state.mark_high = low, high
+    return count

@@ -1,0 +1,122 @@
+"""Events of a tooth pair: contact onset and separation, turning point of the gap, full stretch of a material.
+
+For each kind, its guard (positive while the event is to come) and what is done when the guard has fallen.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gearidae.compiled import compiled
+from gearidae.contact.history import joined_height
+from gearidae.engine.elastic.calls import join_nodes
+from gearidae.engine.elastic.nodes import middle_gap
+from gearidae.engine.energy.adhesion import book_joining
+from gearidae.engine.events.record import record
+from gearidae.engine.model.state import MATERIALS, Floats, Model
+from gearidae.engine.model.tooth_pairs import gap_and_rate, set_joined
+from gearidae.records import EventKind
+
+__all__ = ["handle_pair", "newly_stretched", "pair_guard"]
+
+_ONSET: Final = float(EventKind.ONSET)
+_SEPARATION: Final = float(EventKind.SEPARATION)
+_TURNING_POINT: Final = float(EventKind.TURNING_POINT)
+_FULL_STRETCH: Final = float(EventKind.FULL_STRETCH)
+_FLANK_CHANGE: Final = float(EventKind.FLANK_CHANGE)
+
+
+@compiled
+def pair_guard(m: Model, k: int, gap: float, rate: float, middle: float) -> float:
+    """Least of one pair's guards; asperities stretch with the gap in the middle, which deflection has its part in."""
+    h = m.state.history[k]
+    touch = gap - m.scene.contact_gap
+    least = -touch if h.in_contact != 0 else touch
+    if gap >= m.scene.cutoff:
+        return least
+    if h.direction != 0.0:
+        least = min(least, rate * h.direction)
+    if h.direction > 0.0:
+        for material in range(MATERIALS):
+            limit = m.scene.material[material].stretch_limit
+            if limit > 0.0 and h.fully_stretched[material] == 0:
+                least = min(least, h.joined[material] + limit - middle)
+    return least
+
+
+@compiled
+def handle_pair(
+    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, events: Floats, count: int
+) -> int:
+    """Deal with one pair's guards that have fallen, disarm them, and return the new number of events.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    y : ndarray, shape (n,)
+        State there.
+    coast, pair, k : int
+        Flank and number of the pair, and index of its history.
+    events : ndarray, shape (n, 5)
+    count : int
+        See `gearidae.engine.events.record`.
+    """
+    gap, rate = gap_and_rate(m, coast, pair, y)
+    h = m.state.history[k]
+    inside = gap <= m.scene.contact_gap if h.in_contact == 0 else gap < m.scene.contact_gap
+    if inside != (h.in_contact != 0):
+        count = _change_contact(m, t, coast, pair, k, rate, events, count)
+    if gap >= m.scene.cutoff:
+        return count
+    middle = middle_gap(m, k, y, gap)
+    for material in range(MATERIALS):
+        if newly_stretched(m, k, material, middle):
+            h.fully_stretched[material] = 1
+            count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
+    if h.direction != 0.0 and h.direction * rate <= 0.0:
+        _turn_round(m, y, coast, pair, k, gap)
+        count = record(m, events, count, t, _TURNING_POINT, pair, coast, rate)
+    return count
+
+
+@compiled
+def _change_contact(
+    m: Model, t: float, coast: int, pair: int, k: int, rate: float, events: Floats, count: int
+) -> int:
+    """Contact onset or separation, and a change of flank with it."""
+    h = m.state.history[k]
+    h.in_contact = 1 - h.in_contact
+    onset = h.in_contact != 0
+    count = record(m, events, count, t, _ONSET if onset else _SEPARATION, pair, coast, rate)
+    if onset:
+        if m.state.last_flank == 1 - coast:
+            count = record(m, events, count, t, _FLANK_CHANGE, pair, coast, rate)
+        m.state.last_flank = coast
+    return count
+
+
+@compiled
+def newly_stretched(m: Model, k: int, material: int, middle: float) -> bool:
+    """Whether a material's asperities have been stretched in full since that was last recorded."""
+    h, limit = m.state.history[k], m.scene.material[material].stretch_limit
+    waiting = limit > 0.0 and h.direction > 0.0 and h.fully_stretched[material] == 0
+    return bool(waiting and h.joined[material] + limit <= middle)
+
+
+@compiled
+def _turn_round(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Take the joined heights at a turning point of the gap."""
+    h, middle = m.state.history[k], middle_gap(m, k, y, gap)
+    if h.direction < 0.0:
+        book_joining(m, y, coast, pair, k, gap)
+    for material in range(MATERIALS):
+        limit = m.scene.material[material].stretch_limit
+        if limit > 0.0:
+            set_joined(m, k, material, joined_height(h.joined[material], middle, limit))
+            h.fully_stretched[material] = 0
+    if m.scene.nodes > 0:
+        join_nodes(m, k, y, gap)
+    h.direction = -h.direction
+    h.gap, h.gap_rate = gap, 0.0

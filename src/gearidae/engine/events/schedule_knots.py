@@ -1,0 +1,30 @@
+"""Schedule knots: a torque's schedule enters its next segment."""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled
+from gearidae.engine.events.record import record
+from gearidae.engine.model.state import DRIVE, LOAD, Floats, Model
+from gearidae.engine.model.torques.schedule import enter_segment
+from gearidae.records import EventKind, Flank
+
+__all__ = ["next_stop", "pass_knot"]
+
+_SCHEDULE_KNOT, _NO_FLANK = float(EventKind.SCHEDULE_KNOT), float(Flank.NONE)
+
+
+@compiled
+def next_stop(m: Model) -> float:
+    """Time of the coming knot, or the end of the run."""
+    if m.state.next_knot < m.scene.knot_count:
+        return m.tables[m.scene.knots_at + m.state.next_knot]
+    return m.scene.end
+
+
+@compiled
+def pass_knot(m: Model, t: float, events: Floats, count: int) -> int:
+    """Enter the next segment of every schedule that has a knot here."""
+    enter_segment(m, DRIVE, t)
+    enter_segment(m, LOAD, t)
+    m.state.next_knot += 1
+    return record(m, events, count, t, _SCHEDULE_KNOT, 0, _NO_FLANK, 0.0)

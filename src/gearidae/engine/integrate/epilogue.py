@@ -1,0 +1,107 @@
+"""What both drivers do at an accepted time, and before they start afresh."""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled
+from gearidae.engine.energy.balance import accumulate_energy
+from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
+from gearidae.engine.events.histories import accept
+from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.schedule_knots import pass_knot
+from gearidae.engine.integrate import adams
+from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
+from gearidae.engine.integrate.start import PHASE_HIGH, rebase
+from gearidae.engine.integrate.step_control import change_wanted
+from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
+from gearidae.engine.model.tooth_pairs import in_flight
+
+__all__ = ["ROOT", "STOP", "finish_step", "has_room", "prepare_restart"]
+
+STOP, ROOT = 1, 2
+"""IDA's flags for a stop and for a root."""
+
+BALANCE_ORDER = 4
+"""Order of the energy balance's quadrature."""
+
+
+@compiled
+def has_room(m: Model, events: Floats) -> bool:
+    """Whether all events of one more accepted time find room in the block: else it is handed out first."""
+    return bool(m.work.driver.events <= events.shape[0] - EVENTS_AT_ONCE)
+
+
+@compiled(inline=True)
+def finish_step(
+    m: Model, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int, events: Floats
+) -> bool:
+    """Follow histories and energies to an accepted time, and deal with what has happened there.
+
+    Parameters
+    ----------
+    m : Model
+        ``m.work.driver.time`` is the accepted time; its ``events``, ``done`` and ``error`` are set.
+    y, yp : ndarray, shape (n,)
+        State and rates there; the state changes where the gear sticks.
+    between : tuple of two ndarrays, shape (n,)
+        Work space.
+    flag : int
+        0, `STOP` or `ROOT`.
+    events : ndarray, shape (n, 5)
+        Of the block; see `has_room`.
+
+    Returns
+    -------
+    bool
+        Whether the integration has to start afresh from here.
+    """
+    driver, t = m.work.driver, m.work.driver.time
+    accept(m, t, y)
+    _book(m, t, y, yp, between, flag)
+    if m.state.bound_exceeded != 0:
+        driver.error = BOUND_EXCEEDED
+    if in_flight(m):
+        m.state.progress.flight_steps += 1
+    afresh = m.scene.kind == GEARS and abs(y[PHASE]) > PHASE_HIGH
+    afresh |= change_wanted(m, y, yp)
+    if flag == ROOT:
+        driver.events, action = handle(m, t, y, events, driver.events)
+        afresh |= action == RESTART
+        if action == CROWDED:
+            driver.error = CHATTER
+    elif flag == STOP:
+        if m.state.next_knot < m.scene.knot_count:
+            driver.events = pass_knot(m, t, events, driver.events)
+            afresh = True
+        else:
+            driver.done = 1
+    return afresh
+
+
+@compiled(inline=True)
+def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int) -> None:
+    """Keep the energy balance up to an accepted time, and what its flag says of it, before that is handled.
+
+    Where a pair turns round nothing has to be kept. In flight, where torques and drag are all that is left to
+    integrate, formulas of high order take steps that are too long for the quadrature: these are divided.
+    """
+    if flag == ROOT and balance_can_wait(m, t, y):
+        return
+    now = flag != 0 or m.state.bound_exceeded != 0
+    a, parts, start = m.work.adams, 1, m.work.quadrature.time
+    if a.order_used > BALANCE_ORDER and in_flight(m) and m.scene.kind == GEARS:
+        parts = m.scene.flight_parts
+        start = max(start, a.time - a.last_step)
+    for part in range(1, parts + 1):
+        time, state, rates = t, y, yp
+        if part < parts:
+            time, state, rates = start + (t - start) * part / parts, between[0], between[1]
+            adams.between(a, time, state, rates)
+        accumulate_energy(m, time, state, rates, now or part < parts)
+
+
+@compiled
+def prepare_restart(m: Model, y: Floats, yp: Floats) -> None:
+    """Close the energy balance's interval and move whole pitches out of the phase, before a start from here."""
+    accumulate_energy(m, m.work.driver.time, y, yp, True)
+    rebase(m, y)
+    m.state.progress.restarts += 1

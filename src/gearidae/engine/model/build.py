@@ -1,0 +1,326 @@
+"""From a scene to the numbers that the compiled residual reads."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+
+from gearidae.contact.kernels.law import GAP_LOW
+from gearidae.engine.elastic.calls import service
+from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
+from gearidae.engine.elastic.static_solve import settle_nodes
+from gearidae.engine.energy.balance import open_balance
+from gearidae.engine.events.histories import begin
+from gearidae.engine.model.build_contact import Nodes, add_contact, add_nodes, choose_model
+from gearidae.engine.model.checkpoint import scene_digest
+from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.state import (
+    DRIVE,
+    GEARS,
+    LOAD,
+    ROLLER,
+    SCENE,
+    SLOTS_HIGH,
+    Floats,
+    Model,
+    Record,
+    blank_model,
+)
+from gearidae.engine.model.tables import Tables
+from gearidae.engine.model.tooth_pairs import contact_length
+from gearidae.engine.model.torques.harmonic import pack_harmonics
+from gearidae.engine.model.torques.schedule import pack_schedule
+from gearidae.errors import SceneError
+from gearidae.mesh.involute import Geometry
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.scene import Drive, Load, Scene
+
+__all__ = ["make_problem"]
+
+STRIDE = 6  # accepted steps near contact that the energy balance integrates over at once
+SPAN = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
+ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
+ROOT_SPACING = 1e-12  # what is close, over the time itself
+
+
+def make_problem(
+    scene: Scene, nodes: Nodes | None = None, digest: tuple[float, ...] | None = None
+) -> Problem:
+    """Scale a scene and tabulate its force laws.
+
+    Parameters
+    ----------
+    scene : Scene
+    nodes : Nodes, optional
+        Layout of an elastic contact's nodes, in place of the one that is estimated.
+    digest : tuple of four floats, optional
+        Of the scene whose checkpoints these are, if it is not this one.
+
+    Raises
+    ------
+    SceneError
+        If the scene is beyond what the engine can do.
+    """
+    build = _gear_problem if scene.roller is None else _roller_problem
+    problem = build(scene, nodes)
+    problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
+    count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
+    if count > 0:
+        problem.depth = 1 if nodes is None else nodes.depth
+        if lowest > -DEPTH_HIGH:
+            deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
+            problem.deeper = lambda: make_problem(scene, deeper, problem.digest)
+    elif scene.contact.model == "auto":
+        bodies = scene.replace({"contact.model": "elastic"})
+        problem.elastic = lambda: make_problem(bodies, None, problem.digest)
+    return problem
+
+
+def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
+    gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
+    assert gears
+    assert mesh
+    assert start
+    assert drive
+    assert load
+    geometry, sigma = scene.geometry, scene.surface.roughness
+    s, tables = np.zeros(1, SCENE)[0], Tables()
+    _set_units(s, scene)
+    speed = sigma / float(s.time_unit)
+    _set_geometry(s, geometry, mesh.tip_relief_radius)
+    s.half_backlash = 0.5 * mesh.backlash / sigma
+    s.damping = mesh.damping * speed / float(s.force_unit)
+    s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)
+    grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
+    s.dry = int(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
+    s.rest_speed = 10.0 * scene.run.rtol
+    widest = math.sqrt(0.25 / float(s.sum_curvature))
+    unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
+    add_contact(s, tables, scene, gears.face_width, unit_length, widest)
+    s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
+    _set_slots(s)
+    _add_torques(s, tables, scene)
+    _add_static_error(s, tables, scene)
+    add_nodes(s, tables, grid)
+    model = _model(s, tables, [1.0, 1.0, 1.0 / float(s.relief_curvature * s.reach), 1.0])
+    model.state.slip = np.sign(start.gear_speed) if s.dry else 1.0
+    for shaft, law in ((DRIVE, drive), (LOAD, load)):
+        model.state.segment[shaft] = sum(t <= 0.0 for t, _ in law.schedule)
+    outside = start.mesh_phase - min(max(start.mesh_phase, 0.0), float(s.contact_ratio))
+    relief = float(0.5 * s.relief_curvature * outside**2)
+    u = float(s.half_backlash) + relief - start.gap / sigma
+    w = start.gear_speed * geometry.base_radius_gear / speed
+    skipped = {
+        "static_error": int(not mesh.static_error),
+        "harmonics": int(not drive.harmonic and not load.harmonic),
+        "dry_resistance": int(s.dry == 0),
+    }
+    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], GEAR_COLUMNS, skipped)
+
+
+def _roller_problem(scene: Scene, nodes: Nodes | None) -> Problem:
+    roller = scene.roller
+    assert roller is not None
+    sigma = scene.surface.roughness
+    speed = roller.speed if roller.speed != 0.0 else 1e3 * sigma / scene.run.duration
+    s, tables = np.zeros(1, SCENE)[0], Tables()
+    s.kind, s.length_unit = ROLLER, sigma
+    s.time_unit, s.force_unit = sigma / abs(speed), roller.mass * speed**2 / sigma
+    s.gear_inverse_mass = 1.0
+    energy = 0.5 * roller.mass * roller.speed**2
+    bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
+    grid = choose_model(s, scene, bounds, nodes)
+    add_contact(s, tables, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
+    s.slots = s.histories = 1
+    _set_run(s, tables, scene, set())
+    add_nodes(s, tables, grid)
+    model = _model(s, tables, [1.0, 1.0])
+    model.state.slip = 1.0
+    start = [roller.height / sigma, -roller.speed * float(s.time_unit) / sigma]
+    return _begun(model, scene, start, ROLLER_COLUMNS, {})
+
+
+# -- constants -------------------------------------------------------------------------------------------------------
+
+
+def _set_units(s: Record, scene: Scene) -> None:
+    """Set the units of a gear pair and its inverse masses."""
+    gears, geometry = scene.gears, scene.geometry
+    assert gears
+    pinion_mass = gears.pinion_inertia / geometry.base_radius_pinion**2
+    gear_mass = gears.gear_inertia / geometry.base_radius_gear**2
+    mass = 1.0 / (1.0 / pinion_mass + 1.0 / gear_mass)
+    force = _reference_force(scene, mass)
+    s.kind, s.length_unit = GEARS, scene.surface.roughness
+    s.time_unit, s.force_unit = math.sqrt(mass * scene.surface.roughness / force), force
+    s.pinion_inverse_mass, s.gear_inverse_mass = mass / pinion_mass, mass / gear_mass
+
+
+def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> None:
+    """Set the constants of a gear pair that geometry alone decides."""
+    pitch, sigma = geometry.base_pitch, float(s.length_unit)
+    s.base_pitch = pitch
+    s.pinion_radius, s.gear_radius = geometry.base_radius_pinion, geometry.base_radius_gear
+    s.pinion_teeth = geometry.pinion_teeth
+    s.phase_rate = sigma / pitch
+    s.contact_ratio = geometry.contact_ratio
+    s.coast_phase = 2.0 * geometry.approach / pitch + 0.5
+    s.relief_curvature = pitch**2 / (tip_relief_radius * sigma)
+    s.relief_slope = pitch / tip_relief_radius
+    s.start_radius = (geometry.tangent_pinion - geometry.approach) / pitch
+    s.sum_curvature = pitch / (geometry.tangent_pinion + geometry.tangent_gear)
+
+
+def _gear_bounds(s: Record, scene: Scene) -> ContactBounds:
+    """Where the contacts of a gear pair take place."""
+    gears, mesh, start = scene.gears, scene.mesh, scene.initial
+    assert gears
+    assert mesh
+    assert start
+    # the radius is largest where both radii of curvature are the same, if that is on the path
+    ratio = float(s.contact_ratio)
+    equal = 0.5 / float(s.sum_curvature) - float(s.start_radius)
+    blank = blank_model(s, np.zeros(0), 0)
+    lengths = [float(contact_length(blank, x)) for x in (0.0, ratio, min(max(equal, 0.0), ratio))]
+    # the load pushing through the whole backlash, twice for good measure
+    force = float(s.force_unit)
+    energy = 2.0 * force * mesh.backlash
+    nearest = min(start.gap, mesh.backlash - start.gap) / float(s.length_unit)
+    pitch = float(s.base_pitch)
+    return ContactBounds(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force, nearest)
+
+
+def _set_slots(s: Record) -> None:
+    """Set how many histories each flank keeps: at least as many as pairs can be within reach."""
+    within = float(s.contact_ratio + 2.0 * s.reach)
+    slots = 2 ** math.ceil(math.log2(within))
+    if slots > SLOTS_HIGH:
+        raise SceneError(
+            "mesh.tip_relief_radius",
+            f"(a reach of {float(s.reach):.3g} pitches)",
+            f"with these teeth {within:.0f} pairs a flank are within reach at once, more than {SLOTS_HIGH}: "
+            "use a smaller radius, a smaller roughness or fewer teeth",
+        )
+    s.slots, s.histories = slots, 2 * slots
+
+
+def _largest(shaft: Drive | Load) -> float:
+    """Bound of a shaft's prescribed torque [N m]."""
+    steady = abs(shaft.torque) + sum(abs(h.amplitude) for h in shaft.harmonic)
+    return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
+
+
+def _reference_force(scene: Scene, mass: float) -> float:
+    """Load along the line of action that this scene is about [N]: from the torques, else from the motion."""
+    assert scene.drive
+    assert scene.load
+    assert scene.initial
+    geometry, speed = scene.geometry, scene.initial.gear_speed
+    force = max(
+        _largest(scene.drive) / geometry.base_radius_pinion,
+        (_largest(scene.load) + scene.load.drag * speed**2) / geometry.base_radius_gear,
+    )
+    if force == 0.0:
+        force = mass * (speed * geometry.base_radius_gear) ** 2 / geometry.base_pitch
+    return force if force > 0.0 else mass * scene.surface.roughness * (1e3 / scene.run.duration) ** 2
+
+
+# -- tables ----------------------------------------------------------------------------------------------------------
+
+
+def _add_torques(s: Record, tables: Tables, scene: Scene) -> None:
+    """Lay out the torques of both shafts and the times of their knots, and set what the run follows from them."""
+    assert scene.drive
+    assert scene.load
+    tau, force = float(s.time_unit), float(s.force_unit)
+    shafts = ((DRIVE, scene.drive, float(s.pinion_radius)), (LOAD, scene.load, float(s.gear_radius)))
+    knots = set()
+    fastest = 0.0
+    for shaft, law, radius in shafts:
+        own, unit = s.torque[shaft], force * radius
+        harmonics = [(h.amplitude, h.frequency, h.phase) for h in law.harmonic]
+        own.constant = law.torque / unit
+        own.harmonic_count, own.harmonics_at = (
+            len(harmonics),
+            tables.add(pack_harmonics(harmonics, tau, unit)),
+        )
+        own.knot_count, own.knots_at = len(law.schedule), tables.add(pack_schedule(law.schedule, tau, unit))
+        knots |= {t / tau for t, _ in law.schedule if 0.0 < t < scene.run.duration}
+        fastest = max([fastest, *(h.frequency for h in law.harmonic)])
+    _set_run(s, tables, scene, knots)
+    s.balance_steps = STRIDE
+    s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
+
+
+def _set_run(s: Record, tables: Tables, scene: Scene, knots: set[float]) -> None:
+    """Set the end of the run, its knots and what counts as chatter."""
+    s.end = scene.run.duration / float(s.time_unit)
+    s.knot_count, s.knots_at = len(knots), tables.add(sorted(knots))
+    s.root_limit, s.root_spacing = ROOT_LIMIT, ROOT_SPACING
+
+
+def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
+    """Lay out the harmonics of the static transmission error."""
+    assert scene.mesh
+    errors = scene.mesh.static_error
+    numbers = [x for h in errors for x in (h.order, h.amplitude / float(s.length_unit), h.phase)]
+    s.error_count, s.error_at = len(errors), tables.add(numbers)
+    order = max((h.order for h in errors), default=0)
+    s.mesh_omega = 2.0 * math.pi * max(1.0, order / float(s.pinion_teeth))
+
+
+# -- the start -------------------------------------------------------------------------------------------------------
+
+
+def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
+    """Put the model together, and note where its changing rows are; `scale` is that of the motion's states."""
+    nodes, histories = int(s.nodes), int(s.histories)
+    s.states = len(scale) + nodes * histories
+    s.scale_at = tables.add(_scale(nodes, histories, scale))
+    rows = Tables()
+    s.branches_at = rows.add(np.zeros(4 * int(s.branch_length) * histories))
+    s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
+    s.error_weights_at = rows.add(np.zeros(int(s.states)))
+    return blank_model(s, tables.whole(), rows.whole().size)
+
+
+def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:
+    """What an error of 1 means for each state.
+
+    The solver's norm is a mean over all states. Factors make it that of the motion alone, however many
+    nodes there are, with the nodes of one pair counting as one more state.
+    """
+    share = math.sqrt(len(motion) / (len(motion) + nodes * histories))
+    return np.concatenate(
+        [share * np.array(motion), np.full(nodes * histories, share * math.sqrt(max(nodes, 1)))]
+    )
+
+
+def _begun(
+    m: Model, scene: Scene, motion: list[float], columns: tuple[str, ...], skipped: dict[str, int]
+) -> Problem:
+    """Set the histories and the energy balance for the start."""
+    s = m.scene
+    y = np.concatenate([motion, np.zeros(int(s.nodes * s.histories))])
+    if s.nodes > 0:
+        m.work.elastic_service = service()
+        settle_nodes(m, 0.0, y)
+    begin(m, 0.0, y)
+    open_balance(m, y)
+    scale = m.tables[s.scale_at : s.scale_at + s.states]
+    return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
+
+
+def _skipped(m: Model, scene: Scene) -> dict[str, int]:
+    """What the contact of this scene does not need."""
+    fraction = scene.coating.sam_fraction
+    bare, coated = m.scene.material
+    return {
+        "bare_surface": int(fraction == 1.0),
+        "coated_surface": int(fraction == 0.0),
+        "bare_hysteresis": int(bare.stretch_limit == 0.0),
+        "coated_hysteresis": int(coated.stretch_limit == 0.0),
+        "elastic_deflection": int(m.scene.nodes == 0),
+    }

@@ -1,0 +1,134 @@
+"""From a scene's surfaces and contact model to force scales, tables and nodes."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from gearidae.contact.jkr import asperity_of
+from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table
+from gearidae.contact.kernels.law import (
+    GAP_HIGH,
+    GAP_LOW,
+    H_STRETCH,
+    HEADER,
+    N_LOADING,
+    STRETCH_HIGH,
+    Kernel,
+    branch_length,
+    force_scale,
+    law_table,
+    law_value,
+)
+from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
+from gearidae.engine.elastic.rows import point_count, row_numbers
+from gearidae.engine.model.state import Floats, Record
+from gearidae.engine.model.tables import Tables
+from gearidae.errors import SceneError
+from gearidae.scene import Scene
+
+__all__ = ["Nodes", "add_contact", "add_nodes", "choose_model"]
+
+FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
+CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
+
+
+class Nodes(NamedTuple):
+    """Layout of the nodes of an elastic contact: lowest gap in roughnesses, nodes, and number of the layout."""
+
+    lowest_gap: float
+    nodes: int
+    depth: int
+
+
+def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | None) -> NodeGrid | None:
+    """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
+    model = scene.contact.model
+    s.lowest_gap = GAP_LOW  # where the tables of the force law end
+    if model == "auto":
+        lowest, enough = rigid_limit(scene, bounds)
+        model = "asperity" if enough else "elastic"
+        s.lowest_gap = lowest
+    if model == "asperity":
+        return None
+    if nodes is None:
+        deepest, count = min(deepest_gap(scene, bounds), 0.0), None
+    else:
+        deepest, count = nodes.lowest_gap, nodes.nodes
+    grid = node_grid(scene, bounds, float(s.force_unit), deepest, count)
+    s.nodes, s.points, s.orders = grid.nodes, point_count(grid.nodes), grid.orders
+    s.length_middle, s.length_half_range = grid.middle, grid.half
+    s.lowest_gap = deepest
+    return grid
+
+
+def add_nodes(s: Record, tables: Tables, grid: NodeGrid | None) -> None:
+    """Lay out the constants of the nodes, and note how many numbers of them change."""
+    if grid is None:
+        return
+    n, points = grid.nodes, int(s.points)
+    start = tables.add(grid.body)
+    sizes = (n, n, grid.orders * n * n, points, points)
+    starts = start + np.cumsum([0, *sizes])
+    s.profile_at, s.weights_at, s.influence_at, s.point_profile_at, s.point_weights_at, s.shares_at = starts
+    s.node_row_length = row_numbers(n)
+
+
+def add_contact(
+    s: Record, tables: Tables, scene: Scene, width: float, unit_length: float, widest: float
+) -> None:
+    """Lay out force laws and stored energies, and set the gaps where contact begins to count and to exist at all.
+
+    Parameters
+    ----------
+    s : record
+        ``SCENE``; changed.
+    tables : Tables
+    scene : Scene
+    width, unit_length : float
+        Face width, and ``sqrt(2 R sigma)`` of a contact of unit length [m].
+    widest : float
+        Largest contact length.
+    """
+    reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
+    kernel: Kernel = "plane" if s.nodes > 0 else "line"
+    loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
+    fraction, longest = scene.coating.sam_fraction, 0
+    shares = ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
+    for material, (surface, share) in enumerate(shares):
+        own, tip = s.material[material], asperity_of(surface)
+        limit = tip.stretch_limit / surface.roughness
+        if limit > STRETCH_HIGH:
+            raise SceneError(
+                "surface.roughness",
+                surface.roughness,
+                f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
+            )
+        table = law_table(limit, scene.contact.asperity, kernel).copy() if share > 0.0 else np.zeros(HEADER)
+        energy = energy_table(limit, scene.contact.asperity, kernel) if share > 0.0 else table
+        scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
+        force = share * scale * unit_length / float(s.force_unit)
+        own.force_scale, own.stretch_limit = force, table[H_STRETCH]
+        own.joining_energy = joining_energy(table[H_STRETCH])
+        own.table_at, own.energy_at, own.table_count = tables.add(table), tables.add(energy), table.size
+        longest = max(longest, branch_length(table))
+        if share > 0.0:
+            loading += force * table[HEADER : HEADER + loading.size]
+            potential += force * energy[HEADER : HEADER + potential.size]
+            for floor, gap in reach.items():
+                reach[floor] = max(gap, _outermost(table, force * widest, floor))
+    s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
+    s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
+    s.number_at = tables.add(number_table(kernel))
+    s.branch_length = 0 if s.nodes > 0 else longest
+
+
+def _outermost(table: Floats, scale: float, floor: float) -> float:
+    """Widest gap at which this surface's force still exceeds `floor`, on a grid of an eighth."""
+    for gap in np.arange(GAP_HIGH + table[H_STRETCH], GAP_LOW, -0.125):
+        largest = max(abs(law_value(table, gap, joined)[0]) for joined in (gap, -math.inf))
+        if scale * largest > floor:
+            return float(gap)
+    return GAP_LOW

@@ -1,0 +1,30 @@
+"""Collecting the arrays of variable length that a model reads, with the place of each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from gearidae.engine.model.state import Floats
+
+__all__ = ["Tables"]
+
+
+class Tables:
+    """One flat array in the making."""
+
+    def __init__(self) -> None:
+        self._parts: list[Floats] = []
+        self._size = 0
+
+    def add(self, numbers: Floats | Sequence[float]) -> int:
+        """Append numbers, and return the place where they begin."""
+        part, start = np.asarray(numbers, np.float64), self._size
+        self._parts.append(part)
+        self._size += part.size
+        return start
+
+    def whole(self) -> Floats:
+        """Return all that has been added."""
+        return np.concatenate([np.zeros(0), *self._parts])
