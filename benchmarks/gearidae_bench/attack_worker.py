@@ -117,7 +117,8 @@ def warm_up() -> None:
     for backend in ("native", "sksundae"):
         for name in ("teodorescu2009", "roller_slow"):
             for model in ("asperity", "elastic"):
-                short = {"contact.model": model, "run.duration": 1e-7, "run.samples": 3}
+                # samples between steps: interpolation is compiled too
+                short = {"contact.model": model, "run.duration": 1e-6, "run.samples": 2001}
                 with contextlib.suppress(SceneError):  # no native driver here
                     gd.simulate(gd.preset(name).replace(short), backend=backend)
 

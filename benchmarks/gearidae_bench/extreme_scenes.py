@@ -71,12 +71,13 @@ def extreme_scene(seed: int, number: int) -> Extreme:
     """
     rng = np.random.default_rng([seed, number, 17])
     backend = "native" if rng.random() < 0.6 else "sksundae"
+    rolls = bool(rng.random() < _ROLLERS)  # once: gears are refused more often than rollers
     refused: SceneError | None = None
     for attempt in range(_TRIES):
         if attempt % _TRIES_EACH == 0:
             draw = _Draw(rng, float(rng.choice(FREE)))
         try:
-            return Extreme(Scene.from_dict({"name": f"extreme {seed}-{number}", **_tables(draw)}), backend)
+            return Extreme(Scene.from_dict({"name": f"extreme {seed}-{number}", **_tables(draw, rolls)}), backend)
         except SceneError as error:
             refused = error
         except (GeometryError, ArithmeticError):  # while drawing: what the gears' own limits leave does not fit together
@@ -159,7 +160,7 @@ def _over(rng: np.random.Generator, limits: Quantity | Count, usual: float) -> f
     return -value if (usual < 0.0 or (negative and rng.random() < 0.2)) else value
 
 
-def _tables(draw: _Draw) -> dict[str, Any]:
+def _tables(draw: _Draw, rolls: bool) -> dict[str, Any]:
     surface = {
         "youngs_modulus": draw.value(Surface, "youngs_modulus", 161e9),
         "poisson_ratio": float(draw.rng.choice([0.23, -0.9999, 0.4999, 0.0], p=[0.85, 0.05, 0.05, 0.05])),
@@ -179,7 +180,7 @@ def _tables(draw: _Draw) -> dict[str, Any]:
             "asperity": str(draw.rng.choice(["jkr", "dmt", "hertz"], p=[0.6, 0.2, 0.2])),
         },
     }
-    moved, unit = _roller(draw, surface) if draw.often(_ROLLERS) else _gears(draw, surface["roughness"])
+    moved, unit = _roller(draw, surface) if rolls else _gears(draw, surface["roughness"])
     duration = draw.value(Run, "duration", unit * 10.0 ** draw.rng.uniform(0.0, 3.5))
     tables["run"] = {
         "duration": duration,

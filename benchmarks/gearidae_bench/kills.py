@@ -21,7 +21,7 @@ import gearidae as gd
 __all__ = ["Killed", "difference", "run_kills"]
 
 _COMMANDS = {
-    "run": ("run", "teodorescu2009", "--set", "run.duration=40 ms", "run.samples=200001"),
+    "run": ("run", "teodorescu2009", "--set", "run.duration=30 ms", "run.samples=200001"),
     "sweep": (
         "sweep", "teodorescu2009_low_speed", "--over", "coating.sam_fraction=1:0.5:-0.1",
         "--set", "run.duration=40 ms", "run.samples=2001", "--jobs", "1",
@@ -78,7 +78,7 @@ def run_kills(kills: int, seed: int, report: Callable[[int], object] | None = No
             _begin(arguments, target).wait()
             whole[command] = target, time.perf_counter() - began
         done = 0
-        while done < kills:
+        while done < kills and not any(one.complaint for one in found.values()):
             for command, (expected, lasts) in whole.items():
                 killed, complaint = _one(command, folder / f"killed_{command}.nc", expected, lasts, rng)
                 done += killed
