@@ -167,6 +167,8 @@ def _ask_where(one: _Running) -> None:
 def _where(trace: Path) -> str:
     """Innermost places of the package in what faulthandler has written."""
     lines = trace.read_text().splitlines() if trace.exists() else []
-    found = re.findall(r'File ".*?([^/\\]+)", line (\d+) in (.*)', trace.read_text() if trace.exists() else "")
+    found = re.findall(
+        r'File ".*?([^/\\]+)", line (\d+) in (.*)', trace.read_text() if trace.exists() else ""
+    )
     places = [f"{name}:{line} {function}" for name, line, function in found]
     return " < ".join(places[:6]) or "an unknown place"

@@ -94,5 +94,7 @@ def bench_kills(kills: int, seed: int) -> int:
         raise SceneError("--runs, --seed", f"{kills}, {seed}", "must be at least 1, and at least 0")
     with Console(stderr=True).status("") as status:
         done = run_kills(kills, seed, lambda number: status.update(f"{number} of {kills} kills ..."))
-    show_rows([(f"{one.command}, killed and resumed", f"{one.kills}", one.complaint or "equal") for one in done])
+    show_rows(
+        [(f"{one.command}, killed and resumed", f"{one.kills}", one.complaint or "equal") for one in done]
+    )
     return UNFINISHED if any(one.complaint for one in done) else DONE

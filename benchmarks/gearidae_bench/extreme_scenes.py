@@ -77,10 +77,15 @@ def extreme_scene(seed: int, number: int) -> Extreme:
         if attempt % _TRIES_EACH == 0:
             draw = _Draw(rng, float(rng.choice(FREE)))
         try:
-            return Extreme(Scene.from_dict({"name": f"extreme {seed}-{number}", **_tables(draw, rolls)}), backend)
+            return Extreme(
+                Scene.from_dict({"name": f"extreme {seed}-{number}", **_tables(draw, rolls)}), backend
+            )
         except SceneError as error:
             refused = error
-        except (GeometryError, ArithmeticError):  # while drawing: what the gears' own limits leave does not fit together
+        except (
+            GeometryError,
+            ArithmeticError,
+        ):  # while drawing: what the gears' own limits leave does not fit together
             continue
     raise refused or SceneError("gears", "(drawn)", "no pair that can mesh was found")
 
@@ -237,9 +242,13 @@ def _gears(draw: _Draw, sigma: float) -> tuple[dict[str, Any], float]:
     backlash = float(draw.rng.choice([0.0, 0.499 * pitch, min(0.2e-6, 0.1 * pitch)], p=[0.1, 0.1, 0.8]))
     if draw.free():
         backlash = draw.between(1e-16, max(0.49 * pitch, 1e-15))
-    torque = 2.43e-11 * 10.0 ** (draw.rng.uniform(-12.0, 12.0) if draw.free() else draw.rng.uniform(-6.0, 0.0))
+    torque = 2.43e-11 * 10.0 ** (
+        draw.rng.uniform(-12.0, 12.0) if draw.free() else draw.rng.uniform(-6.0, 0.0)
+    )
     torque = float(draw.rng.choice([torque, -torque, 0.0], p=[0.8, 0.1, 0.1]))
-    speed = float(draw.rng.choice([0.0, draw.between(1e-3, 1e4), -draw.between(1e-3, 1e4)], p=[0.2, 0.6, 0.2]))
+    speed = float(
+        draw.rng.choice([0.0, draw.between(1e-3, 1e4), -draw.between(1e-3, 1e4)], p=[0.2, 0.6, 0.2])
+    )
     if draw.free():
         speed = draw.value(Initial, "gear_speed", 1.5)
     mass = 1.0 / (r1**2 / inertias[0] + radii[1] ** 2 / inertias[1])
@@ -257,7 +266,9 @@ def _gears(draw: _Draw, sigma: float) -> tuple[dict[str, Any], float]:
         "mesh": {
             "backlash": backlash,
             "tip_relief_radius": draw.value(Mesh, "tip_relief_radius", 10e-6),
-            "damping": draw.value(Mesh, "damping", math.sqrt(mass * force / sigma)) if draw.often(0.3) else 0.0,
+            "damping": draw.value(Mesh, "damping", math.sqrt(mass * force / sigma))
+            if draw.often(0.3)
+            else 0.0,
             "static_error": _static_error(draw, r1, sigma),
         },
         "drive": {"torque": torque},
@@ -325,6 +336,8 @@ def _many(rng: np.random.Generator, duration: float) -> np.ndarray[Any, np.dtype
     return np.unique(duration * rng.uniform(0.0, 1.0, int(rng.choice([300, 3000, _MANY_KNOTS]))))
 
 
-_KNOTS: tuple[
-    Callable[[np.random.Generator, float], np.ndarray[Any, np.dtype[np.float64]]], ...
-] = (_some, _jumps, _many)
+_KNOTS: tuple[Callable[[np.random.Generator, float], np.ndarray[Any, np.dtype[np.float64]]], ...] = (
+    _some,
+    _jumps,
+    _many,
+)

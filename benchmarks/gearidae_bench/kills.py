@@ -112,7 +112,9 @@ def _one(
         complaint = f"exit code {process.returncode}: {message[-300:]}"
     else:
         complaint = difference(gd.open_archive(expected), gd.open_archive(target))
-    left = [path.name for path in target.parent.iterdir() if path.name.startswith(target.name) and path != target]
+    left = [
+        path.name for path in target.parent.iterdir() if path.name.startswith(target.name) and path != target
+    ]
     target.unlink(missing_ok=True)
     return killed, complaint or (f"left behind: {', '.join(left)}" if left else "")
 

@@ -160,8 +160,29 @@ def test_a_mutated_signal_is_read_or_refused(tmp_path, row, put, keep):
 PARTIAL = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "8 ms", "run.samples": 101})
 NAMED_ENDINGS = (0, 2, 3)
 HUGE = "x" * 200_000
-ATTRIBUTES = ("title", "summary", "scene", "status", "backend", "skipped", "schema_version", "product_version", "rtol", "steps")
-VALUES = (np.arange(3.0), np.arange(5, dtype=np.int8), HUGE, "", "{", "[" * 5000, float("nan"), 2**62, "\x1b[31mred\nline")
+ATTRIBUTES = (
+    "title",
+    "summary",
+    "scene",
+    "status",
+    "backend",
+    "skipped",
+    "schema_version",
+    "product_version",
+    "rtol",
+    "steps",
+)
+VALUES = (
+    np.arange(3.0),
+    np.arange(5, dtype=np.int8),
+    HUGE,
+    "",
+    "{",
+    "[" * 5000,
+    float("nan"),
+    2**62,
+    "\x1b[31mred\nline",
+)
 
 
 class _CutOffError(Exception):

@@ -53,9 +53,9 @@ class Mesh(Group):
     backlash: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, shown=("um", -6))] = Field(
         description="total play between the flanks, 2b"
     )
-    tip_relief_radius: Annotated[
-        float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))
-    ] = Field(default=10e-6, description="radius of the rounded tooth end, rho")
+    tip_relief_radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = (
+        Field(default=10e-6, description="radius of the rounded tooth end, rho")
+    )
     damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
         default=0.0, description="viscous damping of the transmission error"
     )

@@ -27,9 +27,9 @@ class Surface(Group):
     asperity_density: Annotated[
         float, Quantity(unit="1/m^2", at_least=1, at_most=1e20, shown=("1/um^2", 12))
     ] = Field(description="asperities per area, N")
-    asperity_radius: Annotated[
-        float, Quantity(unit="m", at_least=1e-10, at_most=0.1, shown=("nm", -9))
-    ] = Field(description="tip radius of the asperities, beta")
+    asperity_radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=0.1, shown=("nm", -9))] = (
+        Field(description="tip radius of the asperities, beta")
+    )
     roughness: Annotated[float, Quantity(unit="m", at_least=1e-12, at_most=0.1, shown=("nm", -9))] = Field(
         description="rms height of the asperities, sigma"
     )
