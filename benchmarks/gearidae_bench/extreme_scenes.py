@@ -232,7 +232,7 @@ def _gears(draw: _Draw, sigma: float) -> tuple[dict[str, Any], float]:
     )
     teeth = [int(draw.value(Gears, key, usual)) for key, usual in (("pinion_teeth", 19), ("gear_teeth", 76))]
     angle = 0.349 if not draw.free() else float(draw.rng.uniform(0.05, 0.7))
-    pitch = mesh_geometry(r1, *teeth, angle).base_pitch
+    pitch = mesh_geometry(r1, teeth[0], teeth[1], angle).base_pitch
     radii = (r1, r1 * teeth[1] / teeth[0])
     discs = [min(0.5 * math.pi * _SILICON * width * r**4, 1.0) for r in radii]
     inertias = [
