@@ -10,6 +10,8 @@ from cyclopts import App, Parameter
 
 from gearidae.cli.codes import BAD_INPUT, INTERRUPTED
 from gearidae.errors import GearidaeError, SceneError
+from gearidae_bench.attack import PATIENCE
+from gearidae_bench.attack_command import bench_attack, bench_kills
 from gearidae_bench.commands import bench_accuracy, bench_long, bench_scenes, bench_stress
 
 app = App(
@@ -33,7 +35,7 @@ def bench(
     stress: Annotated[
         bool, Parameter(help="Run random scenes over wide ranges instead, and account for every ending.")
     ] = False,
-    runs: Annotated[int, Parameter(help="Random scenes to run.")] = 2000,
+    runs: Annotated[int, Parameter(help="Random scenes to run, or kills.")] = 2000,
     seed: Annotated[int, Parameter(help="Which random scenes.")] = 1,
     accuracy: Annotated[
         bool, Parameter(help="Hold the error of every shipped case against the tolerance asked for instead.")
@@ -45,10 +47,23 @@ def bench(
         bool, Parameter(help="Let very many teeth pass instead, and see whether anything drifts or grows.")
     ] = False,
     passages: Annotated[int, Parameter(help="Tooth passages of the long run.")] = 1_000_000,
+    attack: Annotated[
+        bool, Parameter(help="Run extreme but valid scenes instead, each in a process that is watched.")
+    ] = False,
+    patience: Annotated[
+        float, Parameter(help="Seconds without a report after which a scene of --attack is taken to hang.")
+    ] = PATIENCE,
+    kills: Annotated[
+        bool, Parameter(help="Kill runs and sweeps at random moments instead, resume them and compare.")
+    ] = False,
 ) -> int:
     """Measure run time against error on this machine, and hold it against other integrators."""
-    if stress + accuracy + long > 1:
-        raise SceneError("bench", "--stress, --accuracy, --long", "say one of them")
+    if stress + accuracy + long + attack + kills > 1:
+        raise SceneError("bench", "--stress, --accuracy, --long, --attack, --kills", "say one of them")
+    if attack:
+        return bench_attack(runs, seed, jobs, output, patience)
+    if kills:
+        return bench_kills(runs, seed)
     if long:
         return bench_long(passages, output)
     if stress:

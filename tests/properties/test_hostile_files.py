@@ -1,8 +1,11 @@
 """Mutated case files, archives and signals: a clean error that names the file or key, or a valid scene; never more."""
 
+import random
+import shutil
 import sqlite3
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,9 +14,11 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.analysis.measured import read_signal
-from gearidae.archive import open_archive
+from gearidae.archive import growing, open_archive
+from gearidae.cli import main
+from gearidae.engine.integrate import portable
 from gearidae.errors import SceneError
-from gearidae.scene import Scene
+from gearidae.scene import Scene, dump_case
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 PIECES = [
@@ -148,3 +153,116 @@ def test_a_mutated_signal_is_read_or_refused(tmp_path, row, put, keep):
     assert "\n" not in refusal
     assert ds is None or (np.isfinite(ds["gear_speed"]).all() and (np.diff(ds["time"]) > 0).all())
     assert [path.name for path in tmp_path.iterdir()] == ["signal.csv"]
+
+
+# -- what a growing archive holds, through the commands that read one ------------------------------------------------
+
+PARTIAL = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "8 ms", "run.samples": 101})
+NAMED_ENDINGS = (0, 2, 3)
+HUGE = "x" * 200_000
+ATTRIBUTES = (
+    "title",
+    "summary",
+    "scene",
+    "status",
+    "backend",
+    "skipped",
+    "schema_version",
+    "product_version",
+    "rtol",
+    "steps",
+)
+VALUES = (
+    np.arange(3.0),
+    np.arange(5, dtype=np.int8),
+    HUGE,
+    "",
+    "{",
+    "[" * 5000,
+    float("nan"),
+    2**62,
+    "\x1b[31mred\nline",
+)
+
+
+class _CutOffError(Exception):
+    """What ends a run in the middle, as a kill would."""
+
+
+@pytest.fixture(scope="module")
+def partial(tmp_path_factory):
+    """The archive of a run that was cut off behind its first checkpoints, by the driver whose limits are not compiled in."""
+    file = tmp_path_factory.mktemp("partial") / "partial.nc"
+
+    def cut(time, events):
+        if time > 0.5 * PARTIAL.run.duration:
+            raise _CutOffError
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(portable, "CHECKPOINT_STEPS", 100)
+        patch.setattr(portable, "_BLOCK_STEPS", 20)
+        patch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
+        patch.setattr(growing, "EVENT_ROOM", 16)
+        with pytest.raises(_CutOffError):
+            gd.simulate(PARTIAL, archive=file, backend="sksundae", progress=cut)
+    with netCDF4.Dataset(file) as ds:
+        assert "checkpoint" in ds.variables
+        assert np.any(ds["checkpoint"][:] != 0.0)
+    return file
+
+
+@pytest.fixture(scope="module")
+def partial_case(tmp_path_factory):
+    file = tmp_path_factory.mktemp("partial_case") / "partial.toml"
+    file.write_text(dump_case(PARTIAL))
+    return file
+
+
+def read_by_commands(file, case, folder, capsys):
+    """Let every command read the file; each ends with an exit code of its own, and complains in one line if it does."""
+    commands = {
+        "info": ["info", str(file)],
+        "plot": ["plot", str(file), "-o", str(folder / "p.png"), "--overwrite"],
+        "report": ["report", str(file), "-o", str(folder / "p.html"), "--overwrite"],
+        "resume": ["run", str(case), "-o", str(file), "--resume", "--quiet"],
+    }
+    for name, arguments in commands.items():
+        code = main(arguments)
+        said = capsys.readouterr().err
+        assert code in NAMED_ENDINGS, f"{name}: exit code {code}, {said}"
+        if code != 0:
+            assert len(said.strip().splitlines()) == 1, f"{name}: {said[:500]}"
+        assert "Traceback" not in said
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_damaged_partial_archive_ends_in_one_line(tmp_path, partial, partial_case, capsys, seed):
+    """Flipped bits anywhere, and ends cut off."""
+    rng = random.Random(seed)
+    content = bytearray(partial.read_bytes())
+    if rng.random() < 0.3:
+        del content[rng.randrange(len(content)) :]
+    for _ in range(rng.choice([1, 3, 30]) if content else 0):
+        content[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
+    file = tmp_path / "partial.nc"
+    file.write_bytes(bytes(content))
+    read_by_commands(file, partial_case, tmp_path, capsys)
+
+
+@pytest.mark.parametrize("attribute", ATTRIBUTES)
+def test_an_attribute_of_another_type_ends_in_one_line(tmp_path, partial, partial_case, capsys, attribute):
+    """Arrays, bytes, huge and empty texts, numbers for texts and texts for numbers."""
+    for value in VALUES:
+        file = tmp_path / "partial.nc"
+        shutil.copyfile(partial, file)
+        with netCDF4.Dataset(file, "a") as ds:
+            ds.delncattr(attribute)
+            ds.setncattr(attribute, value)
+        read_by_commands(file, partial_case, tmp_path, capsys)
+
+
+def test_an_undamaged_partial_archive_is_resumed(tmp_path, partial, partial_case, capsys):
+    file = tmp_path / "partial.nc"
+    shutil.copyfile(partial, file)
+    read_by_commands(file, partial_case, tmp_path, capsys)
+    assert open_archive(file).attrs["status"] == "finished"

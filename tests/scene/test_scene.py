@@ -4,6 +4,7 @@ import copy
 import json
 import math
 import pickle
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -19,17 +20,27 @@ def small(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(low, high, allow_subnormal=False)
 
 
+def sized(low: float, high: float, least: float) -> st.SearchStrategy[float]:
+    """Numbers of at least some size, and zeros of both signs."""
+    return small(low, high).map(lambda x: x if abs(x) >= least else math.copysign(0.0, x))
+
+
+def apart(times: list[float]) -> bool:
+    """Whether knots are far enough apart for steps between them."""
+    return all(after - before >= 1e-12 * after for before, after in pairwise(times))
+
+
 def harmonics() -> st.SearchStrategy[list[dict[str, float]]]:
     table = st.fixed_dictionaries(
-        {"amplitude": small(-1e-10, 1e-10), "frequency": small(0, 1e6), "phase": small(-10, 10)}
+        {"amplitude": sized(-1e-10, 1e-10, 1e-40), "frequency": small(0, 1e6), "phase": small(-10, 10)}
     )
     return st.lists(table, max_size=2)
 
 
 def schedules() -> st.SearchStrategy[list[list[float]]]:
-    times = st.lists(small(0, 1), min_size=1, max_size=4, unique=True).map(sorted)
+    times = st.lists(sized(0, 1, 1e-20), min_size=1, max_size=4, unique=True).map(sorted).filter(apart)
     return times.flatmap(
-        lambda t: st.lists(small(-1e-10, 1e-10), min_size=len(t), max_size=len(t)).map(
+        lambda t: st.lists(sized(-1e-10, 1e-10, 1e-40), min_size=len(t), max_size=len(t)).map(
             lambda v: [list(pair) for pair in zip(t, v, strict=True)]
         )
     )
@@ -42,7 +53,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         "name": draw(st.text(st.characters(categories=("L", "N", "P", "S")), min_size=1, max_size=20)),
         "surface.youngs_modulus": draw(small(1e9, 1e12)),
         "surface.poisson_ratio": draw(small(-0.9, 0.49)),
-        "surface.energy": draw(small(0, 10)),
+        "surface.energy": draw(sized(0, 10, 1e-15)),
         "surface.asperity_density": draw(small(1e10, 1e18)),
         "surface.asperity_radius": draw(small(1e-9, 1e-6)),
         "surface.roughness": draw(small(1e-9, 1e-8)),
@@ -63,8 +74,8 @@ def scenes(draw: st.DrawFn) -> Scene:
         "mesh.static_error": [{"order": 2, "amplitude": draw(small(-1e-9, 1e-9))}],
         "drive.harmonic": draw(harmonics()),
         "load.harmonic": draw(harmonics()),
-        "initial.gap": draw(small(0, 1e-7)),
-        "initial.gear_speed": draw(small(-1e4, 1e4)),
+        "initial.gap": draw(sized(0, 1e-7, 1e-22)),
+        "initial.gear_speed": draw(sized(-1e4, 1e4, 1e-30)),
     }
     if draw(st.booleans()):
         changes["drive.schedule"] = draw(schedules())

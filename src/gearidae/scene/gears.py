@@ -7,12 +7,13 @@ from typing import Annotated
 from pydantic import Field
 
 from gearidae.scene.group import Group
-from gearidae.scene.quantity import Count, Quantity
+from gearidae.scene.quantity import Count, Phase, Quantity
 from gearidae.scene.tables import one_or_more
 
 __all__ = ["Gears", "Mesh", "StaticErrorHarmonic"]
 
-Inertia = Annotated[float, Quantity(unit="kg m^2", above=0, at_most=1)]
+Inertia = Annotated[float, Quantity(unit="kg m^2", at_least=1e-40, at_most=1)]
+# the disc of one atom's thickness and the smallest base radius has 1e-38 kg m^2
 Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]
 
 
@@ -29,7 +30,7 @@ class Gears(Group):
     pressure_angle: Annotated[float, Quantity(unit="rad", above=0, below=1.5)] = Field(
         description="pressure angle at the pitch circle"
     )
-    face_width: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("um", -6))] = Field(
+    face_width: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = Field(
         description="width of the teeth along the axis, L"
     )
 
@@ -40,10 +41,10 @@ class StaticErrorHarmonic(Group):
     order: Annotated[int, Count(at_least=1, at_most=100_000)] = Field(
         description="cycles per turn of the pinion"
     )
-    amplitude: Annotated[float, Quantity(unit="m", shown=("nm", -9))] = Field(
+    amplitude: Annotated[float, Quantity(unit="m", at_least=-1, at_most=1, shown=("nm", -9))] = Field(
         description="amplitude along the line of action"
     )
-    phase: Annotated[float, Quantity(unit="rad")] = Field(default=0.0, description="phase")
+    phase: Phase = Field(default=0.0, description="phase")
 
 
 class Mesh(Group):
@@ -52,10 +53,10 @@ class Mesh(Group):
     backlash: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, shown=("um", -6))] = Field(
         description="total play between the flanks, 2b"
     )
-    tip_relief_radius: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("um", -6))] = Field(
-        default=10e-6, description="radius of the rounded tooth end, rho"
+    tip_relief_radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = (
+        Field(default=10e-6, description="radius of the rounded tooth end, rho")
     )
-    damping: Annotated[float, Quantity(unit="N s/m", at_least=0)] = Field(
+    damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
         default=0.0, description="viscous damping of the transmission error"
     )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(

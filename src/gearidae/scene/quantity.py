@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from gearidae.scene.units import from_text
 
-__all__ = ["Count", "Quantity", "Sampling"]
+__all__ = ["Count", "Phase", "Quantity", "Sampling"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,12 +27,15 @@ class _Bounded:
     ----------
     above, at_least, below, at_most : float, optional
         Limits, the first and third exclusive.
+    least : float, optional
+        Smallest size of a number that is not zero: below it, products of scaled numbers leave the range of a double.
     """
 
     above: float | None = None
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
+    least: float | None = None
 
     def admits(self, value: float) -> bool:
         """Whether `value` keeps to the limits."""
@@ -41,6 +44,7 @@ class _Bounded:
             and (self.at_least is None or value >= self.at_least)
             and (self.below is None or value < self.below)
             and (self.at_most is None or value <= self.at_most)
+            and (self.least is None or value == 0.0 or abs(value) >= self.least)
         )
 
     def range(self) -> str:
@@ -110,12 +114,16 @@ class Quantity(_Bounded):
         if self.unit == "1":
             return "must be a number" + (f" {self.range()}" if self.range() else "")
         return f"must be a number in {self.unit} or a text with a unit" + (
-            f", {self.range()} {self.unit}" if self.range() else ""
+            f", {self.range()} {self.unit}{self._small()}" if self.range() else ""
         )
 
     def _wanted(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
-        return f"{'lie' if self.range().startswith('in ') else 'be'} {self.range()}{unit}"
+        return f"{'lie' if self.range().startswith('in ') else 'be'} {self.range()}{unit}{self._small()}"
+
+    def _small(self) -> str:
+        """Say how small a number may be that is not zero."""
+        return f", 0 or at least {self.least:g} in size" if self.least is not None else ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -199,3 +207,7 @@ def _as_float(value: object) -> float | None:
         return float(value)
     except OverflowError:
         return math.inf
+
+
+Phase = Annotated[float, Quantity(unit="rad", at_least=-1e9, at_most=1e9)]
+"""Phase of a harmonic; a larger one would be known to less than a millionth of a radian."""

@@ -18,7 +18,9 @@ MOST_SAMPLES: Final = 100_000_000
 class Initial(Group):
     """How the gears start; the pinion turns just so fast that the gap does not change at first."""
 
-    gear_speed: Annotated[float, Quantity(unit="rad/s")] = Field(default=0.0, description="speed of the gear")
+    gear_speed: Annotated[float, Quantity(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)] = Field(
+        default=0.0, description="speed of the gear"
+    )
     gap: Annotated[float, Quantity(unit="m", shown=("nm", -9))] = Field(description="gap of the drive flank")
     mesh_phase: Annotated[float, Quantity(unit="1", at_least=0, below=1)] = Field(
         default=0.3, description="position of pair 0 on the path of contact, in base pitches"
@@ -28,7 +30,7 @@ class Initial(Group):
 class Run(Group):
     """How long, how finely sampled, how accurate."""
 
-    duration: Annotated[float, Quantity(unit="s", above=0, shown=("ms", -3))] = Field(
+    duration: Annotated[float, Quantity(unit="s", at_least=1e-20, at_most=1e12, shown=("ms", -3))] = Field(
         description="simulated time"
     )
     samples: Annotated[int | str, Sampling(at_least=2, at_most=MOST_SAMPLES)] = Field(
@@ -62,14 +64,16 @@ class Run(Group):
 class Roller(Group):
     """A roller dropped on a flat, both with the scene's surface: ``m z'' = W(z)``."""
 
-    radius: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("um", -6))] = Field(
+    radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = Field(
         description="radius, R"
     )
-    mass: Annotated[float, Quantity(unit="kg", above=0, at_most=1e3)] = Field(description="mass, m")
-    width: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("um", -6))] = Field(
+    mass: Annotated[float, Quantity(unit="kg", at_least=1e-30, at_most=1e3)] = Field(description="mass, m")
+    width: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = Field(
         description="length along the axis, L"
     )
-    speed: Annotated[float, Quantity(unit="m/s", at_least=0)] = Field(description="speed towards the flat")
-    height: Annotated[float, Quantity(unit="m", above=0, at_most=1, shown=("nm", -9))] = Field(
+    speed: Annotated[float, Quantity(unit="m/s", at_least=0, at_most=1e9, least=1e-30)] = Field(
+        description="speed towards the flat"
+    )
+    height: Annotated[float, Quantity(unit="m", at_least=1e-15, at_most=1, shown=("nm", -9))] = Field(
         description="mean gap at the start"
     )

@@ -12,6 +12,7 @@ from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import KeyInfo, find_key, keys_of, put
+from gearidae.scene.limits import check_gaps, check_reach, check_stretch
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.surface import Coating, Contact, Surface
 from gearidae.scene.torque import Drive, Load
@@ -85,6 +86,7 @@ class Scene(Group):
     def _whole(self) -> Self:
         """Check what no table can check alone."""
         given = [table for table in _GEAR_TABLES if getattr(self, table) is not None]
+        check_stretch(self)
         if self.roller is not None:
             if given:
                 raise SceneError(
@@ -126,6 +128,8 @@ class Scene(Group):
                 initial.gap,
                 f"must lie in {-overlap:.4g}..{mesh.backlash + overlap:.4g} m, or flanks would overlap",
             )
+        check_gaps(self)
+        check_reach(self)
 
     @property
     def geometry(self) -> Geometry:

@@ -11,7 +11,7 @@ from gearidae.scene.quantity import Quantity
 
 __all__ = ["Coating", "Contact", "Surface"]
 
-Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100)]
+Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
 
 
 class Surface(Group):
@@ -27,10 +27,10 @@ class Surface(Group):
     asperity_density: Annotated[
         float, Quantity(unit="1/m^2", at_least=1, at_most=1e20, shown=("1/um^2", 12))
     ] = Field(description="asperities per area, N")
-    asperity_radius: Annotated[float, Quantity(unit="m", above=0, at_most=0.1, shown=("nm", -9))] = Field(
-        description="tip radius of the asperities, beta"
+    asperity_radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=0.1, shown=("nm", -9))] = (
+        Field(description="tip radius of the asperities, beta")
     )
-    roughness: Annotated[float, Quantity(unit="m", above=0, at_most=0.1, shown=("nm", -9))] = Field(
+    roughness: Annotated[float, Quantity(unit="m", at_least=1e-12, at_most=0.1, shown=("nm", -9))] = Field(
         description="rms height of the asperities, sigma"
     )
 

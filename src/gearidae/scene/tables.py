@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
+from typing import Final
 
 from pydantic import AfterValidator, BeforeValidator
 
 from gearidae.scene.group import Group, shorten
 
-__all__ = ["increasing", "one_or_more", "pairs"]
+__all__ = ["CLOSEST_KNOTS", "MOST_KNOTS", "MOST_TABLES", "increasing", "one_or_more", "pairs"]
+
+MOST_TABLES: Final = 1_000
+"""Harmonics of one torque, or of the static error: all of them are summed in every evaluation of the residual."""
+MOST_KNOTS: Final = 100_000
+"""Knots of one schedule: the solver starts anew at each."""
+CLOSEST_KNOTS: Final = 1e-12
+"""Least distance of two knots over the time of the later: SUNDIALS tells times apart to 100 roundings, 2e-14, and takes steps
+between the two."""
 
 
 def one_or_more(keys: str) -> BeforeValidator:
@@ -19,6 +28,8 @@ def one_or_more(keys: str) -> BeforeValidator:
         if isinstance(value, (Mapping, Group)):
             return (value,)
         if isinstance(value, (list, tuple)):
+            if len(value) > MOST_TABLES:
+                raise ValueError(f"has {len(value)} entries; there may be {MOST_TABLES} at most")
             return tuple(value)
         raise ValueError(f"must be a table {{{keys}}} or a list of such tables")
 
@@ -32,6 +43,8 @@ def _as_pairs(value: object) -> object:
         raise ValueError("must be a list of [time, value] pairs")
     if not value:
         raise ValueError("must not be empty: give at least one [time, value] pair, or leave it out")
+    if len(value) > MOST_KNOTS:
+        raise ValueError(f"has {len(value)} knots; there may be {MOST_KNOTS} at most")
     for i, pair in enumerate(value):
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
             raise ValueError(f"entry {i} is {shorten(pair)}, but must be a [time, value] pair")
@@ -43,6 +56,11 @@ def _check_increasing(value: tuple[tuple[float, float], ...]) -> tuple[tuple[flo
     for before, after in pairwise(times):
         if after <= before:
             raise ValueError(f"times must strictly increase, but {after:g} s follows {before:g} s")
+        if after - before < CLOSEST_KNOTS * after:
+            raise ValueError(
+                f"the knots at {before!r} s and {after!r} s are too close to step between:"
+                f" they must be {CLOSEST_KNOTS:g} of the time apart, {CLOSEST_KNOTS * after:.2g} s"
+            )
     return value
 
 

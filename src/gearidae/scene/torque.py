@@ -11,13 +11,13 @@ from typing import Annotated
 from pydantic import Field
 
 from gearidae.scene.group import Group
-from gearidae.scene.quantity import Quantity
+from gearidae.scene.quantity import Phase, Quantity
 from gearidae.scene.tables import increasing, one_or_more, pairs
 
 __all__ = ["Drive", "Harmonic", "Load"]
 
-Torque = Annotated[float, Quantity(unit="N m")]
-Time = Annotated[float, Quantity(unit="s", at_least=0)]
+Torque = Annotated[float, Quantity(unit="N m", at_least=-1e9, at_most=1e9, least=1e-40)]
+Time = Annotated[float, Quantity(unit="s", at_least=0, at_most=1e12, least=1e-20)]
 Schedule = Annotated[tuple[tuple[Time, Torque], ...], pairs, increasing]
 
 
@@ -25,10 +25,10 @@ class Harmonic(Group):
     """One harmonic of a torque, ``amplitude cos(2 pi frequency t + phase)``."""
 
     amplitude: Torque = Field(description="amplitude")
-    frequency: Annotated[float, Quantity(unit="Hz", at_least=0, shown=("kHz", 3))] = Field(
+    frequency: Annotated[float, Quantity(unit="Hz", at_least=0, at_most=1e18, shown=("kHz", 3))] = Field(
         description="frequency"
     )
-    phase: Annotated[float, Quantity(unit="rad")] = Field(default=0.0, description="phase")
+    phase: Phase = Field(default=0.0, description="phase")
 
 
 Harmonics = Annotated[tuple[Harmonic, ...], one_or_more("amplitude, frequency, phase")]
@@ -47,11 +47,11 @@ class Drive(Group):
 class Load(Group):
     """Torque that resists the gear, M2."""
 
-    torque: Annotated[float, Quantity(unit="N m", at_least=0)] = Field(
+    torque: Annotated[float, Quantity(unit="N m", at_least=0, at_most=1e9, least=1e-40)] = Field(
         default=0.0, description="dry resistance against the motion, M20"
     )
     harmonic: Harmonics = Field(default=(), description="harmonic part, a table or a list of tables")
-    drag: Annotated[float, Quantity(unit="N m s^2/rad^2", at_least=0)] = Field(
+    drag: Annotated[float, Quantity(unit="N m s^2/rad^2", at_least=0, at_most=1e12)] = Field(
         default=0.0, description="quadratic drag alpha, torque over angular speed squared"
     )
     schedule: Schedule = Field(

@@ -35,6 +35,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.jkr import AsperityLaw, displacement, jkr_load, jkr_root, load
 from gearidae.contact.kernels.lanes import eight_powers
 from gearidae.contact.psi import psi_derivatives
+from gearidae.contact.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
 
 __all__ = [
     "DEGREE",
@@ -70,14 +71,6 @@ __all__ = [
 Floats = NDArray[np.float64]
 Eight = tuple[float, float, float, float, float, float, float, float]
 Kernel: TypeAlias = Literal["line", "plane"]
-
-GAP_LOW: Final = -40.0
-"""Deepest tabulated gap, in roughnesses; the last piece is continued below it."""
-GAP_HIGH: Final = 13.0
-"""Widest tabulated gap or joined height, in roughnesses; forces beyond (1e-37 of their scale) are taken as zero."""
-
-STRETCH_HIGH: Final = 128.0
-"""Largest stretch limit a law is made for, in roughnesses."""
 
 KNOTS_PER_SIGMA: Final = 8
 NEGLIGIBLE_STRETCH: Final = (

@@ -1,0 +1,100 @@
+"""What ``python -m gearidae_bench`` does with ``--attack`` and ``--kills``."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich.console import Console
+
+from gearidae.cli.codes import DONE, UNFINISHED
+from gearidae.cli.output import say
+from gearidae.cli.tables import show_rows
+from gearidae.errors import SceneError
+from gearidae.runs.executors import check_jobs
+from gearidae_bench.attack import Outcome, run_attack
+from gearidae_bench.attack_report import balance_rows, ending_rows, page
+from gearidae_bench.kills import run_kills
+
+__all__ = ["ATTACK_BUDGET", "bench_attack", "bench_kills"]
+
+ATTACK_BUDGET = 20_000
+"""Steps after which a scene of the attack is left alone."""
+
+
+def bench_attack(runs: int, seed: int, jobs: int | None, output: Path | None, patience: float) -> int:
+    """Run extreme scenes, print how they ended, and write the page about them if asked.
+
+    What is done when Ctrl-C comes is printed and written all the same.
+
+    Parameters
+    ----------
+    runs, seed : int
+        How many scenes, and which.
+    jobs : int or None
+        Processes to share them; by default one per core.
+    output : Path or None
+        Folder for ``attack.md``.
+    patience : float
+        Seconds without a report after which a scene is taken to hang.
+
+    Returns
+    -------
+    int
+        Exit code: `UNFINISHED` if there is a fault.
+    """
+    if runs < 1 or seed < 0:
+        raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
+    if not patience > 0.0:
+        raise SceneError("--patience", patience, "must be above 0 s")
+    outcomes: list[Outcome] = []
+    interrupted = False
+    with Console(stderr=True).status("") as status:
+
+        def note(outcome: Outcome) -> None:
+            outcomes.append(outcome)
+            faults = sum(not one.sound for one in outcomes)
+            status.update(f"{len(outcomes)} of {runs}, {faults} faults ...")
+
+        try:
+            run_attack(runs, seed, check_jobs(jobs), budget=ATTACK_BUDGET, patience=patience, report=note)
+        except KeyboardInterrupt:
+            interrupted = True
+    if not outcomes:
+        raise KeyboardInterrupt
+    outcomes.sort(key=lambda outcome: outcome.number)
+    show_rows([(ending, str(count), "") for ending, count, _ in ending_rows(outcomes)])
+    show_rows([(f"residual / bound, {share}", ratio, "at most") for share, ratio in balance_rows(outcomes)])
+    faults = [outcome for outcome in outcomes if not outcome.sound]
+    for outcome in faults:
+        say(f"scene {outcome.number}: {outcome.status} {outcome.message}")
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        (output / "attack.md").write_text(page(outcomes, seed, datetime.now(UTC).date(), runs))
+        say(f"Report: {output / 'attack.md'}")
+    if interrupted:
+        raise KeyboardInterrupt(f"{len(outcomes)} of {runs} scenes done")
+    return UNFINISHED if faults else DONE
+
+
+def bench_kills(kills: int, seed: int) -> int:
+    """Kill runs and sweeps at random moments, resume them, and compare with undisturbed ones.
+
+    Parameters
+    ----------
+    kills, seed : int
+        How many, and which moments.
+
+    Returns
+    -------
+    int
+        Exit code: `UNFINISHED` if anything differs.
+    """
+    if kills < 1 or seed < 0:
+        raise SceneError("--runs, --seed", f"{kills}, {seed}", "must be at least 1, and at least 0")
+    with Console(stderr=True).status("") as status:
+        done = run_kills(kills, seed, lambda number: status.update(f"{number} of {kills} kills ..."))
+    show_rows(
+        [(f"{one.command}, killed and resumed", f"{one.kills}", one.complaint or "equal") for one in done]
+    )
+    return UNFINISHED if any(one.complaint for one in done) else DONE

@@ -1,0 +1,15 @@
+"""Ranges in gap and stretch that the tabulated force law is made for; here, without what compiles it, for checks of a scene."""
+
+from __future__ import annotations
+
+from typing import Final
+
+__all__ = ["GAP_HIGH", "GAP_LOW", "STRETCH_HIGH"]
+
+GAP_LOW: Final = -40.0
+"""Deepest tabulated gap, in roughnesses; the last piece is continued below it."""
+GAP_HIGH: Final = 13.0
+"""Widest tabulated gap or joined height, in roughnesses; forces beyond (1e-37 of their scale) are taken as zero."""
+
+STRETCH_HIGH: Final = 128.0
+"""Largest stretch limit a law is made for, in roughnesses."""

@@ -1,0 +1,124 @@
+"""Limits that no key has alone: what the engine can keep, tabulate and resolve, checked before anything is computed."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import TYPE_CHECKING, Final
+
+from gearidae.contact.jkr import asperity_of
+from gearidae.contact.ranges import GAP_LOW, STRETCH_HIGH
+from gearidae.errors import SceneError
+
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
+
+__all__ = ["MOST_PAIRS", "check_gaps", "check_reach", "check_stretch", "pairs_within_reach"]
+
+MOST_PAIRS: Final = 32
+"""Tooth pairs of one flank whose history the engine keeps at a time."""
+WIDEST_BACKLASH: Final = 1e9
+"""Backlash over roughness up to which a double holds a gap to 1e-7 roughnesses."""
+
+
+def check_stretch(scene: Scene) -> None:
+    """Refuse asperities that stretch farther than the force law is tabulated.
+
+    Raises
+    ------
+    SceneError
+        Naming ``surface.roughness``.
+    """
+    if scene.contact.asperity != "jkr":  # no others stretch
+        return
+    fraction = scene.coating.sam_fraction
+    for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
+        limit = asperity_of(surface).stretch_limit / surface.roughness
+        if share > 0.0 and not limit <= STRETCH_HIGH:
+            raise SceneError(
+                "surface.roughness",
+                surface.roughness,
+                f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
+            )
+
+
+def pairs_within_reach(scene: Scene, cutoff: float) -> float:
+    """Tooth pairs of one flank that can be in touch at a time, by their tip relief.
+
+    A pair at a distance of d base pitches from the path of contact has its gap opened by ``d^2 pb^2 / (2 rho)``. Where the flanks
+    overlap by as much as is tabulated, it touches as long as that is less than the cut-off and the overlap together:
+    ``d = sqrt(2 (cutoff - gap_low) rho sigma) / pb``, on either side of the path.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of gears.
+    cutoff : float
+        Gap from which there is no force, in roughnesses.
+
+    Returns
+    -------
+    float
+        Contact ratio, and twice that distance.
+    """
+    assert scene.mesh is not None
+    geometry = scene.geometry
+    relief = geometry.base_pitch**2 / (scene.mesh.tip_relief_radius * scene.surface.roughness)
+    return geometry.contact_ratio + 2.0 * math.sqrt(2.0 * max(cutoff - GAP_LOW, 0.0) / relief)
+
+
+def check_reach(scene: Scene, cutoff: float = 0.0) -> None:
+    """Refuse a tip relief so slight that more pairs are in touch than can be kept.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of gears.
+    cutoff : float, optional
+        Gap from which there is no force, in roughnesses; only the tables of the force law tell it. Contacts that cannot carry a
+        reference load without overlapping have a smaller one than the default.
+
+    Raises
+    ------
+    SceneError
+        Naming ``mesh.tip_relief_radius``.
+    """
+    assert scene.mesh is not None
+    pairs = pairs_within_reach(scene, cutoff)
+    if pairs <= MOST_PAIRS:
+        return
+    radius, ratio = scene.mesh.tip_relief_radius, scene.geometry.contact_ratio
+    most = radius * max((MOST_PAIRS - ratio) / (pairs - ratio), 0.0) ** 2
+    raise SceneError(
+        "mesh.tip_relief_radius",
+        radius,
+        f"{pairs:.3g} tooth pairs would be in touch at a time, and {MOST_PAIRS} can be kept:"
+        f" must be below {most:.3g} m with this roughness and base pitch",
+    )
+
+
+def check_gaps(scene: Scene) -> None:
+    """Refuse gaps that a double cannot hold beside the backlash.
+
+    Raises
+    ------
+    SceneError
+        Naming ``mesh.backlash`` or ``initial.gap``.
+    """
+    mesh, initial, sigma = scene.mesh, scene.initial, scene.surface.roughness
+    assert mesh is not None
+    assert initial is not None
+    if mesh.backlash > WIDEST_BACKLASH * sigma:
+        raise SceneError(
+            "mesh.backlash",
+            mesh.backlash,
+            f"must be below {WIDEST_BACKLASH:g} roughnesses, {WIDEST_BACKLASH * sigma:.3g} m:"
+            " gaps cannot be resolved beside it",
+        )
+    resolved = sys.float_info.epsilon * max(mesh.backlash, sigma)
+    if 0.0 < abs(initial.gap) < resolved:
+        raise SceneError(
+            "initial.gap",
+            initial.gap,
+            f"must be 0 or at least {resolved:.2g} m in size: less cannot be told beside backlash and roughness",
+        )
