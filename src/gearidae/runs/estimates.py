@@ -143,9 +143,8 @@ def _force(scene: Scene, gap: ArrayLike, stretch: float = 0.0) -> NDArray[np.flo
     gears, _, _ = _tables(scene)
     geometry = scene.geometry
     radius = float(curvature_radii(geometry, geometry.approach)[2])
-    fraction = scene.coating.sam_fraction
     force = np.zeros(np.shape(gap))
-    for share, surface in ((fraction, scene.coated_surface), (1.0 - fraction, scene.surface)):
+    for surface, share in scene.materials():
         if share > 0.0:
             law = scene.contact.asperity
             force = force + share * line_force(gap, stretch, radius, gears.face_width, surface, law)
