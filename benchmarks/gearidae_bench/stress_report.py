@@ -10,7 +10,7 @@ from datetime import date
 import numpy as np
 
 import gearidae
-from gearidae.engine.integrate.driver import Ending
+from gearidae.records import Ending
 from gearidae_bench.stress import ELASTIC_SHARE, LEDGER_TOLERANCES, STEP_BUDGET, Outcome
 
 __all__ = ["counts", "ledger_quantiles", "page", "quantiles", "worst"]
