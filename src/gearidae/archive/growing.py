@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from gearidae.archive.definition import define, offsets
 from gearidae.archive.disk import disk_errors, read_at, sync, write_at
+from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
 from gearidae.archive.lock import is_locked, lock
 from gearidae.archive.variables import EVENTS
@@ -256,7 +257,7 @@ class GrowingArchive:
         self.close()
 
     def _compact(self, template: xr.Dataset, part: Path) -> None:
-        define(template, part, {"time": self.samples, "event": self.events})
+        define(with_checksums(template), part, {"time": self.samples, "event": self.events})
         with netCDF4.Dataset(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():
