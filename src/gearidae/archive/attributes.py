@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.dataset import dimension_names
 from gearidae.archive.variables import RUN, by_name
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
@@ -63,6 +64,11 @@ def wrong_attribute(ds: xr.Dataset) -> str:
     for name, is_sound, allowed in _TABLES:
         if name in ds.attrs and not is_sound(_table(ds.attrs[name])):
             return _told(name, ds.attrs[name], allowed)
+    for name in dimension_names(_table(ds.attrs.get("swept", "{}")) or {}).values():
+        if name not in ds.coords:
+            return (
+                f"its attribute swept is of {_shortened(name, _LONGEST_SHOWN)!r}, which it has no values of"
+            )
     for variable in (one for one in ds.variables if one in _KNOWN):
         for name in _OF_VARIABLES:
             value = ds[variable].attrs.get(name, "")

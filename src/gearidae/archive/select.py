@@ -106,8 +106,11 @@ def run_scene(run: xr.Dataset) -> Scene:
     changes = {}
     for key, dim in dimension_names(swept).items():
         value = run[dim].item()
-        # values that are neither numbers nor words are numbered
-        changes[key] = swept[key][value] if run[dim].attrs.get("comment") else value
+        if run[dim].attrs.get("comment"):  # values that are neither numbers nor words are numbered
+            if not (isinstance(value, int) and 0 <= value < len(swept[key])):
+                raise SceneError("dataset", f"{dim} {value}", f"must number one of {len(swept[key])} values")
+            value = swept[key][value]
+        changes[key] = value
     return scene.replace(changes)
 
 
