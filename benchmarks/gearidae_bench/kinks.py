@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled
 from gearidae.engine.events.events import guard
 from gearidae.engine.model import layout as at
 from gearidae.engine.model.tooth_pairs import first_pair, history_slot, last_pair, material_stretch, pair_gap
+from gearidae_bench.compiling import compiled
 
 __all__ = ["arm", "watch"]
 

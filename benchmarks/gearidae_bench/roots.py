@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled
 from gearidae.engine.events.events import accept, guard, handle
+from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import watch
 from gearidae_bench.steps import dop853_value, gauss_step, hermite_value
 

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import DOP853 as _SCIPY
 
-from gearidae.compiled import compiled
 from gearidae.engine.model import layout as at
 from gearidae.engine.model.residual import residual
+from gearidae_bench.compiling import compiled
 
 __all__ = [
     "STAGES",
