@@ -5,15 +5,25 @@ An edited benchmark is compiled anew, and leaves the engine's compiled code alon
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 from gearidae import compiled as own
 
 __all__ = ["SOURCES", "compiled", "compiled_callback"]
 
+F = TypeVar("F", bound=Callable[..., Any])
+
 SOURCES = (Path(__file__).parent,)
 """What is compiled here besides the engine."""
 
-compiled = partial(own.compiled, sources=SOURCES)
-compiled_callback = partial(own.compiled_callback, sources=SOURCES)
+
+def compiled(*, makes_arrays: bool = False) -> Callable[[F], F]:
+    """Compile a function as `gearidae.compiled.compiled` does, into the benchmark's cache."""
+    return own.compiled(makes_arrays=makes_arrays, sources=SOURCES)
+
+
+def compiled_callback(signature: Any) -> Callable[[F], Any]:
+    """Compile a C callback as `gearidae.compiled.compiled_callback` does, into the benchmark's cache."""
+    return own.compiled_callback(signature, sources=SOURCES)

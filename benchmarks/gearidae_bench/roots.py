@@ -30,7 +30,7 @@ _ROOT_TOLERANCE = 1e-15  # of the step's end time
 _MOST_TRIALS = 60
 
 
-@compiled
+@compiled()
 def _value(
     method: int,
     d: Floats,
@@ -104,7 +104,7 @@ def find_root(
     return b
 
 
-@compiled
+@compiled()
 def pass_events(
     method: int,
     d: Floats,

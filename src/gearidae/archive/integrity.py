@@ -32,8 +32,9 @@ class CheckedStore(xr.backends.NetCDF4DataStore):
 
     def open_store_variable(self, name: str, var: Any) -> xr.Variable:
         """Describe a variable; its values are read when they are used."""
-        variable: xr.Variable = super().open_store_variable(name, var)  # type: ignore[no-untyped-call]
-        values = LazilyIndexedArray(_Checked(NetCDF4ArrayWrapper(name, self), name, self._filename))
+        variable: xr.Variable = super().open_store_variable(name, var)
+        stored = NetCDF4ArrayWrapper(name, self)  # type: ignore[no-untyped-call]
+        values = LazilyIndexedArray(_Checked(stored, name, self._filename))
         return xr.Variable(variable.dims, values, variable.attrs, variable.encoding)
 
 

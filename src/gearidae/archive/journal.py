@@ -70,10 +70,12 @@ class Checkpoint:
         if size > numbers.size or zlib.crc32(record[8 : 8 * size]) != numbers[0]:
             return None
         sequence, samples, events = map(int, numbers[1:4])
-        counters = zip(COUNTERS, map(int, numbers[len(_FIXED) : HEADER]), strict=True)
+        statistics = Statistics()
+        for name, number in zip(COUNTERS, numbers[len(_FIXED) : HEADER], strict=True):
+            setattr(statistics, name, int(number))
         time, wall_time = map(float, numbers[4:6])
         state = np.frombuffer(record, "<u8", size - HEADER, 8 * HEADER).astype(np.uint64).view(np.float64)
-        return cls(sequence, samples, events, time, wall_time, Statistics(**dict(counters)), state)
+        return cls(sequence, samples, events, time, wall_time, statistics, state)
 
 
 def newest(slots: Iterable[bytes]) -> Checkpoint:
