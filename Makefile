@@ -1,5 +1,6 @@
 # make run   the low-speed experiment: archive and picture in out/
 # make test  lint, types and tests
+# make test-lowest  a short suite in a second environment, with the lowest versions that the package promises
 # make docs  the documentation: docs/_build/html/index.html
 # make bench    run time against error, all scenes: the benchmark's page anew (some ten minutes)
 # make stress   2,000 random scenes: the stress page anew (some minutes)
@@ -7,9 +8,10 @@
 
 PYTHON ?= python3
 VENV   ?= .venv
+LOWEST ?= .venv-lowest
 BIN    := $(VENV)/bin
 
-.PHONY: run test lint docs bench stress clean
+.PHONY: run test test-lowest lint docs bench stress clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/installed
@@ -20,6 +22,12 @@ run: $(VENV)/installed
 
 test: lint
 	$(BIN)/python -m pytest -q
+
+# Both drivers, scenes, archives, pictures and the command line. The warning is one that numpy itself switches off.
+test-lowest: $(LOWEST)/installed
+	$(LOWEST)/bin/python -m pytest -q -W "ignore:numpy.ndarray size changed:RuntimeWarning" \
+	    tests/engine/test_backends.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
+	    tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
@@ -36,7 +44,7 @@ stress: $(VENV)/installed
 	PYTHONPATH=benchmarks $(BIN)/python -m gearidae_bench --stress -o out/stress
 
 clean:
-	rm -rf $(VENV) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(LOWEST) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
 
 # The package is installed in editable form: only a change of its requirements asks for more.
 $(VENV)/installed: pyproject.toml
@@ -51,4 +59,10 @@ $(VENV)/installed-docs: $(VENV)/installed
 
 $(VENV)/installed-dev: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+$(LOWEST)/installed: pyproject.toml tests/lowest.txt
+	$(PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint tests/lowest.txt \
+	    --editable . pytest hypothesis mpmath
 	touch $@

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import settings
 
 from gearidae.engine import backend as backend_module
-from gearidae.engine.integrate.driver import Block, Ending
+from gearidae.records import Block, Ending
 
 # Compilation, once per machine, falls into whichever example comes first.
 settings.register_profile("gearidae", deadline=None)

@@ -113,7 +113,14 @@ def test_source_distribution_has_what_tests_and_docs_need(built):
     _, in_sdist = built
     for folder in ("src", "tests", "docs", "cases", "examples", "benchmarks"):
         assert shipped(folder) <= in_sdist
-    assert {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "Makefile"} <= in_sdist
+    assert {
+        "pyproject.toml",
+        "README.md",
+        "LICENSE",
+        "CHANGELOG.md",
+        "CONTRIBUTING.md",
+        "Makefile",
+    } <= in_sdist
 
 
 def test_every_supported_python_is_named():
@@ -121,6 +128,16 @@ def test_every_supported_python_is_named():
     named = [line.rpartition(" ")[2] for line in project["classifiers"] if ":: Python :: 3." in line]
     assert project["requires-python"] == f">={named[0]}"
     assert f"{sys.version_info.major}.{sys.version_info.minor}" in named
+
+
+def test_the_lowest_versions_promised_are_those_tested():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    promised = dict(line.split(">=") for line in project["dependencies"])
+    lines = (ROOT / "tests" / "lowest.txt").read_text().splitlines()
+    tested = dict(line.split("==") for line in lines if "==" in line)
+    assert set(tested) == set(promised)
+    for name, version in promised.items():
+        assert tested[name] in (version, f"{version}.0")
 
 
 def test_every_public_name_can_be_had():

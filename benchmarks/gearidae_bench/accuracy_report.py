@@ -87,7 +87,7 @@ def page(results: Sequence[Achieved], day: date) -> str:
     lines = [
         "# Accuracy asked for and accuracy had",
         "",
-        f"`gearidae bench --accuracy` on {day.isoformat()}, gearidae {gearidae.__version__}.",
+        f"`python -m gearidae_bench --accuracy` on {day.isoformat()}, gearidae {gearidae.__version__}.",
         "",
         _INTRODUCTION,
         f"![Error of the run against the tolerance, and the distribution of their ratio](images/{PICTURE})",

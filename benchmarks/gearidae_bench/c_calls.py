@@ -8,7 +8,6 @@ import numpy as np
 from numba import carray, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled_callback
 from gearidae.engine.events.events import accept, guard, handle
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import BLOCK_EVENTS
@@ -19,6 +18,7 @@ from gearidae.engine.model import layout as at
 from gearidae.engine.model.observe import observe
 from gearidae.engine.sundials import ida_memory as opened
 from gearidae.engine.sundials.memory import MANY
+from gearidae_bench.compiling import compiled_callback
 
 __all__ = ["addresses"]
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate.driver import Ending, Tally
 from gearidae.engine.model.problem import Problem
+from gearidae.records import Ending, Statistics
 from gearidae_bench.loop import run_dop853, run_rk4
 from gearidae_bench.reference import physical
 from gearidae_bench.roots import CALLS, FAILED, STEPS
@@ -78,7 +78,7 @@ class Contender:
 
 def _engine(backend: str) -> Callable[[Problem, float, Floats], Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        tally = Tally()
+        tally = Statistics()
         table = np.concatenate([b.rows for b in run_blocks(problem, tolerance, times.size, backend, tally)])
         if tally.ending is not Ending.FINISHED:
             return BROKEN

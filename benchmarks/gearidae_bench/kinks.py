@@ -11,17 +11,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled
 from gearidae.engine.events.events import guard
 from gearidae.engine.model import layout as at
 from gearidae.engine.model.tooth_pairs import first_pair, history_slot, last_pair, material_stretch, pair_gap
+from gearidae_bench.compiling import compiled
 
 __all__ = ["arm", "watch"]
 
 Floats = NDArray[np.float64]
 
 
-@compiled
+@compiled()
 def _gap(d: Floats, coast: int, pair: int, y: Floats) -> float:
     if d[at.KIND] == at.ROLLER:
         return float(y[at.U])
@@ -29,14 +29,14 @@ def _gap(d: Floats, coast: int, pair: int, y: Floats) -> float:
     return gap
 
 
-@compiled
+@compiled()
 def _pairs(d: Floats, coast: int, y: Floats) -> tuple[int, int]:
     if d[at.KIND] == at.ROLLER:
         return 0, -coast
     return first_pair(d, coast, y[at.PHASE]), last_pair(d, coast, y[at.PHASE])
 
 
-@compiled
+@compiled()
 def arm(d: Floats, y: Floats, heights: Floats) -> bool:
     """Note which contacts are on their way back to the virgin curve.
 
@@ -73,12 +73,12 @@ def arm(d: Floats, y: Floats, heights: Floats) -> bool:
     return found
 
 
-@compiled
+@compiled()
 def _number(d: Floats, slot: int) -> int:
     return (slot - int(d[at.HISTORIES])) // int(d[at.HISTORY])
 
 
-@compiled
+@compiled()
 def watch(d: Floats, t: float, y: Floats, heights: Floats, armed: bool) -> float:
     """Return the engine's guard, or the distance to an armed kink where that is smaller."""
     least = guard(d, t, y)

@@ -18,11 +18,10 @@ from typing import Final
 import numpy as np
 
 from gearidae.engine import follow
-from gearidae.engine.integrate.driver import Block, Tally
 from gearidae.errors import SolverError
-from gearidae.records import GEAR_COLUMNS, EventKind, Flank
-from gearidae.runs.estimates import steady_speed
+from gearidae.records import GEAR_COLUMNS, Block, EventKind, Flank, Statistics
 from gearidae.scene import Scene, preset
+from gearidae.studies.estimates import steady_speed
 
 __all__ = [
     "FEWEST_PASSAGES",
@@ -161,7 +160,7 @@ class _Watch:
         self._speed: float | None = None
         self.parts: list[Part] = []
 
-    def take(self, block: Block, tally: Tally, wall_time: float) -> None:
+    def take(self, block: Block, tally: Statistics, wall_time: float) -> None:
         """Look at a block; parts end at blocks, so that they differ in length by a block at most."""
         self._look_at_events(block)
         if len(block.rows):

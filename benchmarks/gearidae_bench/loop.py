@@ -11,9 +11,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled
 from gearidae.engine.events.events import CROWDED, EVENTS_AT_ONCE, accept, guard, handle, pass_knot
 from gearidae.engine.model import layout as at
+from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import arm, watch
 from gearidae_bench.roots import (
     CALLS,

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
-from gearidae.compiled import compiled
 from gearidae.engine.events.events import CONTINUE, EVENTS_AT_ONCE, accept, guard, handle
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model import layout as at
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.residual import jacobian, residual
+from gearidae_bench.compiling import compiled
 from gearidae_bench.contender import BROKEN, Contender, Outcome
 from gearidae_bench.reference import physical
 from gearidae_bench.steps import rates

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.compiled import compiled
 from gearidae.engine.events.events import accept, guard, handle
+from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import watch
 from gearidae_bench.steps import dop853_value, gauss_step, hermite_value
 
@@ -30,7 +30,7 @@ _ROOT_TOLERANCE = 1e-15  # of the step's end time
 _MOST_TRIALS = 60
 
 
-@compiled
+@compiled()
 def _value(
     method: int,
     d: Floats,
@@ -104,7 +104,7 @@ def find_root(
     return b
 
 
-@compiled
+@compiled()
 def pass_events(
     method: int,
     d: Floats,

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import DOP853 as _SCIPY
 
-from gearidae.compiled import compiled
 from gearidae.engine.model import layout as at
 from gearidae.engine.model.residual import residual
+from gearidae_bench.compiling import compiled
 
 __all__ = [
     "STAGES",
@@ -60,7 +60,7 @@ def _gauss_tableau(stages: int) -> tuple[Floats, Floats, Floats, Floats]:
 _GC, _GA, _GB, _GE = _gauss_tableau(_GAUSS_STAGES)
 
 
-@compiled
+@compiled()
 def rates(d: Floats, t: float, y: Floats, zero: Floats, out: Floats) -> None:
     """y' at a scaled state, from the engine's residual; `zero` holds zeros and stays so."""
     residual(d, t, y, zero, out)
@@ -70,7 +70,7 @@ def rates(d: Floats, t: float, y: Floats, zero: Floats, out: Floats) -> None:
         out[at.V] -= out[at.W]
 
 
-@compiled
+@compiled()
 def rk4_step(
     d: Floats, t: float, y: Floats, h: float, k: Floats, zero: Floats, trial: Floats, new: Floats
 ) -> None:
@@ -89,7 +89,7 @@ def rk4_step(
         new[i] = y[i] + h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
 
 
-@compiled
+@compiled()
 def hermite_value(y: Floats, f: Floats, new: Floats, f_new: Floats, h: float, s: float, out: Floats) -> None:
     """Cubic through states and rates at both ends of a step, at the part `s` of it."""
     r = 1.0 - s
@@ -98,7 +98,7 @@ def hermite_value(y: Floats, f: Floats, new: Floats, f_new: Floats, h: float, s:
         out[i] = y[i] + s * (rise + r * (r * (h * f[i] - rise) + s * (rise - h * f_new[i])))
 
 
-@compiled
+@compiled()
 def dop853_step(
     d: Floats,
     t: float,
@@ -144,7 +144,7 @@ def dop853_step(
     return h * fifth / math.sqrt((fifth + 0.01 * third) * n)
 
 
-@compiled
+@compiled()
 def dop853_prepare(
     d: Floats,
     t: float,
@@ -177,7 +177,7 @@ def dop853_prepare(
             dense[3 + m, i] = h * total
 
 
-@compiled
+@compiled()
 def dop853_value(y: Floats, dense: Floats, s: float, out: Floats) -> None:
     """State at the part `s` of a step."""
     for i in range(y.size):
@@ -187,7 +187,7 @@ def dop853_value(y: Floats, dense: Floats, s: float, out: Floats) -> None:
         out[i] = y[i] + value
 
 
-@compiled
+@compiled()
 def gauss_step(
     d: Floats,
     t: float,

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate.driver import BLOCK_STEPS, Tally
+from gearidae.engine.integrate.driver import BLOCK_STEPS
 from gearidae.engine.model import layout as at
 from gearidae.engine.model.problem import Problem, make_problem
 from gearidae.errors import SceneError
-from gearidae.records import EventKind, Ledger
+from gearidae.records import EventKind, Ledger, Statistics
 from gearidae.runs.executors import own_executor, stop
 from gearidae.scene import Scene
 from gearidae_bench.random_scenes import SCENES_PER_SURFACE, random_scene
@@ -196,7 +196,7 @@ class _Run:
     """What came of a scene within the budget."""
 
     problem: Problem
-    tally: Tally
+    tally: Statistics
     rows: Floats
     events: Floats
     reached: float  # share of the simulated time
@@ -209,7 +209,7 @@ class _Run:
 
 
 def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
-    problem, tally = make_problem(scene), Tally()
+    problem, tally = make_problem(scene), Statistics()
     rows, events, reached, ledger = [], [], 0.0, None
     for spent, block in enumerate(run_blocks(problem, rtol, scene.run.sample_count, "native", tally), 1):
         rows.append(block.rows)

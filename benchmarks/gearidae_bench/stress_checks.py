@@ -113,12 +113,11 @@ def _limits(scene: Scene, gaps: Floats, radii: Floats, width: float) -> tuple[Fl
     """Least and largest force at these gaps, and the size of what pushes and pulls [N]."""
     low, high, size = np.zeros_like(gaps), np.zeros_like(gaps), np.zeros_like(gaps)
     near = gaps < 14.0 * scene.surface.roughness
-    share = scene.coating.sam_fraction
     law = scene.contact.asperity
-    for surface, part in ((scene.surface, 1.0 - share), (scene.coated_surface, share)):
-        if part == 0.0 or not near.any():
+    for surface, share in scene.materials():
+        if share == 0.0 or not near.any():
             continue
-        unit = part * np.sqrt(radii[near])
+        unit = share * np.sqrt(radii[near])
         loading = unit * line_force(gaps[near], 0.0, 1.0, width, surface, law)
         stretch = asperity_of(surface).stretch_limit
         parting = unit * line_force(gaps[near], stretch, 1.0, width, surface, law)

@@ -10,7 +10,7 @@ from datetime import date
 import numpy as np
 
 import gearidae
-from gearidae.engine.integrate.driver import Ending
+from gearidae.records import Ending
 from gearidae_bench.stress import ELASTIC_SHARE, LEDGER_TOLERANCES, STEP_BUDGET, Outcome
 
 __all__ = ["counts", "ledger_quantiles", "page", "quantiles", "worst"]
@@ -110,7 +110,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
     """
     unsound = [outcome for outcome in outcomes if not outcome.sound]
     times = [outcome.wall_time for outcome in outcomes]
-    command = f"gearidae bench --stress --runs {runs or len(outcomes)} --seed {seed}"
+    command = f"python -m gearidae_bench --stress --runs {runs or len(outcomes)} --seed {seed}"
     done = f"; interrupted after {len(outcomes)} scenes" if runs and runs > len(outcomes) else ""
     lines = [
         "# Stress run",

@@ -32,17 +32,21 @@ COMPILED_PACKAGES = ("contact", "engine", "compiled.py", "records.py")
 
 
 @cache
-def cache_folder() -> Path:
+def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
     """Where the compiled code of exactly these sources and library versions is kept.
 
     Under ``NUMBA_CACHE_DIR`` if that is set, else in the user's cache folder.
+
+    Parameters
+    ----------
+    sources : tuple of Path, optional
+        Folders or files besides gearidae's own whose functions are compiled, of a package that builds on it.
     """
     root = Path(__file__).parent
     digest = hashlib.sha256(sys.version.encode())
     for name in ("numba", "llvmlite", "numpy", "scikit-sundae"):
         digest.update(f"{name} {version(name)}".encode())
-    for package in COMPILED_PACKAGES:
-        path = root / package
+    for path in (*(root / package for package in COMPILED_PACKAGES), *sources):
         for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
             digest.update(source.read_bytes())
     base = os.environ.get("NUMBA_CACHE_DIR")
@@ -64,12 +68,12 @@ def say_compiling(module: str, what: str, how_long: str) -> None:
 
 
 @contextmanager
-def _own_cache() -> Iterator[None]:
+def _own_cache(sources: tuple[Path, ...]) -> Iterator[None]:
     """Let numba choose gearidae's cache folder while a function is being declared, by one thread at a time."""
     config: Any = numba.config
     with _declaring:
         before = config.CACHE_DIR
-        config.CACHE_DIR = str(cache_folder())
+        config.CACHE_DIR = str(cache_folder(sources))
         try:
             yield
         finally:
@@ -77,15 +81,21 @@ def _own_cache() -> Iterator[None]:
 
 
 @overload
-def compiled(function: F) -> F: ...
+def compiled(function: F, *, sources: tuple[Path, ...] = ()) -> F: ...
 
 
 @overload
-def compiled(*, makes_arrays: bool = False, inline: bool = False) -> Callable[[F], F]: ...
+def compiled(
+    *, makes_arrays: bool = False, inline: bool = False, sources: tuple[Path, ...] = ()
+) -> Callable[[F], F]: ...
 
 
 def compiled(
-    function: F | None = None, *, makes_arrays: bool = False, inline: bool = False
+    function: F | None = None,
+    *,
+    makes_arrays: bool = False,
+    inline: bool = False,
+    sources: tuple[Path, ...] = (),
 ) -> F | Callable[[F], F]:
     """Compile a numerical function on first use; it runs without the GIL and divides as IEEE 754 says.
 
@@ -98,23 +108,25 @@ def compiled(
         function that is wrong about it.
     inline : bool
         Put the function into whatever calls it: for the few that every step goes through.
+    sources : tuple of Path, optional
+        As for `cache_folder`.
     """
 
     def declare(function: F) -> F:
         # numba's stubs do not know them all; nobody calls these functions as C does but through callbacks
         options: Any = {"_nrt": makes_arrays, "forceinline": inline, "no_cfunc_wrapper": True}
-        with _own_cache():
+        with _own_cache(sources):
             dispatcher: Any = numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
         return cast("F", dispatcher)
 
     return declare if function is None else declare(function)
 
 
-def compiled_callback(signature: Any) -> Callable[[F], Any]:
+def compiled_callback(signature: Any, *, sources: tuple[Path, ...] = ()) -> Callable[[F], Any]:
     """Compile a C callback of this signature at once, or take it from the cache."""
 
     def decorate(function: F) -> Any:
-        with _own_cache():
+        with _own_cache(sources):
             return numba.cfunc(signature, cache=True)(function)
 
     return decorate

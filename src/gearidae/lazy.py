@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 __all__ = ["lazy_names"]
+
+
+class _Door(ModuleType):
+    """A package in which a function may be called like the module that it lives in: the function is what is public."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if isinstance(value, ModuleType) and name in self.__dict__.get("__functions__", ()):
+            return  # Python puts every module that is imported into its package, whoever asked for it
+        super().__setattr__(name, value)
 
 
 def lazy_names(
@@ -23,6 +34,8 @@ def lazy_names(
         for a name that is such a module itself.
     """
     package = namespace["__name__"]
+    namespace["__functions__"] = frozenset(name for name, place in home.items() if name == place)
+    sys.modules[package].__class__ = _Door
 
     def load(name: str) -> Any:
         if name not in home:

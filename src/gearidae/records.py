@@ -1,9 +1,11 @@
-"""Plain records that the engine hands up: samples, events and what the solver did."""
+"""Plain records that cross floors: blocks of output, samples, events, endings, solver statistics, energy balance."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
-from enum import IntEnum
+from enum import Enum, IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +15,19 @@ __all__ = [
     "GEAR_COLUMNS",
     "ROLLER_BOUND",
     "ROLLER_COLUMNS",
+    "Block",
+    "Ending",
     "EventKind",
     "Events",
     "Flank",
     "Ledger",
     "Solution",
     "Statistics",
+    "Words",
 ]
+
+Words = NDArray[Any]
+"""A vector of 8-byte words whose meaning only their maker knows."""
 
 GEAR_COLUMNS = (
     "gear_speed",
@@ -92,9 +100,46 @@ class Events:
         return len(self.time)
 
 
-@dataclass(frozen=True, slots=True)
+class Ending(Enum):
+    """How a run ended: its status in the dataset, and a sentence."""
+
+    FINISHED = ("finished", "")
+    CHATTER = ("chatter", "event followed event without the time going on")
+    STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
+    NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
+    TOO_ACCURATE = (
+        "too_accurate",
+        "the tolerance asks for more than double precision can give: raise run.rtol",
+    )
+    SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
+    FOLD = (
+        "fold",
+        "the elastic contact folds: adhesion outgrows the stiffness of the bodies, and the surfaces would jump",
+    )
+    DEFLECTION = (
+        "deflection",
+        "the bodies give way too much for the asperity model; set contact.model to elastic",
+    )
+    TOO_DEEP = (
+        "too_deep",
+        "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
+    )
+    NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
+
+    @property
+    def status(self) -> str:
+        """Name, as in the dataset."""
+        return self.value[0]
+
+    @property
+    def message(self) -> str:
+        """A sentence; empty when finished."""
+        return self.value[1]
+
+
+@dataclass(slots=True)
 class Statistics:
-    """What the solver did, added up over restarts.
+    """Solver statistics, added up over restarts; of a run under way, the driver brings them up to date as it goes.
 
     Attributes
     ----------
@@ -102,24 +147,45 @@ class Statistics:
         Work counters.
     error_test_failures, convergence_failures, restarts : int
         What went wrong, or had to start again at order one.
-    skipped : dict
-        What the scene did not need, by name.
     wall_time : float
         Wall time in the solver [s].
     backend : str
         The driver that ran: ``native`` or ``sksundae``.
+    skipped : dict
+        What the scene did not need, by name.
+    flight_steps : int
+        Steps in which no pair was in contact.
+    ending : Ending
+        How the driver ended.
+    fold_gap : float, optional
+        Gap at which the elastic contact folds, if that was the ending [m].
     """
 
-    steps: int
-    residual_evaluations: int
-    jacobian_evaluations: int
-    error_test_failures: int
-    convergence_failures: int
-    restarts: int
-    guard_evaluations: int
-    wall_time: float
-    backend: str
+    steps: int = 0
+    residual_evaluations: int = 0
+    jacobian_evaluations: int = 0
+    error_test_failures: int = 0
+    convergence_failures: int = 0
+    restarts: int = 0
+    guard_evaluations: int = 0
+    wall_time: float = 0.0
+    backend: str = ""
     skipped: dict[str, int] = field(default_factory=dict)
+    flight_steps: int = 0
+    ending: Ending = Ending.FINISHED
+    fold_gap: float | None = None
+
+    def note_fold(self, gap: float) -> None:
+        """Call the ending a fold if it was one; NaN if not, else the gap at which the contact folds [m]."""
+        if not math.isnan(gap):
+            self.ending, self.fold_gap = Ending.FOLD, float(gap)
+
+    @property
+    def message(self) -> str:
+        """The ending in a sentence; empty when finished."""
+        if self.fold_gap is not None:
+            return f"{self.ending.message}, at a gap of {self.fold_gap:.6g} m"
+        return self.ending.message
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +254,32 @@ class Ledger:
             `ROLLER_BOUND` or `GEAR_BOUND`, times rtol, times the throughput.
         """
         return (ROLLER_BOUND if roller else GEAR_BOUND) * rtol * self.throughput
+
+
+@dataclass(slots=True)
+class Block:
+    """Output of a stretch of a run.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (n, columns)
+        Samples that follow those of the block before, SI units.
+    events : ndarray, shape (m, 5)
+        Time [s], kind, pair, flank, gap rate [m/s].
+    time : float
+        Simulated time reached [s].
+    checkpoint : ndarray of 8-byte words, optional
+        All that it takes to go on from the end of this block; present at checkpoints and at the end. Only the engine
+        knows what the words mean, and checks them when it is to go on from there.
+    ledger : Ledger, optional
+        The energy ledger at the end of this block; missing where a block ends in the middle of a step.
+    """
+
+    rows: NDArray[np.float64]
+    events: NDArray[np.float64]
+    time: float
+    checkpoint: Words | None = None
+    ledger: Ledger | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ import pytest
 import gearidae as gd
 from gearidae import engine
 from gearidae.cli import main
-from gearidae.engine.integrate.driver import Ending
+from gearidae.records import Ending
 
 CASES = Path(__file__).parents[2] / "cases"
 SHORT = ["--set", "run.duration=2 ms", "run.samples=101"]

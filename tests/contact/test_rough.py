@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize, special
 
-from gearidae.contact.jkr import asperity_of
+from gearidae.contact.jkr import ADHESION_LOSS, asperity_of
 from gearidae.contact.rough import (
-    ADHESION_LOSS,
     adhesion_loss_per_asperity,
     maximum_tension,
     rough_pressure,

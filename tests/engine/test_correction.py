@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import gearidae as gd
@@ -46,8 +46,7 @@ def test_it_solves_the_linear_equations(case, at_rest, depth, moves, cj):
     jacobian(d, 0.3, cj, y, dense)
     matrix = dense.reshape(n, n).T
     condition = np.linalg.cond(matrix)
-    if condition > 1e10:
-        return
+    assume(condition <= 1e10)  # beyond, the dense solution is no reference
     expected = np.linalg.solve(matrix, -right)
     np.testing.assert_allclose(
         delta, expected, rtol=0, atol=100 * 2.3e-16 * condition * np.abs(expected).max()

@@ -5,8 +5,9 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.integrate.driver import Ending, ending_of_flag
+from gearidae.engine.integrate.driver import ending_of_flag
 from gearidae.engine.model import problem
+from gearidae.records import Ending
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])

@@ -9,9 +9,9 @@ import pytest
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.engine import solve
-from gearidae.engine.integrate.driver import BLOCK_STEPS, Ending
+from gearidae.engine.integrate.driver import BLOCK_STEPS
 from gearidae.engine.model.problem import ROOT_LIMIT, make_problem
-from gearidae.records import EventKind
+from gearidae.records import Ending, EventKind
 from gearidae_bench import stress, stress_checks
 from gearidae_bench.random_scenes import random_scene
 from gearidae_bench.stress import Outcome, run_one, run_stress

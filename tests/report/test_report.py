@@ -105,6 +105,37 @@ def test_texts_of_the_scene_are_escaped(single):
     assert "alert(1)" in page.text  # shown as what it is
 
 
+def test_everything_from_a_file_is_escaped(swept, tmp_path):
+    """Each text that a page can show, in a file that somebody else has written."""
+    path = tmp_path / "nasty.nc"
+    words = (
+        "title",
+        "summary",
+        "history",
+        "source",
+        "message",
+        "backend",
+        "references",
+        "license",
+        "product_version",
+    )
+    ds = swept.assign_attrs(dict.fromkeys((*words, "date_created", "zipped", "another"), NASTY))
+    scene = json.loads(ds.attrs["scene"]) | {"name": NASTY}
+    ds = ds.assign_attrs(scene=json.dumps(scene), swept=json.dumps({"coating.sam_fraction": [NASTY, 0.5]}))
+    ds["message"] = ds["message"].copy(data=np.array([NASTY, "plain"], dtype=object))
+    ds["status"] = ds["status"].copy(data=np.array([NASTY, "finished"], dtype=object))
+    ds["gear_speed"].attrs |= {"long_name": NASTY, "units": NASTY}
+    ds["sam_fraction"].attrs |= {"long_name": NASTY, "units": NASTY}
+    ds.to_netcdf(path)
+    text = build_report(gd.open_archive(path))
+    page = Page(text)
+    assert len(page.scripts) == 3
+    assert "<b>" not in text
+    assert "alert(1)</script>" not in text
+    assert not [value for tag, name, value in page.attributes if name.startswith("on")]
+    assert page.text.count("alert(1)") > len(words)
+
+
 def test_page_says_what_the_archive_holds(swept):
     page = Page(build_report(swept))
     assert "2 runs" in page.text

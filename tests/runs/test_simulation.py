@@ -11,8 +11,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.engine import backend
-from gearidae.engine.integrate.driver import Ending
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Ending
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 201})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 101})

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearidae.scene import Contact, Harmonic, Scene, dump_case, load_case, preset
+from gearidae.scene import MATERIAL_NAMES, Contact, Harmonic, Scene, dump_case, load_case, preset
 
 
 def small(low: float, high: float) -> st.SearchStrategy[float]:
@@ -198,6 +198,16 @@ def test_coated_surface_differs_in_energy_alone(gears: Scene) -> None:
     coated, bare = gears.coated_surface.model_dump(), gears.surface.model_dump()
     assert (coated.pop("energy"), bare.pop("energy")) == (0.1, 1.5)
     assert coated == bare
+
+
+@pytest.mark.parametrize("fraction", [0.0, 0.3, 1.0])
+def test_materials_are_the_bare_and_the_coated_part_of_the_flanks(gears: Scene, fraction: float) -> None:
+    scene = gears.replace({"coating.sam_fraction": fraction})
+    bare, coated = scene.materials()
+    assert MATERIAL_NAMES == ("bare", "coated")
+    assert (bare.surface.energy, coated.surface.energy) == (1.5, 0.1)
+    assert (bare.share, coated.share) == (1.0 - fraction, fraction)
+    assert [(surface, share) for surface, share in scene.materials()] == [tuple(bare), tuple(coated)]
 
 
 def test_defaults(gears: Scene) -> None:

@@ -1,11 +1,9 @@
 """The account of a run: how long it took to speed, stood still and adhered, what forces it met, where energy went.
 
-Read from a dataset of any length in pieces. Times at rest come from the stick and slip events and are as exact as
-these. Energies are those of the ledger that the engine kept at its own steps (`gearidae.engine.energy.balance`).
-
-Archives without a ledger have their work summed over the samples, ``sum of mean(M) times the angle turned``: of
-a constant torque that is exact however the gear trembles between two samples, and of a torque that changes it errs
-with the second power of the sampling only. What torques and speeds do not explain is then what the contacts took.
+Read from a dataset of any length in pieces; it stands beside the other readers of datasets, because the report needs it
+as well as the runs do. Times at rest come from the stick and slip events and are as exact as these. Energies are those
+of the energy balance that the engine kept at its own steps; of a run without one (which has been interrupted) nothing
+is said of energies.
 """
 
 from __future__ import annotations
@@ -23,7 +21,7 @@ from numpy.typing import NDArray
 from gearidae.archive.energy import ledger_of
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.records import EventKind
-from gearidae.scene import Drive, Load, Scene
+from gearidae.scene import Scene
 
 __all__ = ["Account", "account", "account_of", "with_account"]
 
@@ -39,9 +37,7 @@ _HELD_WITHIN = 0.5
 _COLUMNS = (
     "time",
     "gear_speed",
-    "pinion_speed",
     "gear_angle",
-    "transmission_error",
     "mesh_force",
     "drive_gap",
     "coast_gap",
@@ -79,8 +75,7 @@ class Account:
     contact_loss : float
         What is left of the work: lost to adhesion or stored in contacts, less the work of the changing radius.
     uncertainty : float
-        How far that can be trusted: the ledger's residual; without a ledger, how much `contact_loss` changes when only
-        every second sample is looked at.
+        How far that can be trusted: the ledger's residual.
     adhesion_loss, stored_change, radius_work, model_change : float
         What it is made of, from the ledger; see `gearidae.records.Ledger`.
     residual_bound : float
@@ -177,11 +172,9 @@ def account_of(
     incidents = _Events(scene)
     for piece in _pieces(read, events, ("event_time", "event_kind")):
         incidents.add(piece["event_time"], piece["event_kind"])
-    fine, work = _Samples(scene), _SampledWork(scene)
-    for piece in _pieces(read, samples, _COLUMNS, overlap=2):
+    fine = _Samples(scene)
+    for piece in _pieces(read, samples, _COLUMNS, overlap=1):
         fine.add(piece)
-        if ledger is None:
-            work.add(piece)
     end = max(end, incidents.time, np.nan_to_num(fine.time))
     at_rest, resting = incidents.rest(end, moved=fine.top_speed > 0.0)
     adhering, clinging = fine.adhering()
@@ -196,14 +189,16 @@ def account_of(
         impacts=incidents.counts[EventKind.ONSET],
         largest_force=fine.largest_force,
         largest_force_time=fine.largest_force_time,
-        **(work.done() if ledger is None else _from_ledger(ledger)),
+        **_energies(ledger),
     )
 
 
-def _from_ledger(ledger: Mapping[str, float]) -> dict[str, float]:
-    """Energies of the account from those of a ledger."""
+def _energies(ledger: Mapping[str, float] | None) -> dict[str, float]:
+    """Energies of the account from those of the energy balance; NaN without one."""
     own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
     parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
+    if ledger is None:
+        return dict.fromkeys((*own, *parts, "contact_loss", "uncertainty"), math.nan)
     energies = {name: ledger[name] for name in (*own, *parts)}
     contact = ledger["adhesion_loss"] + ledger["stored_change"]
     contact -= ledger["radius_work"] + ledger["model_change"]
@@ -219,7 +214,7 @@ def with_account(ds: xr.Dataset) -> xr.Dataset:
 def _pieces(
     read: Read, count: int, names: tuple[str, ...], overlap: int = 0
 ) -> Iterator[dict[str, NDArray[Any]]]:
-    """Go through a dimension; each piece begins with the last samples of the one before, as `_Work` wants it."""
+    """Go through a dimension; each piece begins with the last samples of the one before."""
     for start in range(0, count, PIECE):
         cut = slice(max(start - overlap, 0), min(start + PIECE, count))
         yield {name: read(name, cut) for name in names}
@@ -269,84 +264,6 @@ class _Events:
         return self._total, False
 
 
-class _SampledWork:
-    """Work of the torques, summed over all samples and over every second one."""
-
-    def __init__(self, scene: Scene) -> None:
-        self._fine, self._coarse = _Work(scene), _Work(scene)
-
-    def add(self, piece: dict[str, Floats]) -> None:
-        """Add a piece that overlaps with the one before by two samples."""
-        self._fine.add(piece)
-        self._coarse.add({name: values[::2] for name, values in piece.items()})
-
-    def done(self) -> dict[str, float]:
-        """Fields of the account; NaN without samples."""
-        return self._fine.done() | {"uncertainty": abs(self._fine.balance() - self._coarse.balance())}
-
-
-class _Work:
-    """Work of the torques, summed over samples."""
-
-    def __init__(self, scene: Scene) -> None:
-        assert scene.gears is not None
-        assert scene.mesh is not None
-        assert scene.drive is not None
-        assert scene.load is not None
-        self._gears, self._mesh, self._drive, self._load = scene.gears, scene.mesh, scene.drive, scene.load
-        self._pinion_radius = scene.gears.pinion_base_radius
-        self._gear_radius = scene.geometry.base_radius_gear
-        self._sums = dict.fromkeys(("drive_work", "drag_loss", "dry_loss", "damping_loss"), 0.0)
-        self._kinetic: list[float] = []
-        self._time = -math.inf
-
-    def add(self, piece: dict[str, Floats]) -> None:
-        """Add a piece that overlaps with the one before by one sample."""
-        piece = {name: values[piece["time"] >= self._time] for name, values in piece.items()}
-        time, speed, u = piece["time"], piece["gear_speed"], piece["transmission_error"]
-        if not time.size:
-            return
-        kinetic = 0.5 * self._gears.pinion_inertia * piece["pinion_speed"] ** 2
-        kinetic += 0.5 * self._gears.gear_inertia * speed**2
-        self._kinetic = [*self._kinetic[:1], float(kinetic[0]), float(kinetic[-1])]
-        self._kinetic = [self._kinetic[0], self._kinetic[-1]]
-        gear, pinion = np.diff(piece["gear_angle"]), np.diff(self._pinion_angle(piece["gear_angle"], u))
-        rate = self._pinion_radius * piece["pinion_speed"] - self._gear_radius * speed
-        resisting = np.maximum(_torque(self._load, time), 0.0)
-        for name, torque, turned in (
-            ("drive_work", _torque(self._drive, time), pinion),
-            ("drag_loss", self._load.drag * speed * np.abs(speed), gear),
-            ("dry_loss", resisting, np.abs(gear)),
-            ("damping_loss", self._mesh.damping * rate, np.diff(u)),
-        ):
-            self._sums[name] += float(np.sum(0.5 * (torque[1:] + torque[:-1]) * turned))
-        self._time = float(time[-1])
-
-    def done(self) -> dict[str, float]:
-        """Fields of the account; NaN without samples."""
-        if not self._kinetic:
-            return dict.fromkeys((*self._sums, "kinetic_change", "contact_loss"), math.nan)
-        change = self._kinetic[1] - self._kinetic[0]
-        return {**self._sums, "kinetic_change": change, "contact_loss": self.balance()}
-
-    def balance(self) -> float:
-        """What no torque and no speed accounts for."""
-        if not self._kinetic:
-            return math.nan
-        sums = self._sums
-        taken = sums["drag_loss"] + sums["dry_loss"] + sums["damping_loss"]
-        return sums["drive_work"] - taken - (self._kinetic[1] - self._kinetic[0])
-
-    def _pinion_angle(self, gear: Floats, u: Floats) -> Floats:
-        """phi1 of ``R1 phi1 = u + R2 phi2 + e(phi1)``, by iteration: e is small against R1."""
-        rigid = (u + self._gear_radius * gear) / self._pinion_radius
-        angle = rigid
-        for _ in range(20 if self._mesh.static_error else 0):
-            error = sum(h.amplitude * np.cos(h.order * angle + h.phase) for h in self._mesh.static_error)
-            angle = rigid + error / self._pinion_radius
-        return angle
-
-
 class _Samples:
     """Extremes of the samples, and the times the gear is turned back by adhesion."""
 
@@ -384,14 +301,3 @@ class _Samples:
     def _near(self, angle: float) -> bool:
         assert self._turned_back is not None
         return abs(angle - self._turned_back[1]) < _HELD_WITHIN * self._pitch
-
-
-def _torque(shaft: Drive | Load, time: Floats) -> Floats:
-    """Prescribed torque of a shaft [N m]."""
-    torque = np.full(time.shape, shaft.torque)
-    for harmonic in shaft.harmonic:
-        torque += harmonic.amplitude * np.cos(2.0 * math.pi * harmonic.frequency * time + harmonic.phase)
-    if shaft.schedule:
-        knots = np.array(shaft.schedule)
-        torque += np.interp(time, knots[:, 0], knots[:, 1])
-    return torque

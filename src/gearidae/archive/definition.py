@@ -17,8 +17,8 @@ import xarray as xr
 
 __all__ = ["CHUNK", "chunked", "define", "offsets"]
 
-_CHUNKED_ABOVE = 2**16
-"""Variables larger than this [bytes] are stored in chunks, each with a checksum."""
+_COMPRESSED_ABOVE = 2**16
+"""Variables larger than this [bytes] are compressed if that pays, and of a sweep have chunks for each run."""
 CHUNK = 2**20
 """Largest chunk [bytes]."""
 
@@ -76,20 +76,19 @@ def define(
 
 
 def chunked(name: str, dtype: np.dtype[Any], shape: tuple[int, ...], nbytes: int) -> dict[str, Any]:
-    """How to store a variable: checksums on all that is large, compression where it pays.
+    """How to store a variable: in chunks with a checksum each (Fletcher-32), large ones compressed where it pays.
 
     Counts and flags shrink to a hundredth at half the speed of plain writing; samples of motion, whose last
-    digits are noise, to two thirds at a twentieth, so they are left as they are.
+    digits are noise, to two thirds at a twentieth, so they are left as they are. HDF5 has no checksum for single
+    numbers and for texts of varying length, which are stored plainly.
     """
-    if dtype.kind not in "fi" or nbytes <= _CHUNKED_ABOVE:
+    if dtype.kind not in "fi" or not nbytes or not shape:
         return {}
     pieces = -(-shape[-1] * dtype.itemsize // CHUNK)
-    # one run to a chunk, cut along the last dimension into even pieces
-    storage: dict[str, Any] = {
-        "fletcher32": True,
-        "chunksizes": (*(1,) * (len(shape) - 1), -(-shape[-1] // pieces)),
-    }
-    if dtype.kind == "i" or name == "pairs_in_contact":
+    # the runs of a sweep are chunks of their own where they are long
+    runs = shape[:-1] if nbytes <= _COMPRESSED_ABOVE else (1,) * (len(shape) - 1)
+    storage: dict[str, Any] = {"fletcher32": True, "chunksizes": (*runs, -(-shape[-1] // pieces))}
+    if nbytes > _COMPRESSED_ABOVE and (dtype.kind == "i" or name == "pairs_in_contact"):
         storage |= {"zlib": True, "complevel": 1, "shuffle": True}
     return storage
 

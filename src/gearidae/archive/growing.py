@@ -24,11 +24,12 @@ from numpy.typing import NDArray
 
 from gearidae.archive.definition import define, offsets
 from gearidae.archive.disk import disk_errors, read_at, sync, write_at
+from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
 from gearidae.archive.lock import is_locked, lock
 from gearidae.archive.variables import EVENTS
-from gearidae.engine.integrate.driver import Block, Tally
 from gearidae.errors import SceneError
+from gearidae.records import Block, Statistics
 
 __all__ = ["GrowingArchive", "is_growing", "trimmed"]
 
@@ -73,7 +74,7 @@ def trimmed(ds: xr.Dataset, *, running: bool) -> xr.Dataset:
         "status": "running" if running else "interrupted",
         "message": f"not at its end yet; checkpoint at {point.time:g} s",
         "wall_time": point.wall_time,
-        **{name: getattr(point.tally, name) for name in COUNTERS if name in cut.attrs},
+        **{name: getattr(point.statistics, name) for name in COUNTERS if name in cut.attrs},
     }
     return cut
 
@@ -177,14 +178,14 @@ class GrowingArchive:
             self._commit()
         return point
 
-    def take(self, block: Block, tally: Tally, wall_time: float, *, last: bool = False) -> None:
+    def take(self, block: Block, statistics: Statistics, wall_time: float, *, last: bool = False) -> None:
         """Append a block of output, then commit it.
 
         Parameters
         ----------
         block : Block
             From the engine.
-        tally : Tally
+        statistics : Statistics
             The solver's counters at the end of the block.
         wall_time : float
             Wall time in the solver until then [s].
@@ -202,7 +203,7 @@ class GrowingArchive:
             if block.checkpoint is not None and due:
                 self._sequence += 1
                 counts = (self._sequence, self.samples, self.events)
-                self._keep(Checkpoint(*counts, block.time, wall_time, tally, block.checkpoint))
+                self._keep(Checkpoint(*counts, block.time, wall_time, statistics, block.checkpoint))
 
     def _append(self, block: Block) -> None:
         if self.events + len(block.events) > self._sizes["event"]:
@@ -256,7 +257,7 @@ class GrowingArchive:
         self.close()
 
     def _compact(self, template: xr.Dataset, part: Path) -> None:
-        define(template, part, {"time": self.samples, "event": self.events})
+        define(with_checksums(template), part, {"time": self.samples, "event": self.events})
         with netCDF4.Dataset(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():

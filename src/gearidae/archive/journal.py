@@ -8,18 +8,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearidae.engine.integrate.driver import Tally
+from gearidae.records import Statistics, Words
 
 __all__ = ["COUNTERS", "HEADER", "Checkpoint", "newest"]
 
-Floats = NDArray[np.float64]
-
-COUNTERS = tuple(field.name for field in fields(Tally) if field.type == "int")
+COUNTERS = tuple(field.name for field in fields(Statistics) if field.type == "int")
 _FIXED = ("checksum", "sequence", "samples", "events", "time", "wall_time", "words")
 HEADER = len(_FIXED) + len(COUNTERS)
-"""Numbers in front of the state."""
+"""Words in front of the state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +33,10 @@ class Checkpoint:
         Simulated time [s].
     wall_time : float
         Wall time in the solver until then [s].
-    tally : Tally
+    statistics : Statistics
         The solver's counters there.
-    state : ndarray
-        What the engine needs; empty at the start.
+    state : ndarray of 8-byte words
+        What the engine needs, kept to the last bit and never looked into; empty at the start.
     """
 
     sequence: int
@@ -47,19 +44,20 @@ class Checkpoint:
     events: int
     time: float
     wall_time: float
-    tally: Tally
-    state: Floats
+    statistics: Statistics
+    state: Words
 
     @classmethod
     def start(cls) -> Checkpoint:
         """Return the checkpoint that every run has: nothing done yet."""
-        return cls(0, 0, 0, 0.0, 0.0, Tally(), np.empty(0))
+        return cls(0, 0, 0, 0.0, 0.0, Statistics(), np.empty(0))
 
     def pack(self) -> bytes:
         """Return the record as it stands in its slot: a checksum over all that follows, then the numbers."""
-        counters = [getattr(self.tally, name) for name in COUNTERS]
+        counters = [getattr(self.statistics, name) for name in COUNTERS]
         fixed = [self.sequence, self.samples, self.events, self.time, self.wall_time, self.state.size]
-        body: bytes = np.concatenate([fixed, counters, self.state]).astype("<f8").tobytes()
+        words = np.ascontiguousarray(self.state).view("u8")  # as they are: some may be no numbers
+        body = np.array([*fixed, *counters], "<f8").tobytes() + words.astype("<u8").tobytes()
         return struct.pack("<d", zlib.crc32(body)) + body
 
     @classmethod
@@ -72,11 +70,12 @@ class Checkpoint:
         if size > numbers.size or zlib.crc32(record[8 : 8 * size]) != numbers[0]:
             return None
         sequence, samples, events = map(int, numbers[1:4])
-        tally = Tally()
+        statistics = Statistics()
         for name, number in zip(COUNTERS, numbers[len(_FIXED) : HEADER], strict=True):
-            setattr(tally, name, int(number))
+            setattr(statistics, name, int(number))
         time, wall_time = map(float, numbers[4:6])
-        return cls(sequence, samples, events, time, wall_time, tally, numbers[HEADER:size].astype(np.float64))
+        state = np.frombuffer(record, "<u8", size - HEADER, 8 * HEADER).astype(np.uint64).view(np.float64)
+        return cls(sequence, samples, events, time, wall_time, statistics, state)
 
 
 def newest(slots: Iterable[bytes]) -> Checkpoint:

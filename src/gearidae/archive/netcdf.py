@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import secrets
@@ -12,9 +11,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import sync
 from gearidae.archive.growing import is_growing, trimmed
+from gearidae.archive.integrity import CheckedStore, verify, with_checksums
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
@@ -24,8 +25,6 @@ from gearidae.errors import SceneError
 __all__ = ["check_target", "open_archive", "save"]
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_ATTRIBUTES = ("title", "history", "source", "status", "message", "rtol", "t_end", "wall_time", "steps")
-"""Attributes that readers of an archive rely on."""
 _LAZY_ABOVE = 128 * 2**20
 """Archives larger than this [bytes in memory] are read piece by piece as they are used."""
 
@@ -94,7 +93,9 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
     target = check_target(path, overwrite=overwrite)
     part = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
     try:
-        ds.drop_encoding().to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds))
+        with_checksums(ds.drop_encoding()).to_netcdf(
+            part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds)
+        )
         sync(part)
         part.replace(target)
         sync(target.parent)
@@ -138,9 +139,12 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
         ds = _opened(source)
+    except SceneError:
+        raise
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         raise SceneError("archive", path, f"is damaged or not a netCDF4 file ({error})") from error
     try:
+        verify(ds, path)
         _check_layout(ds, path)
         if is_growing(ds):
             ds = trimmed(ds, running=running)
@@ -159,7 +163,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
 
 def _opened(source: Path) -> xr.Dataset:
     """Open a file without reading more than it takes to describe it."""
-    store = xr.backends.NetCDF4DataStore.open(str(source))  # type: ignore[no-untyped-call]
+    store = CheckedStore.open(str(source))  # type: ignore[no-untyped-call]
     try:
         variables = store.ds.variables
         if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= _LAZY_ABOVE:
@@ -194,25 +198,14 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
         raise SceneError(
             "archive", path, f"has schema_version {found!s}: this version of gearidae reads {SCHEMA_VERSION}"
         )
-    scene = _scene(ds.attrs["scene"])
+    scene = readable_scene(ds.attrs["scene"])
     if scene is None:
         raise SceneError("archive", path, "is damaged: its scene is not readable")
     expected = ("time", *columns(is_roller="roller" in scene), *EVENTS)
     missing = [name for name in expected if name not in ds.variables]
-    missing += [name for name in _ATTRIBUTES if name not in ds.attrs]
-    if missing:
-        raise SceneError("archive", path, f"is damaged: it lacks {', '.join(missing)}")
-
-
-def _scene(text: object) -> dict[str, object] | None:
-    """Read the scene; None if it is not what a scene can look like."""
-    try:
-        scene = json.loads(text) if isinstance(text, str) else None
-    except (ValueError, RecursionError):
-        return None
-    if not isinstance(scene, dict) or not scene:
-        return None
-    return scene if all(isinstance(table, dict) or key == "name" for key, table in scene.items()) else None
+    wrong = f"it lacks {', '.join(missing)}" if missing else wrong_attribute(ds)
+    if wrong:
+        raise SceneError("archive", path, f"is damaged: {wrong}")
 
 
 def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:

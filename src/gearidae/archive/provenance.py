@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import gearidae
 from gearidae.contact.jkr import tabor_parameter, tabor_regime
+from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -78,7 +79,7 @@ def surface_regimes(scene: Scene) -> dict[str, float | str]:
         for the surfaces ``bare`` and ``coated``.
     """
     regimes: dict[str, float | str] = {}
-    for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
+    for name, (surface, _) in zip(MATERIAL_NAMES, scene.materials(), strict=True):
         parameter = tabor_parameter(surface)
         regimes[f"tabor_parameter_{name}"] = parameter
         regimes[f"tabor_regime_{name}"] = tabor_regime(parameter)

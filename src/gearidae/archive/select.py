@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.dataset import dimension_names
+from gearidae.archive.pieces import reached
 from gearidae.archive.variables import columns
 from gearidae.errors import SceneError
+from gearidae.scene import Scene
 
-__all__ = ["is_roller", "run_value", "runs", "scene_of", "swept_dims"]
+__all__ = ["is_roller", "motion_samples", "run_scene", "run_value", "runs", "scene_of", "swept_dims"]
 
 
 def scene_of(ds: xr.Dataset) -> dict[str, Any]:
@@ -79,6 +82,55 @@ def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
 def run_value(run: xr.Dataset, name: str) -> Any:
     """Status or solver statistic of one run: a variable if it comes from a sweep, an attribute otherwise."""
     return run[name].item() if name in run.variables else run.attrs[name]
+
+
+def run_scene(run: xr.Dataset) -> Scene:
+    """Return the scene of one run, also of one that was picked from a sweep.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        Without swept dimensions.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If the dataset carries no scene.
+    """
+    scene = Scene.from_dict(scene_of(run))
+    swept: Mapping[str, list[Any]] = json.loads(run.attrs.get("swept", "{}"))
+    changes = {}
+    for key, dim in dimension_names(swept).items():
+        value = run[dim].item()
+        if run[dim].attrs.get("comment"):  # values that are neither numbers nor words are numbered
+            if not (isinstance(value, int) and 0 <= value < len(swept[key])):
+                raise SceneError("dataset", f"{dim} {value}", f"must number one of {len(swept[key])} values")
+            value = swept[key][value]
+        changes[key] = value
+    return scene.replace(changes)
+
+
+def motion_samples(run: xr.Dataset) -> int:
+    """Return how many samples of the motion a run has.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        One run of a gear pair.
+
+    Returns
+    -------
+    int
+    """
+    samples = reached(run["transmission_error"])
+    for name in ("gear_angle", "gear_speed", "pinion_speed", "mesh_force"):
+        if samples and not np.isfinite(run[name].variable[samples - 1].values):
+            samples = min(samples, reached(run[name]))
+    return samples
 
 
 def _own_events(run: xr.Dataset) -> xr.Dataset:

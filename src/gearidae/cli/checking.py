@@ -72,7 +72,7 @@ def _geometry(scene: Scene) -> Rows:
 
 
 def _estimates(scene: Scene) -> Rows:
-    from gearidae.runs.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+    from gearidae.studies.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
 
     assert scene.gears is not None
     yield "Estimates", "", "from the constant torques, if nothing sticks"

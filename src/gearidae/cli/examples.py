@@ -7,7 +7,7 @@ __all__ = ["EXAMPLES"]
 EXAMPLES: dict[str, tuple[str, ...]] = {
     "run": (
         "gearidae run mine.toml",
-        "gearidae run teodorescu2009_low_speed --set coating.sam_fraction=0.5 -o half.nc",
+        "gearidae run teodorescu2009_low_speed --set coating.sam_fraction=0.5 -o run.nc",
         'gearidae run mine.toml --set "mesh.backlash=0.3 um" "run.duration=50 ms" --overwrite',
     ),
     "sweep": (

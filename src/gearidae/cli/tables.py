@@ -64,7 +64,7 @@ def show_account(ds: xr.Dataset) -> None:
         A single run; of a roller, only where the energy went. Nothing is printed of a sweep.
     """
     if "account" in ds.attrs:
-        show_rows(_account_rows(json.loads(ds.attrs["account"]), with_energy="ledger" not in ds.attrs))
+        show_rows(_account_rows(json.loads(ds.attrs["account"])))
     if "ledger" in ds.attrs:
         show_rows(_ledger_rows(json.loads(ds.attrs["ledger"])))
 
@@ -77,7 +77,7 @@ def _ledger_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
     yield "residual", f"{kept['residual']:.2g} J", f"bound {kept['residual_bound']:.2g} J"
 
 
-def _account_rows(told: dict[str, Any], *, with_energy: bool) -> Iterable[tuple[str, str, str]]:
+def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
     def number(name: str, scale: float = 1.0) -> str:
         return "-" if told[name] is None else f"{told[name] * scale:.4g}"
 
@@ -90,15 +90,6 @@ def _account_rows(told: dict[str, Any], *, with_energy: bool) -> Iterable[tuple[
     if told["largest_force"] is not None:
         when = f"at {number('largest_force_time', 1e3)} ms"
         yield "largest force", f"{number('largest_force', 1e6)} uN", when
-    if with_energy and told["drive_work"] is not None:
-        yield "work of the drive", f"{told['drive_work']:.5g} J", "of which went into"
-        for name in ("drag_loss", "dry_loss", "damping_loss", "kinetic_change"):
-            yield name.replace("_", " "), f"{told[name]:.5g} J", ""
-        yield (
-            "contacts",
-            f"{told['contact_loss']:.5g} J",
-            f"the rest, to {told['uncertainty']:.1g} J: adhesion",
-        )
 
 
 def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:

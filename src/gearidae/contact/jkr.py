@@ -33,6 +33,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearidae.errors import SceneError
 
 __all__ = [
+    "ADHESION_LOSS",
     "ASPERITY_LAWS",
     "S_FOLD",
     "S_TOUCH",
@@ -58,6 +59,11 @@ S_FOLD = (1.0 / 18.0) ** (1.0 / 6.0)
 """s at the fold, displacement -1: the end of the stable branch."""
 S_TOUCH = (8.0 / 9.0) ** (1.0 / 6.0)
 """s at displacement 0: where an approaching asperity snaps in."""
+ADHESION_LOSS = (4.0 / 27.0) * (3.6 * 4.0 ** (1.0 / 3.0) + 0.6)
+"""Energy that an asperity loses when it joins, 0.93550, over its pull-off load times its stretch limit.
+
+In closed form: minus the integral of P/P_c over delta/dc from -1 to 0, ``4/45 (1 + 6 * 4^(1/3))``.
+"""
 
 
 class Surface(Protocol):

@@ -31,19 +31,15 @@ from gearidae.contact.heights import (
     normal_density,
     normal_density_slope,
 )
-from gearidae.contact.jkr import AsperityLaw, Surface, asperity_of
+from gearidae.contact.jkr import ADHESION_LOSS, AsperityLaw, Surface, asperity_of
 
 __all__ = [
-    "ADHESION_LOSS",
     "MaximumTension",
     "adhesion_loss_per_asperity",
     "maximum_tension",
     "rough_pressure",
     "rough_pressure_slopes",
 ]
-
-ADHESION_LOSS = 4.0 / 45.0 * (1.0 + 6.0 * 4.0 ** (1.0 / 3.0))
-"""Minus the integral of P/P_c over delta/dc from -1 to 0, in closed form: 0.93550."""
 
 
 class MaximumTension(NamedTuple):

@@ -12,8 +12,7 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 
 from gearidae.errors import SceneError
 from gearidae.plot.files import BY_FFMPEG, MOVING, whole_file
-from gearidae.plot.teeth_view import TeethView
-from gearidae.studies.tooth_contacts import tooth_contacts
+from gearidae.plot.teeth_view import TeethView, mesh_states
 
 __all__ = ["animate_teeth"]
 
@@ -67,10 +66,10 @@ def animate_teeth(
         raise SceneError("rate", rate, "must be 1 to 100 pictures per second")
     with whole_file(path, MOVING, overwrite=overwrite) as part:
         writer = _writer(Path(path), rate)
-        first, last = (each.time for each in tooth_contacts(ds, [start, math.inf if stop is None else stop]))
+        first, last = (each.time for each in mesh_states(ds, [start, math.inf if stop is None else stop]))
         if not first < last:
             raise SceneError("stop", last, f"must come after the start, {first:g} s")
-        states = tooth_contacts(ds, np.linspace(first, last, frames))
+        states = mesh_states(ds, np.linspace(first, last, frames))
         view = TeethView(ds, states)
         with writer.saving(view.figure, str(part), dpi):
             for state in states:

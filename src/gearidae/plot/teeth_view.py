@@ -10,16 +10,17 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
+from gearidae.archive.select import run_scene
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
 from gearidae.plot.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
 from gearidae.records import Flank
 from gearidae.scene import Scene
-from gearidae.studies.tooth_contacts import run_scene, tooth_contacts
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
-__all__ = ["STATE_WORDS", "TeethView", "nearest_pairs", "pairs_at_most", "teeth"]
+__all__ = ["STATE_WORDS", "TeethView", "mesh_states", "nearest_pairs", "pairs_at_most", "teeth"]
 
 STATE_WORDS = {
     ContactState.UNTOLD: "not told by the record",
@@ -72,10 +73,20 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
     does not tell them neither does the picture. The asperities drawn are a sample of the model's; a record knows of
     no single one.
     """
-    (state,) = tooth_contacts(ds, [math.inf if time is None else time])
+    (state,) = mesh_states(ds, [math.inf if time is None else time])
     view = TeethView(ds, [state])
     view.draw(state)
     return view.figure
+
+
+def mesh_states(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
+    """Return what the pairs of teeth did at some times, as `gearidae.analysis.tooth_contacts` tells it.
+
+    The force law and what is compiled of it are loaded only here: the other pictures do without.
+    """
+    from gearidae.studies.tooth_contacts import tooth_contacts
+
+    return tooth_contacts(ds, times)
 
 
 def pairs_at_most(scene: Scene) -> int:

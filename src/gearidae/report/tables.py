@@ -53,13 +53,6 @@ _ACCOUNT = (
     ("held_by", "held at the end by", ""),
     ("largest_force", "largest force", "N"),
     ("largest_force_time", "time of the largest force", "s"),
-    ("drive_work", "work of the drive", "J"),
-    ("drag_loss", "of this, into drag", "J"),
-    ("dry_loss", "into dry resistance", "J"),
-    ("damping_loss", "into damping", "J"),
-    ("kinetic_change", "into motion", "J"),
-    ("contact_loss", "into the contacts (the rest)", "J"),
-    ("uncertainty", "uncertainty of that rest", "J"),
 )
 _LEDGER = (
     ("drive_work", "work of the drive", "J"),
@@ -109,7 +102,7 @@ def account_table(ds: xr.Dataset) -> str:
     rows = [
         (words, _number(float(told[name]) if isinstance(told[name], int) else told[name]), unit)
         for name, words, unit in _ACCOUNT
-        if told.get(name) not in (None, "") and not (kept and unit == "J")
+        if told.get(name) not in (None, "")
     ]
     rows += [(words, _number(kept[name]), unit) for name, words, unit in _LEDGER if kept.get(name)]
     if not rows:

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import base64
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.select import is_roller
+from gearidae.archive.select import is_roller, motion_samples, run_scene
 from gearidae.errors import SceneError
 from gearidae.plot.asperities import SAMPLES, half_width, joined_asperities, rough_sample
 from gearidae.plot.style import runs_of
-from gearidae.plot.teeth_view import STATE_WORDS, nearest_pairs, pairs_at_most
+from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
 from gearidae.scene import Scene
-from gearidae.studies.tooth_contacts import run_scene, tooth_contacts
-from gearidae.studies.tooth_record import samples_of
-from gearidae.studies.tooth_states import MeshState, ToothContact
+
+if TYPE_CHECKING:
+    from gearidae.studies.tooth_states import MeshState, ToothContact
 
 __all__ = ["FRAME", "MOST_STATES", "PAIR", "pack_teeth"]
 
@@ -78,12 +78,12 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
 def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
     scene = run_scene(run)
     picture, module = mesh_picture(scene), scene.geometry.module
-    samples = samples_of(run)
+    samples = motion_samples(run)
     # samples themselves and not times between, so that what is shown is what was recorded
     every = max(1, math.ceil((samples - 1) / (most - 1)))
     times = float(run["time"][samples - 1]) / max(samples - 1, 1) * np.arange(0, samples, every)
     places = pairs_at_most(scene)
-    rows = [_row(scene, state, places) for state in tooth_contacts(run, times)]
+    rows = [_row(scene, state, places) for state in mesh_states(run, times)]
     return {
         "every": every,
         "places": places,

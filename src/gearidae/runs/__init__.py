@@ -1,4 +1,21 @@
 """Running scenes: one run, a sweep, runs that stream into an archive, executors and progress.
 
-The public door is `gearidae.simulate` and `gearidae.sweep`.
+The public door: what `gearidae.simulate` and `gearidae.sweep` are, and executors for them; loaded on first use.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gearidae.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from gearidae.runs.executors import dask_executor
+    from gearidae.runs.simulation import simulate
+    from gearidae.runs.sweeping import sweep
+
+__all__ = ["dask_executor", "simulate", "sweep"]
+
+_HOME = {"dask_executor": "executors", "simulate": "simulation", "sweep": "sweeping"}
+
+__getattr__, __dir__ = lazy_names(globals(), _HOME)

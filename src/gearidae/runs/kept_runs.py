@@ -9,7 +9,7 @@ import re
 import secrets
 import warnings
 from collections.abc import Collection
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,9 @@ _OURS = re.compile(r"\.?[0-9a-f]{64}(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
 """Names of our files, finished or cut off while they were written."""
 _EVENTS = {"time": np.float64, "kind": np.int8, "pair": np.int64, "flank": np.int8, "gap_rate": np.float64}
 """Rows of the table of events, all of which double precision holds exactly, and their types in memory."""
+
+_STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not in ("ending", "fold_gap"))
+"""What is kept of the statistics; a run that is kept has finished."""
 
 
 def folder_beside(archive: Path) -> Path:
@@ -142,7 +145,7 @@ def _write(path: Path, key: str, solution: Solution) -> None:
         {
             "key": key,
             "columns": list(solution.samples),
-            "statistics": asdict(solution.statistics),
+            "statistics": {name: getattr(solution.statistics, name) for name in _STATISTICS},
             "status": solution.status,
             "message": solution.message,
             "reached": solution.reached,

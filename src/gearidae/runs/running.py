@@ -106,7 +106,7 @@ def unsolved(status: str, message: str) -> Solution:
         flank=np.empty(0, np.int8),
         gap_rate=np.empty(0),
     )
-    return Solution(np.empty(0), {}, events, Statistics(0, 0, 0, 0, 0, 0, 0, 0.0, ""), status, message)
+    return Solution(np.empty(0), {}, events, Statistics(), status, message)
 
 
 def early_end(ds: xr.Dataset, time: float, message: str = "", advice: str = _ADVICE) -> SolverError:

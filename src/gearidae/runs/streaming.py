@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from gearidae.engine import Ended
-    from gearidae.engine.integrate.driver import Block, Tally
+    from gearidae.records import Block, Statistics
     from gearidae.scene import Scene
 
 __all__ = ["stream"]
@@ -109,9 +109,9 @@ class _Run:
         duration = self._scene.run.duration
         reached = 0.0
 
-        def take(block: Block, tally: Tally, wall_time: float) -> None:
+        def take(block: Block, statistics: Statistics, wall_time: float) -> None:
             nonlocal reached
-            archive.take(block, tally, wall_time, last=_is_end(block.time, duration))
+            archive.take(block, statistics, wall_time, last=_is_end(block.time, duration))
             reached = block.time
 
         try:
@@ -120,7 +120,7 @@ class _Run:
             if _is_end(reached, duration):  # all that is missing is the final form
                 return self._ended_at(point)
             state = point.state if point.sequence else None
-            start = engine.Start(state, point.tally, point.time, point.wall_time, point.events)
+            start = engine.Start(state, point.statistics, point.time, point.wall_time, point.events)
             return engine.follow(self._scene, take, backend=self._backend, on_progress=report, begin=start)
         except DiskError as error:
             raise self._not_written(archive, reached, error) from error
@@ -165,7 +165,7 @@ class _Run:
     def _ended_at(self, point: Checkpoint) -> Ended:
         """How a run ended of which only the archive's final form was missing."""
         _, skipped = engine.outlook(self._scene, self._backend, point.state)
-        statistics = statistics_of(point.tally, point.wall_time, self._backend, skipped)
+        statistics = statistics_of(point.statistics, point.wall_time, self._backend, skipped)
         ledger = engine.ledger_at(self._scene, point.state, self._backend)
         return engine.Ended(statistics, "finished", "", point.time, ledger)
 

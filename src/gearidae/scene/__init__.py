@@ -7,10 +7,11 @@ from gearidae.scene.keys import KeyInfo
 from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.scene import Scene, describe_key, describe_keys
-from gearidae.scene.surface import Coating, Contact, Surface
+from gearidae.scene.surface import MATERIAL_NAMES, Coating, Contact, Material, Surface
 from gearidae.scene.torque import Drive, Harmonic, Load
 
 __all__ = [
+    "MATERIAL_NAMES",
     "PRESETS",
     "Coating",
     "Contact",
@@ -20,6 +21,7 @@ __all__ = [
     "Initial",
     "KeyInfo",
     "Load",
+    "Material",
     "Mesh",
     "Roller",
     "Run",

@@ -14,7 +14,7 @@ from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import check_gaps, check_reach, check_stretch
 from gearidae.scene.run import Initial, Roller, Run
-from gearidae.scene.surface import Coating, Contact, Surface
+from gearidae.scene.surface import Coating, Contact, Material, Surface
 from gearidae.scene.torque import Drive, Load
 
 __all__ = ["Scene", "describe_key", "describe_keys"]
@@ -155,6 +155,18 @@ class Scene(Group):
     def coated_surface(self) -> Surface:
         """The surface where the monolayer covers it: the same, with the coating's energy."""
         return self.surface.model_copy(update={"energy": self.coating.energy})
+
+    def materials(self) -> tuple[Material, Material]:
+        """List the materials of the flanks and the share of each.
+
+        Returns
+        -------
+        tuple of Material
+            Pairs of surface and share [1], named by `gearidae.scene.MATERIAL_NAMES`: bare, coated. The shares add up
+            to 1; a material that the flanks do not have has the share 0.
+        """
+        fraction = self.coating.sam_fraction
+        return Material(self.surface, 1.0 - fraction), Material(self.coated_surface, fraction)
 
     def replace(self, changes: Mapping[str, Any]) -> Self:
         """Return a scene with some keys changed, checked anew.

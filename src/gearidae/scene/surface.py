@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
 from gearidae.scene.group import Group
 from gearidae.scene.quantity import Quantity
 
-__all__ = ["Coating", "Contact", "Surface"]
+__all__ = ["MATERIAL_NAMES", "Coating", "Contact", "Material", "Surface"]
 
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
 
@@ -33,6 +33,17 @@ class Surface(Group):
     roughness: Annotated[float, Quantity(unit="m", at_least=1e-12, at_most=0.1, shown=("nm", -9))] = Field(
         description="rms height of the asperities, sigma"
     )
+
+
+MATERIAL_NAMES = ("bare", "coated")
+"""Names of a scene's materials, in the order of `Scene.materials`."""
+
+
+class Material(NamedTuple):
+    """A surface and the share of the flanks that it makes up [1]."""
+
+    surface: Surface
+    share: float
 
 
 class Coating(Group):

@@ -1,4 +1,46 @@
-"""Studies: simulations, or the static contact, used to answer a question (coating map, starting torque).
+"""Studies: simulations, or the static contact, used to answer a question.
 
-Their public names are reached through `gearidae.studies` and, for the older ones, `gearidae.analysis`.
+`coating_map`, `starting_torque` and `static_starting_torque`, what the teeth did (`tooth_contacts`), and estimates on
+paper. The older names are those of `gearidae.analysis` too. Names are loaded on first use.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gearidae.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from gearidae.studies.coating_map import coating_map, open_map
+    from gearidae.studies.equilibrium import contact_resonance
+    from gearidae.studies.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+    from gearidae.studies.starting_torque import starting_torque, static_starting_torque
+    from gearidae.studies.tooth_contacts import tooth_contacts
+
+__all__ = [
+    "coating_map",
+    "contact_resonance",
+    "effective_mass",
+    "natural_frequency",
+    "open_map",
+    "resting_gap",
+    "starting_torque",
+    "static_starting_torque",
+    "steady_speed",
+    "tooth_contacts",
+]
+
+_HOME = {
+    "coating_map": "coating_map",
+    "contact_resonance": "equilibrium",
+    "effective_mass": "estimates",
+    "natural_frequency": "estimates",
+    "open_map": "coating_map",
+    "resting_gap": "estimates",
+    "starting_torque": "starting_torque",
+    "static_starting_torque": "starting_torque",
+    "steady_speed": "estimates",
+    "tooth_contacts": "tooth_contacts",
+}
+
+__getattr__, __dir__ = lazy_names(globals(), _HOME)

@@ -26,6 +26,7 @@ from gearidae.contact.jkr import asperity_of
 from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_value
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
+from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -150,16 +151,12 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
     """
     assert scene.gears is not None
     roughness, width = scene.surface.roughness, scene.gears.face_width
-    covered = scene.coating.sam_fraction
     laws = {}
-    for name, part, surface in (
-        ("coated", covered, scene.coated_surface),
-        ("bare", 1.0 - covered, scene.surface),
-    ):
-        if part > 0.0:
+    for name, (surface, share) in zip(MATERIAL_NAMES, scene.materials(), strict=True):
+        if share > 0.0:
             asperity = asperity_of(surface)
             hertz = 4.0 / 3.0 * asperity.modulus * math.sqrt(surface.asperity_radius)
-            scale = part * force_scale(roughness, hertz, surface.asperity_density, width)
+            scale = share * force_scale(roughness, hertz, surface.asperity_density, width)
             limit = asperity.stretch_limit / roughness
             laws[name] = MaterialLaw(scale, limit, law_table(limit, scene.contact.asperity))
     return laws

@@ -8,19 +8,16 @@ the recorded one; then only gaps are told, and neither forces nor states.
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import pieces
-from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
+from gearidae.archive.select import is_roller, motion_samples, run_scene, runs, swept_dims
 from gearidae.contact.kernels.law import H_STRETCH, law_value
 from gearidae.engine.model.build import make_problem
 from gearidae.errors import SceneError
@@ -28,10 +25,10 @@ from gearidae.mesh.involute import curvature_radii
 from gearidae.records import Flank
 from gearidae.scene import Scene
 from gearidae.studies.equilibrium import MaterialLaw, material_laws
-from gearidae.studies.tooth_record import ToothRecord, joined_heights, samples_of
+from gearidae.studies.tooth_record import ToothRecord, joined_heights
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
-__all__ = ["run_scene", "tooth_contacts"]
+__all__ = ["tooth_contacts"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -107,33 +104,6 @@ def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     return [states[k] for k in range(len(wanted))]
 
 
-def run_scene(run: xr.Dataset) -> Scene:
-    """Return the scene of one run, also of one that was picked from a sweep.
-
-    Parameters
-    ----------
-    run : xarray.Dataset
-        Without swept dimensions.
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    SceneError
-        If the dataset carries no scene.
-    """
-    scene = Scene.from_dict(scene_of(run))
-    swept: Mapping[str, list[Any]] = json.loads(run.attrs.get("swept", "{}"))
-    changes = {}
-    for key, dim in dimension_names(swept).items():
-        value = run[dim].item()
-        # values that are neither numbers nor words are numbered
-        changes[key] = swept[key][value] if run[dim].attrs.get("comment") else value
-    return scene.replace(changes)
-
-
 def _one_run(ds: xr.Dataset) -> xr.Dataset:
     """Return the dataset as a single run with its own events."""
     if is_roller(ds):
@@ -144,14 +114,14 @@ def _one_run(ds: xr.Dataset) -> xr.Dataset:
             f"{ds.sizes[dims[0]]} runs",
             f"must be a single run: select one, as ds.isel({dims[0]}=0) or --select {dims[0]}=... do",
         )
-    if not samples_of(ds):
+    if not motion_samples(ds):
         raise SceneError("dataset", "transmission_error", "the dataset has no samples of it")
     return next(run for _, run in runs(ds))
 
 
 def _nearest(run: xr.Dataset, wanted: Floats) -> Integers:
     """Return which samples are nearest to some times; samples are evenly spaced."""
-    last = samples_of(run) - 1
+    last = motion_samples(run) - 1
     end = float(run["time"][last])
     step = end / last if last > 0 else 1.0
     wanted = np.where(wanted == math.inf, end, wanted)

@@ -19,35 +19,15 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from gearidae.archive.pieces import reached
 from gearidae.contact.history import joined_height
 from gearidae.mesh.involute import separation
 from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
 
-__all__ = ["ToothRecord", "joined_heights", "samples_of"]
+__all__ = ["ToothRecord", "joined_heights"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-
-def samples_of(run: xr.Dataset) -> int:
-    """Return how many samples of the motion a run has.
-
-    Parameters
-    ----------
-    run : xarray.Dataset
-        One run of a gear pair.
-
-    Returns
-    -------
-    int
-    """
-    samples = reached(run["transmission_error"])
-    for name in ("gear_angle", "gear_speed", "pinion_speed", "mesh_force"):
-        if samples and not np.isfinite(run[name].variable[samples - 1].values):
-            samples = min(samples, reached(run[name]))
-    return samples
 
 
 class ToothRecord:

@@ -37,7 +37,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
-from gearidae.contact.jkr import AsperityLaw
+from gearidae.contact.jkr import ADHESION_LOSS, AsperityLaw
 from gearidae.contact.kernels.law import (
     DEGREE,
     GAP_HIGH,
@@ -62,12 +62,10 @@ from gearidae.contact.kernels.law import (
     stretched_value,
 )
 
-__all__ = ["JOINING", "energy_table", "joining_energy", "number_table", "stretched_energy"]
+__all__ = ["energy_table", "joining_energy", "number_table", "stretched_energy"]
 
 Floats = NDArray[np.float64]
 
-JOINING: Final = (4.0 / 27.0) * (3.6 * 4.0 ** (1.0 / 3.0) + 0.6)
-"""Energy that an asperity loses when it joins, 0.93550, over its pull-off load times its stretch limit."""
 _GAUSS: Final = 16
 
 
@@ -79,7 +77,7 @@ def joining_energy(stretch_limit: float) -> float:
     stretch_limit : float
         D = dc / sigma as the law's table has it: 0 where the surface has no hysteresis worth following.
     """
-    return JOINING * math.sqrt(3.0) * stretch_limit**2.5
+    return ADHESION_LOSS * math.sqrt(3.0) * stretch_limit**2.5
 
 
 @lru_cache(maxsize=32)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
-from gearidae.records import Ledger
+from gearidae.records import Block, Ending, Ledger, Statistics
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -42,43 +40,6 @@ CHECKPOINT_STEPS = 200_000
 """Steps between checkpoints. Every run starts IDA afresh there, so that a resumed run is the same run."""
 
 
-class Ending(Enum):
-    """How a run ended: its status in the dataset, and a sentence."""
-
-    FINISHED = ("finished", "")
-    CHATTER = ("chatter", "event followed event without the time going on")
-    STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
-    NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
-    TOO_ACCURATE = (
-        "too_accurate",
-        "the tolerance asks for more than double precision can give: raise run.rtol",
-    )
-    SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
-    FOLD = (
-        "fold",
-        "the elastic contact folds: adhesion outgrows the stiffness of the bodies, and the surfaces would jump",
-    )
-    DEFLECTION = (
-        "deflection",
-        "the bodies give way too much for the asperity model; set contact.model to elastic",
-    )
-    TOO_DEEP = (
-        "too_deep",
-        "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
-    )
-    NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
-
-    @property
-    def status(self) -> str:
-        """Name, as in the dataset."""
-        return self.value[0]
-
-    @property
-    def message(self) -> str:
-        """A sentence; empty when finished."""
-        return self.value[1]
-
-
 CONVERGENCE_FAILURES_HIGH = 40
 """Failures of Newton's iteration in one step, each of which quarters it: a step out of long flight lands in a tooth."""
 CHATTER, BOUND_EXCEEDED = 1, 2
@@ -100,57 +61,8 @@ def ending_of_flag(flag: int, elastic: bool = False) -> Ending:
     return _FLAGS.get(flag, Ending.SOLVER_FAILURE)
 
 
-@dataclass(slots=True)
-class Block:
-    """Output of a stretch of a run.
-
-    Attributes
-    ----------
-    rows : ndarray, shape (n, columns)
-        Samples that follow those of the block before, SI units.
-    events : ndarray, shape (m, 5)
-        Time [s], kind, pair, flank, gap rate [m/s].
-    time : float
-        Simulated time reached [s].
-    checkpoint : ndarray, optional
-        All that it takes to go on from the end of this block; present at checkpoints and at the end.
-    ledger : Ledger, optional
-        The energy ledger at the end of this block; missing where a block ends in the middle of a step.
-    """
-
-    rows: Floats
-    events: Floats
-    time: float
-    checkpoint: Floats | None = None
-    ledger: Ledger | None = None
-
-
-@dataclass(slots=True)
-class Tally:
-    """Counters of a run and how it ended, filled in by the driver as it goes."""
-
-    steps: int = 0
-    residual_evaluations: int = 0
-    jacobian_evaluations: int = 0
-    error_test_failures: int = 0
-    convergence_failures: int = 0
-    restarts: int = 0
-    guard_evaluations: int = 0
-    flight_steps: int = 0
-    ending: Ending = field(default=Ending.FINISHED)
-    fold_gap: float | None = None
-
-    def note_fold(self, gap: float) -> None:
-        """Call the ending a fold if it was one; NaN if not, else the gap at which the contact folds [m]."""
-        if not math.isnan(gap):
-            self.ending, self.fold_gap = Ending.FOLD, float(gap)
-
-    @property
-    def message(self) -> str:
-        """The ending in a sentence; empty when finished."""
-        if self.fold_gap is not None:
-            return f"{self.ending.message}, at a gap of {self.fold_gap:.6g} m"
-        return self.ending.message
+Tally = Statistics
+"""Solver statistics of a run under way."""
 
 
 def fill_tally(tally: Tally, progress: Record) -> None:

@@ -10,7 +10,7 @@ import pytest
 import gearidae as gd
 from gearidae.contact import line_force
 from gearidae.mesh.involute import curvature_radii
-from gearidae.runs.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+from gearidae.studies.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
 
 LOW = gd.preset("teodorescu2009_low_speed")
 HIGH = gd.preset("teodorescu2009")

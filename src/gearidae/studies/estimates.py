@@ -114,21 +114,20 @@ def natural_frequency(scene: Scene) -> float:
     Returns
     -------
     float
-        ``sqrt(k / m_e) / (2 pi)`` [Hz] with ``k = -dW/dg`` of one pair at the pitch point; NaN where there is
-        no resting gap.
+        `gearidae.studies.contact_resonance` of a pair that was pressed by the drive torque alone [Hz]; NaN where there
+        is no resting gap.
 
     Raises
     ------
     SceneError
         If the scene has no gears.
     """
-    gap = resting_gap(scene)
-    if math.isnan(gap):
+    if math.isnan(resting_gap(scene)):
         return math.nan
-    # Forces are exact to twelve digits and vary over a tenth of a roughness: the difference is good to 0.1 %.
-    opened = 1e-4 * scene.surface.roughness
-    stiffness = float(_force(scene, gap) - _force(scene, gap + opened, opened)) / opened
-    return math.sqrt(max(stiffness, 0.0) / effective_mass(scene)) / (2.0 * math.pi)
+    # the tables of the force law are loaded only here: the other estimates do without
+    from gearidae.studies.equilibrium import contact_resonance
+
+    return contact_resonance(scene)
 
 
 def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:
@@ -138,15 +137,14 @@ def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:
     return scene.gears, scene.drive, scene.load
 
 
-def _force(scene: Scene, gap: ArrayLike, stretch: float = 0.0) -> NDArray[np.float64]:
-    """Force of one pair at the pitch point [N]."""
+def _force(scene: Scene, gap: ArrayLike) -> NDArray[np.float64]:
+    """Force of one pair at the pitch point, while it is being pressed [N]."""
     gears, _, _ = _tables(scene)
     geometry = scene.geometry
     radius = float(curvature_radii(geometry, geometry.approach)[2])
-    fraction = scene.coating.sam_fraction
     force = np.zeros(np.shape(gap))
-    for share, surface in ((fraction, scene.coated_surface), (1.0 - fraction, scene.surface)):
+    for surface, share in scene.materials():
         if share > 0.0:
             law = scene.contact.asperity
-            force = force + share * line_force(gap, stretch, radius, gears.face_width, surface, law)
+            force = force + share * line_force(gap, 0.0, radius, gears.face_width, surface, law)
     return force

@@ -1,0 +1,57 @@
+"""Reading and drawing results takes neither the engine nor a compiler; a process of its own knows what was imported."""
+
+import subprocess
+import sys
+
+import pytest
+
+import gearidae as gd
+
+LOOK = """
+import sys
+from pathlib import Path
+
+import gearidae as gd
+
+ds = gd.open_archive(sys.argv[1])
+{use}
+assert ds.sizes["time"] == 20_001
+heavy = ("numba", "llvmlite", "sksundae", "gearidae.engine", "gearidae.contact.kernels", "gearidae.compiled")
+print(*sorted(name for name in sys.modules if any(name == one or name.startswith(one + ".") for one in heavy)))
+"""
+LIGHT = {
+    "open": "",
+    "overview": "gd.plot.overview(ds)",
+    "spectrum": "gd.analysis.power_spectrum(ds)",
+    "windows": "gd.analysis.impact_windows(ds)",
+    "signal": "gd.analysis.read_signal(sys.argv[1])",
+    "words": "from gearidae.analysis.verdict import outcomes; outcomes(ds)",
+    "account": "from gearidae.analysis.run_summary import account; account(ds)",
+    "checkpoints": "from gearidae.archive import GrowingArchive",
+}
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory):
+    file = tmp_path_factory.mktemp("reading") / "run.nc"
+    scene = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 20_001, "run.duration": 0.4})
+    gd.simulate(scene, archive=file)
+    return file
+
+
+def loaded(archive, use):
+    """Names of heavy modules that a new process has loaded after some use of an archive."""
+    command = [sys.executable, "-c", LOOK.format(use=use), str(archive)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+
+
+@pytest.mark.parametrize("use", LIGHT.values(), ids=LIGHT)
+def test_reading_and_drawing_load_neither_numba_nor_the_engine(archive, use):
+    assert loaded(archive, use) == []
+
+
+def test_the_picture_of_the_teeth_loads_the_force_law_when_it_is_drawn(archive):
+    """What shows that the look itself sees such modules; importing the picture's module alone loads none."""
+    assert loaded(archive, "gd.plot.teeth") == []
+    names = loaded(archive, "gd.plot.teeth(ds, time=0.1)")
+    assert {"numba", "gearidae.contact.kernels.law"} <= set(names)
