@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae import analysis, contact, plot
+    from gearidae import analysis, contact, plot, studies
     from gearidae.archive import open_archive
     from gearidae.errors import GearidaeError, SceneError, SolverError
     from gearidae.runs.simulation import simulate
@@ -36,6 +36,7 @@ __all__ = [
     "plot",
     "preset",
     "simulate",
+    "studies",
     "sweep",
 ]
 
@@ -52,6 +53,7 @@ _HOME: dict[str, str | None] = {
     "plot": None,
     "preset": "scene",
     "simulate": "runs.simulation",
+    "studies": None,
     "sweep": "runs.sweeping",
 }
 
