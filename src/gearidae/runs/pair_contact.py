@@ -190,5 +190,6 @@ def _inwards(sigma: float, finest: float, *, beyond: bool) -> Iterator[Floats]:
     at = _OUTERMOST if beyond else _BEGIN
     while at > _INNERMOST:
         step = finest * max(1.0, -0.2 * at)
-        yield (at - step * np.arange(_CHUNK + 1)) * sigma
+        gaps: Floats = np.asarray((at - step * np.arange(_CHUNK + 1)) * sigma, dtype=np.float64)
+        yield gaps
         at -= step * _CHUNK

@@ -91,7 +91,7 @@ def _long_run(scene: Scene) -> list[str]:
     expected = run_time(scene)
     if expected.seconds <= LONG_RUN:
         return []
+    oscillations = f"{scene.run.duration:g} s of oscillations at {with_prefix(expected.frequency, 'Hz')}"
     return [
-        f"this run is expected to take {expected.words()} ({expected.steps:.1g} steps for {scene.run.duration:g} s of "
-        f"oscillations at {with_prefix(expected.frequency, 'Hz')})"
+        f"this run is expected to take {expected.words()} ({expected.steps:.1g} steps for {oscillations})"
     ]
