@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 from pathlib import Path
 
@@ -9,6 +10,8 @@ import pytest
 
 import gearidae as gd
 from gearidae.runs.plausibility import doubts
+from gearidae.runs.validity import validity_attribute
+from gearidae_bench.random_scenes import random_scene
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
@@ -50,3 +53,11 @@ def test_a_run_says_them_once_and_goes_on(caplog):
     said = [record for record in caplog.records if "asperities stand" in record.getMessage()]
     assert len(said) == 1
     assert ds.attrs["status"] == "finished"
+
+
+def test_no_scene_is_too_odd_to_be_judged():
+    """Random scenes over wide ranges: neither an exception nor a floating-point warning, which would be an error."""
+    for number in range(25):
+        scene = random_scene(3, number)
+        assert all(isinstance(doubt, str) for doubt in doubts(scene))
+        assert json.loads(validity_attribute(scene))
