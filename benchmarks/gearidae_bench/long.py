@@ -21,7 +21,7 @@ from gearidae.engine import follow
 from gearidae.errors import SolverError
 from gearidae.records import GEAR_COLUMNS, Block, EventKind, Flank, Statistics
 from gearidae.scene import Scene, preset
-from gearidae.studies.estimates import steady_speed
+from gearidae.runs.estimates import steady_speed
 
 __all__ = [
     "FEWEST_PASSAGES",

@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from gearidae.studies.estimates import steady_speed
+from gearidae.runs.estimates import steady_speed
 from gearidae_bench.long import PARTS, long_page, long_rows, long_scene, measure_long, sound
 
 

@@ -92,14 +92,13 @@ WRONG = [
     ("name", "two\nlines", "must be a printable line"),
     ("name", " ", "must be a printable line"),
     # lists
-    ("drive.schedule", [], "must not be empty"),
     ("drive.schedule", 5, "must be a list of [time, value] pairs"),
     ("drive.schedule", "x", "must be a list of [time, value] pairs"),
     ("drive.schedule", [1, 2], "must be a [time, value] pair"),
     ("drive.schedule", [[0, 1, 2]], "must be a [time, value] pair"),
     ("drive.schedule", [[0, 1], [0, 2]], "times must strictly increase"),
     ("drive.schedule", [["2 ms", 1], ["1 ms", 2]], "times must strictly increase"),
-    ("load.schedule", [], "must not be empty"),
+    ("load.schedule", {}, "must be a list of [time, value] pairs"),
     ("drive.harmonic", "x", "must be a table {amplitude, frequency, phase}"),
     ("mesh.static_error", 5, "must be a table {order, amplitude, phase}"),
     # tables

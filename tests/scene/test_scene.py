@@ -179,6 +179,17 @@ def test_replace_reaches_into_lists(gears: Scene) -> None:
     assert [one.amplitude for one in second.harmonic] == [1e-12, 0.0]
 
 
+@pytest.mark.parametrize("nothing", [None, [], (), np.empty((0, 2))])
+def test_replace_takes_schedules_and_harmonics_away(gears: Scene, nothing: object) -> None:
+    scheduled = gears.replace({"drive.schedule": [[0, 0], [1, 1e-12]], "load.schedule": [[0, 0]]})
+    assert scheduled != gears
+    assert scheduled.replace({"drive.schedule": nothing, "load.schedule": nothing}) == gears
+    assert gears.replace({"drive.schedule": nothing}) == gears  # there was none
+    idle = gears.replace({"drive.harmonic": nothing}).drive
+    assert idle is not None
+    assert idle.harmonic == ()
+
+
 def test_replace_takes_whole_tables(gears: Scene, roller: Scene) -> None:
     assert gears.replace({"contact": Contact(model="asperity")}).contact.model == "asperity"
     assert gears.replace({"contact": {"asperity": "dmt"}}).contact == Contact(asperity="dmt")

@@ -10,7 +10,8 @@ import pytest
 import gearidae as gd
 from gearidae.contact import line_force
 from gearidae.mesh.involute import curvature_radii
-from gearidae.studies.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
+from gearidae.studies.equilibrium import natural_frequency
 
 LOW = gd.preset("teodorescu2009_low_speed")
 HIGH = gd.preset("teodorescu2009")

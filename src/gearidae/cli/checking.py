@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING
 
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
+from gearidae.cli.output import say
 from gearidae.cli.tables import show_rows
+from gearidae.cli.validity_table import show_validity
+from gearidae.runs.plausibility import doubts
+from gearidae.runs.run_time import run_time
+from gearidae.runs.validity import validity_rows
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -17,15 +22,9 @@ __all__ = ["check_case"]
 
 Rows = Iterator[tuple[str, str, str]]
 
-_REGIMES = {
-    "jkr": "JKR holds, from about 5 up",
-    "transition": "between DMT, up to about 0.1, and JKR, from about 5 up",
-    "dmt": "DMT holds, up to about 0.1",
-}
-
 
 def check_case(case: str, settings: Sequence[str]) -> int:
-    """Check a case and print geometry, contact and estimates.
+    """Check a case and print geometry, contact, estimates, how far the model holds, and doubts.
 
     Parameters
     ----------
@@ -46,11 +45,21 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     """
     scene = read_scene(case, settings)
     show_rows(_rows(scene))
+    show_validity(validity_rows(scene), about=_subject(scene))
+    for doubt in doubts(scene):
+        say(f"Doubtful: {doubt}")
     return DONE
 
 
+def _subject(scene: Scene) -> str:
+    """What contact the numbers of validity are about."""
+    if scene.roller is not None:
+        return "of the roller at its closest approach, with bodies that do not give way"
+    return "of one pair at the pitch point, at rest under the mean torque"
+
+
 def _rows(scene: Scene) -> Rows:
-    yield f"{scene.name}: this scene is sound", "", ""
+    yield f"{scene.name}: input is valid", "", ""
     if scene.roller is None:
         yield from _geometry(scene)
         yield from _estimates(scene)
@@ -72,7 +81,8 @@ def _geometry(scene: Scene) -> Rows:
 
 
 def _estimates(scene: Scene) -> Rows:
-    from gearidae.studies.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+    from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
+    from gearidae.studies.equilibrium import natural_frequency
 
     assert scene.gears is not None
     yield "Estimates", "", "from the constant torques, if nothing sticks"
@@ -104,25 +114,19 @@ def _roller(scene: Scene) -> Rows:
 
 
 def _contact(scene: Scene) -> Rows:
-    from gearidae.contact.jkr import asperity_of, tabor_parameter, tabor_regime
+    from gearidae.contact.jkr import asperity_of
 
     yield "Contact", "", f"{scene.contact.model} model, {scene.contact.asperity} asperities"
     yield "contact modulus E*", f"{asperity_of(scene.surface).modulus * 1e-9:.5g} GPa", ""
     yield "SAM fraction", f"{scene.coating.sam_fraction:g}", ""
     for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
         tip = asperity_of(surface)
-        parameter = tabor_parameter(surface)
         yield f"{name}: pull-off load Pc", f"{tip.pull_off * 1e6:.4g} uN", "of one asperity"
         relative = tip.stretch_limit / scene.surface.roughness
         yield (
             f"{name}: stretch limit dc",
             f"{tip.stretch_limit * 1e9:.4g} nm",
             f"{relative:.3g} of the roughness",
-        )
-        yield (
-            f"{name}: Tabor parameter",
-            f"{parameter:.4g}",
-            _REGIMES[tabor_regime(parameter)],
         )
 
 
@@ -136,3 +140,9 @@ def _run(scene: Scene) -> Rows:
         f"{run.sample_count} samples, {columns * run.sample_count * 8e-6:.3g} MB",
     )
     yield "relative tolerance", f"{run.rtol:g}", ""
+    expected = run_time(scene)
+    yield (
+        "expected wall time",
+        expected.words(),
+        f"{expected.steps:.2g} steps, within a factor of about three",
+    )

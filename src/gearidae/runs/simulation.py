@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
+from gearidae.runs.plausibility import log_doubts
 from gearidae.runs.running import early_end, prepare, solve
 
 if TYPE_CHECKING:
@@ -83,6 +84,7 @@ def simulate(
     >>> ds = gd.simulate(scene, archive="low_speed.nc")  # doctest: +SKIP
     """
     scene = prepare(scene, rtol=rtol, t_end=t_end, samples=samples, backend=backend)
+    log_doubts(scene)
     # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one
     if archive is not None:
         from gearidae.archive import check_target

@@ -84,7 +84,8 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     key : str
         Dotted name. ``drive.harmonic.0.amplitude`` names a list's entry; a list of one needs no number.
     value : object
-        What to put there; None for a table takes it away.
+        What to put there; None for a table takes it away, and None or an empty list takes away a list that need
+        not be given (a schedule, harmonics).
 
     Raises
     ------
@@ -95,19 +96,26 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     if isinstance(key, str) and key in model.model_fields:
         data[key] = deepcopy(value) if isinstance(value, dict) else value  # dotted keys may change it later
         return
-    find_key(model, key, value)
+    info = find_key(model, key, value)
     *path, last = key.split(".")
     inside: Any = data
     for part in path:
         inside = _entry(inside, part)
     if isinstance(inside, list) and len(inside) == 1 and not last.isdecimal():
         inside = inside[0]
-    if isinstance(inside, dict):
+    if isinstance(inside, dict) and info.default == () and _is_nothing(value):
+        inside.pop(last, None)
+    elif isinstance(inside, dict):
         inside[last] = value
     elif isinstance(inside, list) and _entry(inside, last) is not None:
         inside[int(last)] = value
     else:
         raise SceneError(key, shorten(value), "this scene has no such table or entry to change")
+
+
+def _is_nothing(value: object) -> bool:
+    """Whether a value is None, or a list or an array without entries."""
+    return value is None or (isinstance(value, (list, tuple)) and not value) or getattr(value, "size", 1) == 0
 
 
 def _entry(inside: Any, part: str) -> Any:

@@ -175,7 +175,8 @@ class Scene(Group):
         ----------
         changes : mapping of str to object
             Dotted keys (``"coating.sam_fraction"``, ``"drive.harmonic.0.amplitude"``) or names of whole
-            tables (None takes a table away) and what to put there, as in a case file.
+            tables (None takes a table away) and what to put there, as in a case file. None or an empty list takes
+            a schedule, harmonics or static errors away.
 
         Returns
         -------

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
+    from gearidae.runs.validity import validity
     from gearidae.studies.coating_map import coating_map, open_map
-    from gearidae.studies.equilibrium import contact_resonance
-    from gearidae.studies.estimates import effective_mass, natural_frequency, resting_gap, steady_speed
+    from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.tooth_contacts import tooth_contacts
 
@@ -28,19 +29,21 @@ __all__ = [
     "static_starting_torque",
     "steady_speed",
     "tooth_contacts",
+    "validity",
 ]
 
 _HOME = {
     "coating_map": "coating_map",
     "contact_resonance": "equilibrium",
-    "effective_mass": "estimates",
-    "natural_frequency": "estimates",
+    "effective_mass": "gearidae.runs.estimates",
+    "natural_frequency": "equilibrium",
     "open_map": "coating_map",
-    "resting_gap": "estimates",
+    "resting_gap": "gearidae.runs.estimates",
     "starting_torque": "starting_torque",
     "static_starting_torque": "starting_torque",
-    "steady_speed": "estimates",
+    "steady_speed": "gearidae.runs.estimates",
     "tooth_contacts": "tooth_contacts",
+    "validity": "gearidae.runs.validity",
 }
 
 __getattr__, __dir__ = lazy_names(globals(), _HOME)

@@ -26,6 +26,7 @@ from gearidae.contact.jkr import asperity_of
 from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_value
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
+from gearidae.runs.estimates import resting_gap
 from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ __all__ = [
     "contact_resonance",
     "leaving_radii",
     "material_laws",
+    "natural_frequency",
     "nearest_gap",
     "pair_law",
     "settled_gap",
@@ -61,6 +63,32 @@ _STEP = 1e-4
 """Change of the gap over which a stiffness is taken, in roughnesses."""
 _GAP_ERROR = 1e-7
 """Of the gaps found, in roughnesses; forces change by e^6 in one."""
+
+
+def natural_frequency(scene: Scene) -> float:
+    """Frequency of small oscillations of the gears against each other about the resting gap.
+
+    The asperities that touch at that gap stay joined and stretch. Those that a past impact has joined besides
+    make real teeth ring faster: by a few per cent where the coating is whole, up to twice as fast where it is
+    worn.
+
+    Parameters
+    ----------
+    scene : Scene
+        A gear pair.
+
+    Returns
+    -------
+    float
+        ``sqrt(k / m_e) / (2 pi)`` [Hz] with ``k = -dW/dg`` of one pair at the pitch point; NaN where there is
+        no resting gap.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no gears.
+    """
+    return math.nan if math.isnan(resting_gap(scene)) else contact_resonance(scene)
 
 
 def contact_resonance(scene: Scene, joined: float | None = None) -> float:

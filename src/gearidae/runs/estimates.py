@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
-from gearidae.contact.line import line_force
 from gearidae.errors import SceneError
-from gearidae.mesh.involute import curvature_radii
+from gearidae.runs.pair_contact import pair_contact
 from gearidae.scene import Drive, Gears, Load, Scene
 
-__all__ = ["effective_mass", "natural_frequency", "resting_gap", "steady_speed"]
+__all__ = [
+    "balanced_speed",
+    "effective_mass",
+    "mean_drive_torque",
+    "resting_gap",
+    "steady_speed",
+]
 
-_OUTERMOST, _INNERMOST = 9.0, -8.0  # gaps to look at, in roughnesses
+_INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
 
 
 def effective_mass(scene: Scene) -> float:
@@ -61,8 +64,14 @@ def steady_speed(scene: Scene) -> float:
     SceneError
         If the scene has no gears.
     """
-    gears, drive, load = _tables(scene)
-    surplus = drive.torque * gears.gear_teeth / gears.pinion_teeth - load.torque
+    _, drive, _ = _tables(scene)
+    return balanced_speed(scene, drive.torque)
+
+
+def balanced_speed(scene: Scene, torque: float) -> float:
+    """Speed of the gear [rad/s] at which a constant torque of the pinion [N m] is balanced, see `steady_speed`."""
+    gears, _, load = _tables(scene)
+    surplus = torque * gears.gear_teeth / gears.pinion_teeth - load.torque
     if surplus <= 0.0:
         return 0.0
     return math.sqrt(surplus / load.drag) if load.drag > 0.0 else math.inf
@@ -90,21 +99,12 @@ def resting_gap(scene: Scene) -> float:
         If the scene has no gears.
     """
     gears, drive, _ = _tables(scene)
-    wanted = drive.torque / gears.pinion_base_radius
-    gaps = np.linspace(_OUTERMOST, _INNERMOST, 1701) * scene.surface.roughness
-    carried = np.flatnonzero(_force(scene, gaps) >= wanted)
-    if wanted <= 0.0 or not carried.size or carried[0] == 0:
-        return math.nan
-    inner, outer = gaps[carried[0]], gaps[carried[0] - 1]
-    return float(brentq(lambda gap: float(_force(scene, gap)) - wanted, inner, outer, xtol=1e-18))
+    gap = pair_contact(scene).resting_gap(drive.torque / gears.pinion_base_radius)
+    return gap if gap >= _INNERMOST * scene.surface.roughness else math.nan
 
 
-def natural_frequency(scene: Scene) -> float:
-    """Frequency of small oscillations of the gears against each other about the resting gap.
-
-    The asperities that touch at that gap stay joined and stretch. Those that a past impact has joined besides
-    make real teeth ring faster: by a few per cent where the coating is whole, up to twice as fast where it is
-    worn.
+def mean_drive_torque(scene: Scene) -> float:
+    """Mean size of the drive torque over the run, harmonics left out.
 
     Parameters
     ----------
@@ -114,20 +114,20 @@ def natural_frequency(scene: Scene) -> float:
     Returns
     -------
     float
-        `gearidae.studies.contact_resonance` of a pair that was pressed by the drive torque alone [Hz]; NaN where there
-        is no resting gap.
+        Mean over ``run.duration`` of the size of the constant part plus the schedule [N m].
 
     Raises
     ------
     SceneError
         If the scene has no gears.
     """
-    if math.isnan(resting_gap(scene)):
-        return math.nan
-    # the tables of the force law are loaded only here: the other estimates do without
-    from gearidae.studies.equilibrium import contact_resonance
-
-    return contact_resonance(scene)
+    _, drive, _ = _tables(scene)
+    if not drive.schedule:
+        return abs(drive.torque)
+    knots = np.array(drive.schedule)
+    # Between knots the schedule is a straight line: what is off the mean of 4001 values lies below a thousandth.
+    times = np.linspace(0.0, scene.run.duration, 4001)
+    return float(np.abs(drive.torque + np.interp(times, knots[:, 0], knots[:, 1])).mean())
 
 
 def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:
@@ -135,16 +135,3 @@ def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:
     if scene.gears is None or scene.drive is None or scene.load is None:
         raise SceneError("gears", "(missing)", "a scene with a roller has no gears")
     return scene.gears, scene.drive, scene.load
-
-
-def _force(scene: Scene, gap: ArrayLike) -> NDArray[np.float64]:
-    """Force of one pair at the pitch point, while it is being pressed [N]."""
-    gears, _, _ = _tables(scene)
-    geometry = scene.geometry
-    radius = float(curvature_radii(geometry, geometry.approach)[2])
-    force = np.zeros(np.shape(gap))
-    for surface, share in scene.materials():
-        if share > 0.0:
-            law = scene.contact.asperity
-            force = force + share * line_force(gap, 0.0, radius, gears.face_width, surface, law)
-    return force

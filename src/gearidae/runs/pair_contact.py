@@ -1,0 +1,195 @@
+"""The contact that a scene's estimates are made for: its force at a gap, where it rests, how stiff it is there.
+
+For gears this is one pair of teeth that touch at the pitch point under the mean torque of the drive. For a roller it
+is the impact's closest approach, with bodies that do not give way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq, minimize_scalar
+
+from gearidae.contact.jkr import AsperityLaw, asperity_of
+from gearidae.contact.line import line_force
+from gearidae.errors import SceneError
+from gearidae.mesh.involute import curvature_radii
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+    from gearidae.scene.surface import Surface
+
+__all__ = ["PairContact", "pair_contact"]
+
+Floats = NDArray[np.float64]
+
+_OUTERMOST, _INNERMOST = 30.0, -900.0
+"""Gaps to look at, in roughnesses: beyond 30 the tail of the heights is below 1e-195."""
+_BEGIN = 9.0
+"""Where a search begins, in roughnesses: nearly every load settles nearer."""
+_SEARCH_STEP, _ENERGY_STEP = 0.25, 0.05
+"""Steps of a search for a load and of the integral of a force, in roughnesses; far inside they grow with the depth."""
+_CHUNK = 8
+"""Steps that are taken at a time."""
+_DIFFERENCE = 1e-4
+"""Change of the gap over which a stiffness is taken, in roughnesses: forces are exact to twelve digits."""
+
+
+@dataclass(frozen=True)
+class PairContact:
+    """Two flanks of a scene that touch.
+
+    Attributes
+    ----------
+    parts : tuple of (float, Surface)
+        Shares of the interface and their surfaces; shares add up to 1.
+    law : str
+        Law of one asperity.
+    radius : float
+        Reduced radius R [m].
+    width : float
+        Face width L [m].
+    """
+
+    parts: tuple[tuple[float, Surface], ...]
+    law: AsperityLaw
+    radius: float
+    width: float
+
+    @property
+    def surface(self) -> Surface:
+        """Surface of the first part; heights and elastic constants are those of every part."""
+        return self.parts[0][1]
+
+    def force(self, gap: ArrayLike, stretch: ArrayLike = 0.0) -> Floats:
+        """Force without bulk deflection [N] at gaps and stretches [m], positive pushes apart."""
+        total: Floats = np.zeros(np.broadcast_shapes(np.shape(gap), np.shape(stretch)))
+        for share, surface in self.parts:
+            total = total + share * line_force(gap, stretch, self.radius, self.width, surface, self.law)
+        return total
+
+    def resting_gap(self, load: float, error: float = 1e-12) -> float:
+        """Outermost gap at which approaching flanks carry a load.
+
+        Parameters
+        ----------
+        load : float
+            Force [N].
+        error : float, optional
+            Error of the gap that is good enough, in roughnesses.
+
+        Returns
+        -------
+        float
+            Gap [m]; NaN if the load does not press the flanks together, or deeper than 900 roughnesses.
+        """
+        sigma = self.surface.roughness
+        if not load > 0.0:
+            return math.nan
+        for gaps in _inwards(sigma, _SEARCH_STEP, beyond=float(self.force(_BEGIN * sigma)) >= load):
+            carried = np.flatnonzero(self.force(gaps) >= load)
+            if carried.size and carried[0] > 0:
+                outer, inner = gaps[carried[0] - 1], gaps[carried[0]]
+                return float(
+                    brentq(lambda gap: float(self.force(gap)) - load, inner, outer, xtol=error * sigma)
+                )
+        return math.nan
+
+    def closest_gap(self, height: float, energy: float) -> float:
+        """Gap at which a body that comes in has spent its energy.
+
+        Parameters
+        ----------
+        height : float
+            Gap at the start [m].
+        energy : float
+            Kinetic energy there [J].
+
+        Returns
+        -------
+        float
+            Gap [m], to a few thousandths of the roughness; NaN if 900 roughnesses do not stop it.
+        """
+        sigma, left = self.surface.roughness, energy
+        for gaps in _inwards(sigma, _ENERGY_STEP, beyond=height > _BEGIN * sigma):
+            at = np.concatenate([[height], gaps[gaps < height]]) if height > gaps[-1] else gaps[:0]
+            if at.size < 2:
+                continue
+            forces = self.force(at)
+            spent = np.cumsum(0.5 * (forces[1:] + forces[:-1]) * -np.diff(at))
+            stopped = np.flatnonzero(spent >= left)
+            if stopped.size:
+                k = int(stopped[0])
+                before = spent[k - 1] if k else 0.0
+                share = (left - before) / (spent[k] - before) if spent[k] > before else 0.0
+                return float(at[k] + share * (at[k + 1] - at[k]))
+            height, left = float(at[-1]), left - float(spent[-1])
+        return math.nan
+
+    def stiffness(self, gap: float) -> float:
+        """Stiffness ``-dW/dg`` [N/m] of approaching flanks at a gap [m]."""
+        step = _DIFFERENCE * self.surface.roughness
+        closer, wider = self.force(np.array([gap - step, gap + step]))
+        return float(closer - wider) / (2.0 * step)
+
+    def joined_stiffness(self, gap: float) -> float:
+        """Stiffness [N/m] of flanks that part from a gap [m]: asperities that touch there stay joined and stretch."""
+        step = _DIFFERENCE * self.surface.roughness
+        here, opened = self.force(np.array([gap, gap + step]), np.array([0.0, step]))
+        return float(here - opened) / step
+
+    def largest_tension(self, gap: float) -> float:
+        """Largest tension [N] that flanks carry when they part from a gap [m]; 0 if they never pull."""
+        sigma = self.surface.roughness
+        stretch = max(asperity_of(surface).stretch_limit for _, surface in self.parts)
+        opened = np.linspace(0.0, 3.0 * sigma + stretch, 41)
+        forces = self.force(gap + opened, opened)
+        k = int(np.argmin(forces))
+        near = opened[max(k - 1, 0)], opened[min(k + 1, opened.size - 1)]
+        found = minimize_scalar(
+            lambda by: float(self.force(gap + by, by)), bounds=near, options={"xatol": 1e-4 * sigma}
+        )
+        return max(-min(float(found.fun), float(forces[k])), 0.0)
+
+
+def pair_contact(scene: Scene) -> PairContact:
+    """Return the contact that a scene's estimates are made for.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    PairContact
+
+    Raises
+    ------
+    SceneError
+        If the gears of the scene cannot mesh.
+    """
+    fraction = scene.coating.sam_fraction
+    shares = ((fraction, scene.coated_surface), (1.0 - fraction, scene.surface))
+    parts = tuple((share, surface) for share, surface in shares if share > 0.0)
+    if scene.roller is not None:
+        return PairContact(parts, scene.contact.asperity, scene.roller.radius, scene.roller.width)
+    if scene.gears is None:
+        raise SceneError("gears", "(missing)", "a scene has gears or a roller")
+    geometry = scene.geometry
+    radius = float(curvature_radii(geometry, geometry.approach)[2])
+    return PairContact(parts, scene.contact.asperity, radius, scene.gears.face_width)
+
+
+def _inwards(sigma: float, finest: float, *, beyond: bool) -> Iterator[Floats]:
+    """Yield gaps [m] from the outside inwards, a chunk at a time, each beginning where the one before it ended."""
+    at = _OUTERMOST if beyond else _BEGIN
+    while at > _INNERMOST:
+        step = finest * max(1.0, -0.2 * at)
+        gaps: Floats = np.asarray((at - step * np.arange(_CHUNK + 1)) * sigma, dtype=np.float64)
+        yield gaps
+        at -= step * _CHUNK

@@ -1,0 +1,97 @@
+"""What in a scene is allowed but can hardly be meant: words before a run, which stop nothing."""
+
+from __future__ import annotations
+
+import logging
+import math
+from typing import TYPE_CHECKING, Final
+
+from gearidae.runs.run_time import run_time
+from gearidae.scene.prefixes import with_prefix
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["doubts", "log_doubts"]
+
+log = logging.getLogger(__name__)
+
+LONG_RUN: Final = 600.0
+"""Wall time above which a run is announced as long [s]."""
+_PEAKS: Final = 6.0
+"""Height of a rough surface from valley to peak, in rms roughnesses."""
+
+
+def doubts(scene: Scene) -> list[str]:
+    """Say what in a scene can hardly be meant.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    list of str
+        Sentences, each with the key and the numbers; empty for most scenes.
+    """
+    return [*_sizes(scene), *_long_run(scene)]
+
+
+def log_doubts(scene: Scene) -> None:
+    """Log each of the `doubts` about a scene as a warning.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+    for doubt in doubts(scene):
+        log.warning("%s: %s", scene.name, doubt)
+
+
+def _sizes(scene: Scene) -> list[str]:
+    """Compare the roughness and the asperities with the bodies that carry them."""
+    sigma = scene.surface.roughness
+    rough = f"surface.roughness = {with_prefix(sigma, 'm')}"
+    found = []
+    if scene.mesh is not None and scene.gears is not None:
+        module, width = scene.geometry.module, scene.gears.face_width
+        if sigma > scene.mesh.backlash:
+            found.append(
+                f"{rough} is larger than mesh.backlash = {with_prefix(scene.mesh.backlash, 'm')}: "
+                "both flanks are pressed together all the time"
+            )
+        if _PEAKS * sigma > module:
+            found.append(
+                f"{rough}: peaks of {_PEAKS:g} roughnesses are higher than the addendum of the teeth, "
+                f"{with_prefix(module, 'm')}"
+            )
+    else:
+        assert scene.roller is not None
+        module, width = scene.roller.radius, scene.roller.width
+        if _PEAKS * sigma > module:
+            found.append(
+                f"{rough}: peaks of {_PEAKS:g} roughnesses are higher than roller.radius = "
+                f"{with_prefix(module, 'm')}"
+            )
+    tip, spacing = scene.surface.asperity_radius, 1.0 / math.sqrt(scene.surface.asperity_density)
+    if tip > module:
+        found.append(
+            f"surface.asperity_radius = {with_prefix(tip, 'm')} is larger than the tooth or the roller that "
+            f"carries it, {with_prefix(module, 'm')}"
+        )
+    if spacing > width:
+        found.append(
+            f"surface.asperity_density: asperities stand {with_prefix(spacing, 'm')} apart, more than the "
+            f"face width of {with_prefix(width, 'm')}"
+        )
+    return found
+
+
+def _long_run(scene: Scene) -> list[str]:
+    expected = run_time(scene)
+    if expected.seconds <= LONG_RUN:
+        return []
+    oscillations = f"{scene.run.duration:g} s of oscillations at {with_prefix(expected.frequency, 'Hz')}"
+    return [
+        f"this run is expected to take {expected.words()} ({expected.steps:.1g} steps for {oscillations})"
+    ]

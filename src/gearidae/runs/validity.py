@@ -1,0 +1,372 @@
+"""How far the model can be believed for a scene: numbers beside the limits of what the model presumes.
+
+Nothing here stops a run. Each row says in words what follows if its limit is not kept; `docs/limits.md` explains them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from gearidae.contact.asperity_statistics import (
+    density_product,
+    expected_asperities,
+    half_spacing,
+    zero_load_radius,
+)
+from gearidae.contact.jkr import tabor_parameter
+from gearidae.contact.surroundings import (
+    AIR_MEAN_FREE_PATH,
+    ROOM_TEMPERATURE,
+    disc_drag,
+    film_damping,
+    thermal_amplitude,
+)
+from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
+from gearidae.runs.pair_contact import PairContact, pair_contact
+from gearidae.runs.validity_row import ValidityRow, rows_to_json
+from gearidae.scene.prefixes import with_prefix
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from gearidae.scene import Scene
+
+__all__ = ["validity", "validity_attribute", "validity_rows"]
+
+ENOUGH_ASPERITIES: Final = 10.0
+"""Below about so many, one pair of teeth is not the mean of all."""
+_DENSEST: Final = 0.06
+"""Random surfaces have a product N beta sigma of 0.03 to 0.06."""
+_SPACINGS: Final = 0.165e-9, 0.3e-9
+"""Range of the equilibrium spacing of atoms, for the Tabor parameter [m]."""
+_LITTLE_DAMPING: Final = 0.1
+"""Damping ratio below which the air leaves an impact response as it is."""
+_SILICON: Final = 2330.0
+"""Density of silicon [kg/m^3]: discs of base radius and face width are made of it."""
+_CLEARANCE: Final = 2e-6
+"""Distance between gear and substrate that the drag of the air is estimated for [m]: a usual sacrificial layer."""
+_NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
+
+
+@dataclass(frozen=True, slots=True)
+class _Rest:
+    """The contact that the rows are about: pair, gap [m], force [N], stiffness [N/m] and mass [kg]."""
+
+    contact: PairContact
+    gap: float
+    load: float
+    stiffness: float
+    mass: float
+
+
+def validity(scene: Scene) -> pd.DataFrame:
+    """Say how far the model can be believed for a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        A gear pair (its contact at the pitch point, at rest under the mean torque of the drive) or a roller (at its
+        closest approach, with bodies that do not give way).
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a quantity, by its short name. Columns ``quantity``, ``value``, ``limit`` and ``verdict`` are texts with
+        units; ``holds`` says whether the limit is kept, ``number``, ``bound`` and ``unit`` are the same in SI.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> rows = gd.studies.validity(gd.preset("teodorescu2009"))
+    >>> rows.value["expected_asperities"]
+    '0.115'
+    """
+    import pandas as pd
+
+    rows = validity_rows(scene)
+    columns = [field for field in ValidityRow.__slots__ if field != "name"]
+    table = {column: [getattr(row, column) for row in rows] for column in columns}
+    return pd.DataFrame(table, index=pd.Index([row.name for row in rows], name="name"), columns=columns)
+
+
+def validity_attribute(scene: Scene) -> str:
+    """Return the rows of `validity` as JSON, for the attributes of an archive.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    str
+        A list of objects with the fields of `ValidityRow`; `gearidae.runs.validity_row.rows_from_json` reads it.
+    """
+    return rows_to_json(validity_rows(scene))
+
+
+def validity_rows(scene: Scene) -> list[ValidityRow]:
+    """Return the rows of `validity` as plain records.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    list of ValidityRow
+    """
+    rest = _resting(scene)
+    rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
+    rows += [_temperature(rest), _gas(rest), _adhesion(scene, rest)]
+    if scene.gears is not None:
+        rows += [_disc_drag(scene), *_inertia(scene)]
+    return rows
+
+
+def _resting(scene: Scene) -> _Rest:
+    contact = pair_contact(scene)
+    if scene.roller is not None:
+        roller = scene.roller
+        gap = contact.closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
+        load = math.nan if math.isnan(gap) else float(contact.force(gap))
+        mass = roller.mass
+    else:
+        assert scene.gears is not None
+        load = mean_drive_torque(scene) / scene.gears.pinion_base_radius
+        gap, mass = contact.resting_gap(load), effective_mass(scene)
+    stiffness = math.nan if math.isnan(gap) else contact.stiffness(gap)
+    return _Rest(contact, gap, load, stiffness, mass)
+
+
+def _times(ratio: float) -> str:
+    """Write a ratio: ``"45 times"``."""
+    return (
+        f"{ratio:.2g} times"
+        if ratio < 10.0
+        else f"{ratio:,.0f} times"
+        if ratio < 1e6
+        else f"{ratio:.0e} times"
+    )
+
+
+def _asperities(rest: _Rest) -> ValidityRow:
+    contact, limit = rest.contact, f"at least {ENOUGH_ASPERITIES:g}"
+    name, quantity = "expected_asperities", "expected asperities in contact"
+    if math.isnan(rest.gap):
+        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, ENOUGH_ASPERITIES, "1")
+    count = float(expected_asperities(rest.gap, contact.radius, contact.width, contact.surface))
+    relative = rest.gap / contact.surface.roughness
+    enough = count >= ENOUGH_ASPERITIES
+    verdict = (
+        f"enough for a smooth law of force (gap {relative:.2f} roughnesses)"
+        if enough
+        else f"the smooth law of force is an ensemble mean, not one pair of teeth (gap {relative:.2f} roughnesses)"
+    )
+    return ValidityRow(
+        name, quantity, with_prefix(count, "1"), limit, verdict, enough, count, ENOUGH_ASPERITIES, "1"
+    )
+
+
+def _density(contact: PairContact) -> ValidityRow:
+    product = density_product(contact.surface)
+    holds = product <= _DENSEST
+    verdict = (
+        "as random surfaces, or sparser"
+        if holds
+        else f"{_times(product / _DENSEST)} as dense as random surfaces: asperities would share their load"
+    )
+    return ValidityRow(
+        "density_product",
+        "density product N beta sigma",
+        with_prefix(product, "1"),
+        "0.03 to 0.06 for random surfaces",
+        verdict,
+        holds,
+        product,
+        _DENSEST,
+        "1",
+    )
+
+
+def _merging(scene: Scene) -> Iterator[ValidityRow]:
+    for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
+        radius, half = zero_load_radius(surface), half_spacing(surface)
+        holds = radius <= half
+        verdict = (
+            "contacts stay apart"
+            if holds
+            else "contacts grow into their neighbours before any load: the asperities are not independent"
+        )
+        limit = f"{with_prefix(half, 'm')}, half the mean spacing"
+        yield ValidityRow(
+            f"merging_{name}",
+            f"{name}: contact radius without load",
+            with_prefix(radius, "m"),
+            limit,
+            verdict,
+            holds,
+            radius,
+            half,
+            "m",
+        )
+
+
+def _tabor(scene: Scene) -> Iterator[ValidityRow]:
+    law = scene.contact.asperity
+    for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
+        high, low = (tabor_parameter(surface, eps) for eps in _SPACINGS)
+        limit, bound, holds, verdict = _tabor_verdict(law, low, high)
+        # the end of the range that is compared: the small one where the law asks for large parameters
+        number = high if law == "dmt" else low
+        yield ValidityRow(
+            f"tabor_{name}",
+            f"{name}: Tabor parameter",
+            f"{high:.2g} to {low:.2g}" if high >= 0.01 else "0",
+            limit,
+            verdict,
+            holds,
+            number,
+            bound,
+            "1",
+        )
+
+
+def _tabor_verdict(law: str, low: float, high: float) -> tuple[str, float, bool, str]:
+    """Limit in words and as a number, whether it is kept, and what follows, of a range of Tabor parameters."""
+    if law == "jkr":
+        limit = "at least 5 for JKR, atoms 0.165 to 0.3 nm apart"
+        if low >= 4.5:
+            return limit, 5.0, True, "JKR holds"
+        partly = "JKR holds for the closest atoms only" if high >= 4.5 else "JKR overstates stretch and loss"
+        return limit, 5.0, False, partly
+    if law == "dmt":
+        holds = high < 0.15
+        return "at most 0.1 for DMT", 0.1, holds, "DMT holds" if holds else "DMT leaves the hysteresis out"
+    if law == "hertz":
+        return "none: asperities do not adhere", math.nan, True, "adhesion is left out by choice"
+    return "none: the law holds for every value", math.nan, True, f"{law} covers the transition"
+
+
+def _temperature(rest: _Rest) -> ValidityRow:
+    sigma = rest.contact.surface.roughness
+    bound = 0.1 * sigma
+    limit = f"{with_prefix(bound, 'm')}, a tenth of the roughness ({with_prefix(sigma, 'm')})"
+    name, quantity = "thermal_motion", f"thermal motion at {ROOM_TEMPERATURE:g} K"
+    if math.isnan(rest.stiffness):
+        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, bound, "m")
+    amplitude = thermal_amplitude(rest.stiffness)
+    holds = amplitude <= bound
+    stiffness = with_prefix(rest.stiffness, "N/m")
+    verdict = (
+        f"heat moves this contact ({stiffness}) little"
+        if holds
+        else f"heat shakes this contact ({stiffness}) by {amplitude / sigma:.2g} roughnesses: the model has none"
+    )
+    return ValidityRow(
+        name, quantity, with_prefix(amplitude, "m"), limit, verdict, holds, amplitude, bound, "m"
+    )
+
+
+def _gas(rest: _Rest) -> ValidityRow:
+    name, quantity = "gas_damping", "damping ratio of a film of air"
+    limit = f"{_LITTLE_DAMPING:g}"
+    if math.isnan(rest.stiffness) or not rest.stiffness > 0.0:
+        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, _LITTLE_DAMPING, "1")
+    contact = rest.contact
+    film = max(rest.gap, contact.surface.roughness)  # mean planes that overlap leave the valleys
+    damping = film_damping(film, contact.radius, contact.width)
+    ratio = damping / (2.0 * math.sqrt(rest.stiffness * rest.mass))
+    holds = ratio <= _LITTLE_DAMPING
+    where = f"film of {with_prefix(film, 'm')}, Kn = {AIR_MEAN_FREE_PATH / film:.2g}"
+    verdict = (
+        f"air hardly damps the contact ({where})"
+        if holds
+        else f"in air the contact would not ring as it does here, in vacuum ({where})"
+    )
+    return ValidityRow(
+        name, quantity, with_prefix(ratio, "1"), limit, verdict, holds, ratio, _LITTLE_DAMPING, "1"
+    )
+
+
+def _adhesion(scene: Scene, rest: _Rest) -> ValidityRow:
+    name = "net_adhesion"
+    quantity = "net adhesion of the pair when it parts"
+    driven = "the drive's force" if scene.roller is None else "the peak force, rigid bodies"
+    if math.isnan(rest.gap):
+        return ValidityRow(name, quantity, "-", driven, _NO_LOAD, False, math.nan, rest.load, "N")
+    tension = rest.contact.largest_tension(rest.gap)
+    holds = tension <= rest.load
+    if tension == 0.0:
+        verdict = "it does not pull when it parts from rest; impacts press deeper"
+    elif holds:
+        verdict = "smaller than the force that presses"
+    else:
+        verdict = f"{_times(tension / rest.load)} the force that presses: teeth that leave the mesh can stick"
+    limit = f"{with_prefix(rest.load, 'N')}, {driven}"
+    return ValidityRow(
+        name, quantity, with_prefix(tension, "N"), limit, verdict, holds, tension, rest.load, "N"
+    )
+
+
+def _disc_drag(scene: Scene) -> ValidityRow:
+    assert scene.load is not None
+    assert scene.initial is not None
+    speed = balanced_speed(scene, mean_drive_torque(scene))
+    if not math.isfinite(speed) or speed == 0.0:
+        speed = abs(scene.initial.gear_speed)
+    resistance = scene.load.torque + scene.load.drag * speed**2
+    torque = disc_drag(scene.geometry.base_radius_gear, speed, _CLEARANCE)
+    holds = torque <= resistance or torque == 0.0
+    limit = f"{with_prefix(resistance, 'N m')}, all that resists it in the scene"
+    where = f"{speed:.4g} rad/s, {with_prefix(_CLEARANCE, 'm')} above a plane"
+    if torque == 0.0:
+        verdict = "the gear does not turn by the estimate"
+    elif holds:
+        verdict = f"smaller at {where}"
+    elif resistance == 0.0:
+        verdict = f"nothing else resists the gear at {where}"
+    else:
+        verdict = f"{_times(torque / resistance)} as much at {where}: in air the gear needs more torque"
+    return ValidityRow(
+        "disc_drag",
+        "drag of air under the gear",
+        with_prefix(torque, "N m"),
+        limit,
+        verdict,
+        holds,
+        torque,
+        resistance,
+        "N m",
+    )
+
+
+def _inertia(scene: Scene) -> Iterator[ValidityRow]:
+    assert scene.gears is not None
+    gears, geometry = scene.gears, scene.geometry
+    for name, inertia, radius in (
+        ("pinion", gears.pinion_inertia, geometry.base_radius_pinion),
+        ("gear", gears.gear_inertia, geometry.base_radius_gear),
+    ):
+        disc = 0.5 * math.pi * _SILICON * gears.face_width * radius**4
+        times = disc / inertia
+        holds = 1.0 / 3.0 <= times <= 3.0
+        if holds:
+            verdict = "about that of a solid disc"
+        elif times > 1.0:
+            verdict = f"{_times(times)} lighter than a solid disc: pierced, smaller, or a mistake"
+        else:
+            verdict = f"{_times(1.0 / times)} heavier than a solid disc: a load on the shaft, or a mistake"
+        yield ValidityRow(
+            f"inertia_{name}",
+            f"{name}: moment of inertia",
+            with_prefix(inertia, "kg m^2"),
+            f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon",
+            verdict,
+            holds,
+            inertia,
+            disc,
+            "kg m^2",
+        )

@@ -1,0 +1,40 @@
+"""Numbers with an engineering prefix before their unit, as tables show them."""
+
+from __future__ import annotations
+
+import math
+
+__all__ = ["with_prefix"]
+
+_PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+
+
+def with_prefix(value: float, unit: str, digits: int = 3) -> str:
+    """Write a quantity with the prefix that leaves one to three digits before the point.
+
+    Parameters
+    ----------
+    value : float
+        In the unit without a prefix.
+    unit : str
+        Unit; "1" for a pure number, which takes no prefix. Units that begin with ``kg`` take none either.
+    digits : int, optional
+        Significant digits.
+
+    Returns
+    -------
+    str
+        ``"46.6 nm"``; without prefix beyond a million billion times the unit or its inverse. "-" if `value` is NaN.
+    """
+    if math.isnan(value):
+        return "-"
+    if unit == "1":
+        return f"{value:.{digits}g}"
+    if value == 0.0 or math.isinf(value) or unit.startswith("kg"):
+        return f"{value:.{digits}g} {unit}"
+    rounded = float(f"{value:.{digits - 1}e}")
+    power = 3 * math.floor(math.log10(abs(rounded)) / 3.0 + 1e-12)
+    if power not in _PREFIXES:
+        return f"{value:.{digits}g} {unit}"
+    number = rounded / 10.0**power
+    return f"{number:.{digits}g} {_PREFIXES[power]}{unit}"

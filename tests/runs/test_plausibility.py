@@ -1,0 +1,63 @@
+"""Doubts: said of what cannot be meant, and of nothing else."""
+
+from __future__ import annotations
+
+import json
+import logging
+from pathlib import Path
+
+import pytest
+
+import gearidae as gd
+from gearidae.runs.plausibility import doubts
+from gearidae.runs.validity import validity_attribute
+from gearidae_bench.random_scenes import random_scene
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+LOW = gd.preset("teodorescu2009_low_speed")
+ROLLER = gd.preset("roller_slow")
+
+
+@pytest.mark.parametrize("case", [pytest.param(path, id=path.stem) for path in CASES])
+def test_nothing_is_said_of_the_shipped_cases(case):
+    assert doubts(gd.load_case(case)) == []
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "words"),
+    [
+        (
+            LOW,
+            {"surface.roughness": 0.21e-6},
+            "surface.roughness = 210 nm is larger than mesh.backlash = 200 nm",
+        ),
+        (LOW, {"surface.roughness": 10e-6}, "addendum of the teeth, 3.89 um"),
+        (LOW, {"surface.asperity_radius": 5e-6}, "surface.asperity_radius = 5 um is larger than the tooth"),
+        (LOW, {"surface.asperity_density": 1e11}, "asperities stand 3.16 um apart"),
+        (LOW, {"run.duration": 1e6}, "this run is expected to take 7.4 h"),
+        (ROLLER, {"surface.roughness": 1e-6}, "higher than roller.radius = 5 um"),
+    ],
+)
+def test_what_can_hardly_be_meant_is_said_with_key_and_number(scene, changes, words):
+    assert any(words in doubt for doubt in doubts(scene.replace(changes)))
+
+
+def test_the_limits_themselves():
+    assert not doubts(LOW.replace({"surface.roughness": 0.199e-6, "run.duration": 1e-9}))
+
+
+def test_a_run_says_them_once_and_goes_on(caplog):
+    scene = LOW.replace({"surface.asperity_density": 1e11, "run.duration": 1e-4})
+    with caplog.at_level(logging.WARNING, logger="gearidae"):
+        ds = gd.simulate(scene)
+    said = [record for record in caplog.records if "asperities stand" in record.getMessage()]
+    assert len(said) == 1
+    assert ds.attrs["status"] == "finished"
+
+
+def test_no_scene_is_too_odd_to_be_judged():
+    """Random scenes over wide ranges: neither an exception nor a floating-point warning, which would be an error."""
+    for number in range(25):
+        scene = random_scene(3, number)
+        assert all(isinstance(doubt, str) for doubt in doubts(scene))
+        assert json.loads(validity_attribute(scene))

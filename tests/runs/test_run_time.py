@@ -1,0 +1,81 @@
+"""Expected run times against the steps that runs took, and how they scale."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import gearidae as gd
+from gearidae.runs.estimates import mean_drive_torque
+from gearidae.runs.pair_contact import pair_contact
+from gearidae.runs.run_time import RunTime, run_time
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+LOW = gd.preset("teodorescu2009_low_speed")
+
+
+@pytest.mark.parametrize("case", [pytest.param(path, id=path.stem) for path in CASES])
+def test_steps_of_the_shipped_cases_within_a_factor_of_three(case):
+    scene = gd.load_case(case)
+    assert 1.0 / 3.0 < run_time(scene).steps / int(gd.simulate(scene).steps) < 3.0
+
+
+@pytest.mark.parametrize("fraction", [0.8, 0.6, 0.5])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+def test_steps_of_worn_teeth_and_other_tolerances_within_a_factor_of_three(fraction, rtol):
+    scene = LOW.replace({"coating.sam_fraction": fraction, "run.rtol": rtol})
+    assert 1.0 / 3.0 < run_time(scene).steps / int(gd.simulate(scene).steps) < 3.0
+
+
+def test_a_run_ten_times_as_long_takes_ten_times_as_long():
+    short, long = run_time(LOW), run_time(LOW.replace({"run.duration": 3.0}))
+    assert long.seconds == pytest.approx(10.0 * short.seconds, rel=1e-9, abs=0)
+
+
+def test_rough_as_a_tooth_takes_days():
+    """20 s of computing brought this scene to 1.84e-5 s of its 0.3 s: some 90 h in all."""
+    hours = run_time(LOW.replace({"surface.roughness": 10e-6})).seconds / 3600.0
+    assert 30.0 < hours < 270.0
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.0079, "0.0079 s"),
+        (119.0, "1.2e+02 s"),
+        (600.0, "10 min"),
+        (288e3, "3.3 days"),
+        (1.3e8, "4.1 years"),
+    ],
+)
+def test_times_are_said_as_people_say_them(seconds, words):
+    assert RunTime(1.0, seconds, 1.0).words() == words
+
+
+@pytest.mark.parametrize("changes", [{"drive.torque": 0.0}, {"drive.torque": 1.0}, {"drive.torque": 1e-100}])
+def test_there_is_always_an_estimate(changes):
+    expected = run_time(LOW.replace(changes))
+    assert 0.0 < expected.steps < math.inf
+
+
+def test_the_mean_torque_of_a_schedule():
+    """Up from 0 to 2 aN m in half the time and back: 1 aN m on the mean, whatever the sign."""
+    there_and_back = [[0.0, 0.0], [0.15, 2e-18], [0.3, 0.0]]
+    scene = LOW.replace({"drive.torque": 0.0, "drive.schedule": there_and_back})
+    assert mean_drive_torque(scene) == pytest.approx(1e-18, rel=1e-3, abs=0)
+    reverse = [[time, -torque] for time, torque in there_and_back]
+    assert mean_drive_torque(scene.replace({"drive.schedule": reverse})) == pytest.approx(1e-18, rel=1e-3)
+
+
+@pytest.mark.parametrize("fraction", [1.0, 0.5, 0.0])
+def test_a_rollers_energy_is_spent_at_its_closest_gap(fraction):
+    """The simulated roller with rigid bodies turns back there; it loses nothing on the way in."""
+    scene = gd.preset("roller_slow").replace(
+        {"coating.sam_fraction": fraction, "contact.model": "asperity", "run.samples": 40_001}
+    )
+    roller = scene.roller
+    closest = pair_contact(scene).closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
+    # the trapezoidal rule on steps of 0.05 roughnesses
+    assert closest == pytest.approx(float(gd.simulate(scene).height.min()), abs=0.01 * 6e-9)

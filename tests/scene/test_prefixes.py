@@ -1,0 +1,33 @@
+"""Engineering prefixes."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from gearidae.scene.prefixes import with_prefix
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (46.61e-9, "m", "46.6 nm"),
+        (6e-10, "m", "600 pm"),
+        (0.0, "N", "0 N"),
+        (-1.26e-6, "N", "-1.26 uN"),
+        (9.999e-7, "m", "1 um"),  # rounding reaches the next prefix
+        (1e-6, "m", "1 um"),
+        (1e3, "Hz", "1 kHz"),
+        (1.42e-4, "N/m", "142 uN/m"),
+        (1.8e-17, "N m", "18 aN m"),
+        (1e-25, "N m", "1e-25 N m"),
+        (1e15, "Hz", "1e+15 Hz"),
+        (6.1052e-20, "kg m^2", "6.11e-20 kg m^2"),
+        (5.13e-8, "1", "5.13e-08"),
+        (math.nan, "m", "-"),
+        (math.inf, "m", "inf m"),
+    ],
+)
+def test_prefixes(value, unit, text):
+    assert with_prefix(value, unit) == text
