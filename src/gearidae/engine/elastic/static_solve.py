@@ -56,7 +56,10 @@ def settle_nodes(m: Model, t: float, y: Floats) -> bool:
     """
     pairs, n = m.scene.histories, m.scene.nodes
     for _ in range(_TRIES):
-        change = np.linalg.solve(_slopes(m, t, y), _deviation(m, t, y)[:, :, None])[:, :, 0]
+        try:
+            change = np.linalg.solve(_slopes(m, t, y), _deviation(m, t, y)[:, :, None])[:, :, 0]
+        except np.linalg.LinAlgError:  # a fold, to the last bit
+            return False
         largest = float(np.max(np.abs(change)))
         if not math.isfinite(largest):
             return False

@@ -14,6 +14,7 @@ from gearidae.records import Block, Ending, Ledger, Statistics
 __all__ = [
     "BLOCK_EVENTS",
     "BLOCK_ROWS",
+    "BLOCK_SECONDS",
     "BLOCK_STEPS",
     "BOUND_EXCEEDED",
     "CHATTER",
@@ -35,7 +36,9 @@ BLOCK_ROWS = 16_384
 BLOCK_EVENTS = 16_384
 """Events in a full block."""
 BLOCK_STEPS = 50_000
-"""Steps after which a driver comes back to Python in any case: some tens of milliseconds."""
+"""Steps after which a driver comes back to Python in any case."""
+BLOCK_SECONDS = 0.2
+"""Wall time after which it should: progress is shown and Ctrl-C is heeded between blocks."""
 CHECKPOINT_STEPS = 200_000
 """Steps between checkpoints. Every run starts IDA afresh there, so that a resumed run is the same run."""
 

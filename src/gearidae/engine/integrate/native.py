@@ -6,6 +6,7 @@ output is full, a budget of steps is used up, or the run is over, and can be cal
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,6 +18,7 @@ from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import (
+    BLOCK_SECONDS,
     BLOCK_STEPS,
     BOUND_EXCEEDED,
     CHECKPOINT_STEPS,
@@ -48,6 +50,11 @@ from gearidae.engine.sundials.ida_memory import (
     open_solver,
 )
 from gearidae.engine.sundials.memory import POINTERS
+
+FIRST_STEPS = 1_000
+"""Steps of the first block, before it is known what a step costs."""
+GROWTH_HIGH = 50
+"""By how much a block may have more steps than the one before."""
 
 __all__ = ["advance", "make_stepper", "restart", "run", "state_for_sample"]
 
@@ -159,6 +166,12 @@ def advance(s: Stepper, out: Output, budget: int) -> None:
         _count(s)
 
 
+def _next_budget(budget: int, seconds: float) -> int:
+    """Steps of the next block, for one that took some time: a step may cost a microsecond or a tenth of a second."""
+    wanted = budget * BLOCK_SECONDS / max(seconds, 1e-9)
+    return int(min(max(wanted, 1.0), GROWTH_HIGH * budget, BLOCK_STEPS))
+
+
 def make_stepper(problem: Problem, m: Model, as_ida: bool) -> Stepper:
     """Make the arrays that a run steps with, at its start."""
     y = problem.start.copy()
@@ -222,9 +235,11 @@ def run(
 def _blocks(problem: Problem, s: Stepper, out: Output, tally: Tally) -> Iterator[Block]:
     """Run with an open solver, block by block."""
     m, driver, elastic = s.m, s.m.work.driver, bool(s.m.scene.nodes > 0)
-    beyond = False
+    beyond, budget = False, FIRST_STEPS
     while driver.done == 0 and driver.error == 0 and not beyond:
-        advance(s, out, BLOCK_STEPS)
+        started = time.monotonic()
+        advance(s, out, budget)
+        budget = _next_budget(budget, time.monotonic() - started)
         fill_tally(tally, m.state.progress)
         tally.ending = ending_of_flag(int(driver.error), elastic)
         if driver.error < 0 and elastic:
@@ -233,10 +248,10 @@ def _blocks(problem: Problem, s: Stepper, out: Output, tally: Tally) -> Iterator
             driver.error, driver.pending = 0, -1
             m.state.progress.restarts += 1
             beyond = True
-        time = float(s.clock[0])
+        reached = float(s.clock[0])
         yield out.block(
             m,
-            time,
-            problem.checkpoint(time, s.y) if driver.pending < 0 or driver.done != 0 else None,
-            problem.ledger(time, s.y, s.yp) if driver.pending <= 0 else None,
+            reached,
+            problem.checkpoint(reached, s.y) if driver.pending < 0 or driver.done != 0 else None,
+            problem.ledger(reached, s.y, s.yp) if driver.pending <= 0 else None,
         )

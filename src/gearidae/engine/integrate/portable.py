@@ -8,6 +8,7 @@ itself, because the API has no dense output.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,6 +23,7 @@ from gearidae.engine.events.events import guard
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate.driver import (
     BLOCK_ROWS,
+    BLOCK_SECONDS,
     BOUND_EXCEEDED,
     CHECKPOINT_STEPS,
     CONVERGENCE_FAILURES_HIGH,
@@ -39,10 +41,12 @@ from gearidae.engine.model.observe import observe
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.residual import jacobian, residual
 from gearidae.engine.model.state import Floats, Model, Record
+from gearidae.errors import SceneError
 
 __all__ = ["run"]
 
-_BLOCK_STEPS = 5_000  # some tenths of a second
+STATES_HIGH = 600
+"""States at most: the Jacobian is a full matrix here."""
 _POINTS = 6  # returns that an interpolation looks back over
 _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third point
 
@@ -52,6 +56,13 @@ def run(
 ) -> Iterator[Block]:
     """Run a problem, block by block; see `gearidae.engine.integrate.native.run`."""
     m = problem.prepare(rtol, total)
+    if m.scene.states > STATES_HIGH:
+        raise SceneError(
+            "backend",
+            "sksundae",
+            f"solves no more than {STATES_HIGH} states at once, and this elastic scene has {m.scene.states}: "
+            "use the native driver, or contact.model = asperity",
+        )
     y, out = problem.start.copy(), Output.empty(len(problem.columns))
     driver, progress = m.work.driver, m.state.progress
     driver.time = 0.0 if resume is None else problem.restore(resume, y)
@@ -60,8 +71,9 @@ def run(
         yield from _samples(m, out, y, solver.trail)
     solver.start(y)
     between = (np.zeros_like(y), np.zeros_like(y))
+    handed_out = time.monotonic()
     while driver.done == 0 and driver.error == 0:
-        flag, y, yp = solver.step()
+        flag, y, yp = solver.step(y)
         if driver.error != 0:
             break
         yield from _samples(m, out, y, solver.trail)
@@ -78,9 +90,10 @@ def run(
                 driver.since = 0
                 yield _ready(problem, m, out, tally, y, yp)
             solver.start(y)
-        elif driver.since % _BLOCK_STEPS == 0:
+        if time.monotonic() - handed_out > BLOCK_SECONDS:
             fill_tally(tally, progress)
-            yield out.block(m, driver.time, None, problem.ledger(driver.time, y, yp))
+            yield out.block(m, float(driver.time), None, problem.ledger(float(driver.time), y, yp))
+            handed_out = time.monotonic()
     solver.count()
     fill_tally(tally, progress)
     tally.ending = solver.ending or ending_of_flag(int(driver.error), bool(m.scene.nodes > 0))
@@ -95,8 +108,8 @@ def run(
 def _ready(problem: Problem, m: Model, out: Output, tally: Tally, y: Floats, yp: Floats) -> Block:
     """Hand out a block with a checkpoint."""
     fill_tally(tally, m.state.progress)
-    time = float(m.work.driver.time)
-    return out.block(m, time, problem.checkpoint(time, y), problem.ledger(time, y, yp))
+    reached = float(m.work.driver.time)
+    return out.block(m, reached, problem.checkpoint(reached, y), problem.ledger(reached, y, yp))
 
 
 def _samples(m: Model, out: Output, y: Floats, trail: _Trail) -> Iterator[Block]:
@@ -104,14 +117,13 @@ def _samples(m: Model, out: Output, y: Floats, trail: _Trail) -> Iterator[Block]
     driver, progress = m.work.driver, m.state.progress
     total, end = int(m.scene.samples), float(m.scene.end)
     while (
-        progress.next_sample < total
-        and (time := sample_time(progress.next_sample, total, end)) <= driver.time
+        progress.next_sample < total and (due := sample_time(progress.next_sample, total, end)) <= driver.time
     ):
-        observe(m, time, y if time == driver.time else trail.at(time), out.rows[driver.rows])
+        observe(m, due, y if due == driver.time else trail.at(due), out.rows[driver.rows])
         progress.next_sample += 1
         driver.rows += 1
         if driver.rows == BLOCK_ROWS:
-            yield out.block(m, time)
+            yield out.block(m, due)
 
 
 class _Solver:
@@ -170,12 +182,16 @@ class _Solver:
             max_conv_fails=CONVERGENCE_FAILURES_HIGH,
         )
 
-    def step(self) -> tuple[int, Floats, Floats]:
+    def step(self, y: Floats) -> tuple[int, Floats, Floats]:
         """Go on to the end of the next step, a stop or a root; a failure is noted as the driver's error."""
         driver = self._driver
-        result = self._ida.step(self._m.scene.end, method="onestep", tstop=self._stop)
-        self._last = result
         driver.since += 1
+        try:
+            result = self._ida.step(self._m.scene.end, method="onestep", tstop=self._stop)
+        except KeyError as error:  # a status of SUNDIALS that scikit-sundae has no name for
+            driver.error = min(int(error.args[0]), -1)
+            return int(driver.error), y, y
+        self._last = result
         flag = int(result.status)
         if flag < 0 or not np.isfinite(result.y).all():
             driver.error = flag if flag < 0 else -1

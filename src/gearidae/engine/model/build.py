@@ -41,6 +41,7 @@ __all__ = ["make_problem"]
 
 STRIDE = 6  # accepted steps near contact that the energy balance integrates over at once
 SPAN = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
+KNOT_SPACING = 1e-12  # what knots must be apart, over the time itself
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
 
@@ -104,7 +105,9 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     _add_torques(s, tables, scene)
     _add_static_error(s, tables, scene)
     add_nodes(s, tables, grid)
-    model = _model(s, tables, [1.0, 1.0, 1.0 / float(s.relief_curvature * s.reach), 1.0])
+    # an error in the phase matters by the gap it opens where tip relief is steepest
+    steepest = float(s.relief_curvature * s.reach)
+    model = _model(s, tables, [1.0, 1.0, 1.0 / steepest if steepest > 0.0 else 1.0, 1.0])
     model.state.slip = np.sign(start.gear_speed) if s.dry else 1.0
     for shaft, law in ((DRIVE, drive), (LOAD, load)):
         model.state.segment[shaft] = sum(t <= 0.0 for t, _ in law.schedule)
@@ -257,7 +260,11 @@ def _add_torques(s: Record, tables: Tables, scene: Scene) -> None:
 def _set_run(s: Record, tables: Tables, scene: Scene, knots: set[float]) -> None:
     """Set the end of the run, its knots and what counts as chatter."""
     s.end = scene.run.duration / float(s.time_unit)
-    s.knot_count, s.knots_at = len(knots), tables.add(sorted(knots))
+    times = sorted(knots)
+    # of knots that the solver cannot tell apart the last one serves for all: schedules enter every segment up to it
+    following = [*times[1:], float(s.end)]
+    apart = [t for t, after in zip(times, following, strict=False) if after - t > KNOT_SPACING * after]
+    s.knot_count, s.knots_at = len(apart), tables.add(apart)
     s.root_limit, s.root_spacing = ROOT_LIMIT, ROOT_SPACING
 
 
