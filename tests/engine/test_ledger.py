@@ -11,8 +11,7 @@ import pytest
 import gearidae as gd
 from gearidae import engine
 from gearidae.contact import asperity_of
-from gearidae.contact.jkr import S_FOLD, jkr_root
-from gearidae.contact.kernels.energy import JOINING
+from gearidae.contact.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
 from gearidae.engine.energy import balance as ledger_kernel

@@ -6,7 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from gearidae.contact.asperities import law_names
 from gearidae.scene.group import Group
+from gearidae.scene.named import Named
 from gearidae.scene.quantity import Quantity
 
 __all__ = ["Coating", "Contact", "Surface"]
@@ -50,4 +52,4 @@ class Contact(Group):
     model: Literal["auto", "asperity", "elastic"] = Field(
         default="auto", description="asperity: teeth stay rigid; elastic: they deflect too; auto: as needed"
     )
-    asperity: Literal["jkr", "dmt", "hertz"] = Field(default="jkr", description="force law of one asperity")
+    asperity: Annotated[str, Named(law_names)] = Field(default="jkr", description="force law of one asperity")

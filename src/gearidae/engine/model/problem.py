@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.contact.jkr import asperity_of
+from gearidae.contact.asperities import law_of
 from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table
 from gearidae.contact.kernels.law import (
     GAP_HIGH,
@@ -18,13 +18,14 @@ from gearidae.contact.kernels.law import (
     H_STRETCH,
     HEADER,
     N_LOADING,
-    STRETCH_HIGH,
     Kernel,
     branch_length,
+    check_reach,
     force_scale,
     law_table,
     law_value,
 )
+from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.calls import service
 from gearidae.engine.elastic.layout import DEPTH_HIGH, Footing, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.nodes import history_size
@@ -434,36 +435,38 @@ def _contact(head: Floats, scene: Scene, width: float, footprint: float, widest:
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if head[at.NODES] > 0.0 else "line"
     loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
-    tables, energies = [], []
+    tables, energies, joins = [], [], set()
     for material, (surface, share) in enumerate(
         ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
     ):
         tip = asperity_of(surface)
-        limit = tip.stretch_limit / surface.roughness
-        if limit > STRETCH_HIGH:
-            raise SceneError(
-                "surface.roughness",
-                surface.roughness,
-                f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
-            )
+        law = law_of(scene.contact.asperity, surface)
+        check_reach(law, surface.roughness)
         # a copy: numba compiles everything a second time for arrays that are read-only
-        table = law_table(limit, scene.contact.asperity, kernel).copy() if share > 0.0 else np.zeros(HEADER)
+        table = law_table(law, kernel).copy() if share > 0.0 else np.zeros(HEADER)
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * footprint / head[at.FORCE]
         record = at.MATERIALS + at.MATERIAL * material
         head[record + at.M_FORCE] = force
         head[record + at.M_STRETCH] = table[H_STRETCH]
         tables.append(table)
-        energy = energy_table(limit, scene.contact.asperity, kernel) if share > 0.0 else table
+        energy = energy_table(law, kernel) if share > 0.0 else table
         energies.append(energy)
-        head[at.ENERGIES + at.ENERGY * material + at.E_JOINING] = joining_energy(table[H_STRETCH])
+        joining = joining_energy(law) if share > 0.0 else 0.0
+        head[at.ENERGIES + at.ENERGY * material + at.E_JOINING] = joining
+        if joining != 0.0:
+            joins.add(law.join)
         if share > 0.0:
             loading += force * table[HEADER : HEADER + loading.size]
             potential += force * energy[HEADER : HEADER + potential.size]
             for floor, gap in reach.items():
                 reach[floor] = max(gap, _outermost(table, force * widest, floor))
     head[at.CUTOFF], head[at.ENGAGE] = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
-    return [loading, *tables, potential, *energies, number_table(kernel)]
+    if len(joins) > 1:  # one table of numbers serves both materials
+        raise SceneError(
+            "contact.asperity", scene.contact.asperity, "must join coated and bare asperities at one distance"
+        )
+    return [loading, *tables, potential, *energies, number_table(kernel, max(joins, default=0.0))]
 
 
 def _outermost(table: Floats, scale: float, floor: float) -> float:
