@@ -100,7 +100,7 @@ def closed_energy(law, gap, stretch):
 
 
 def test_laws_of_the_package_are_found():
-    assert law_names() == ("dmt", "hertz", "jkr")
+    assert law_names() == ("dmt", "hertz", "jkr", "maugis")
     for name in law_names():
         assert asperity(name).name == name
 
@@ -135,7 +135,7 @@ def test_a_name_is_given_once(spring):
 
 
 def test_unknown_laws_are_named_with_those_that_are_known(silicon, spring):
-    known = "must be one of dmt, hertz, jkr, spring"
+    known = "must be one of dmt, hertz, jkr, maugis, spring"
     for call in (
         lambda: asperity("sphere"),
         lambda: asperity_load(0.0, asperity_of(silicon), "sphere"),
@@ -150,7 +150,9 @@ def test_unknown_laws_are_named_with_those_that_are_known(silicon, spring):
 def test_a_law_is_gone_once_it_is_taken_out():
     register(Spring)
     unregister("spring")
-    with pytest.raises(SceneError, match=r"contact\.asperity = spring: must be one of dmt, hertz, jkr"):
+    with pytest.raises(
+        SceneError, match=r"contact\.asperity = spring: must be one of dmt, hertz, jkr, maugis"
+    ):
         gd.preset("roller_slow").replace({"contact.asperity": "spring"})
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Final, Literal, Protocol
 
 __all__ = [
     "Asperity",
@@ -21,6 +21,9 @@ __all__ = [
     "tabor_parameter",
     "tabor_regime",
 ]
+
+INTERACTION_RANGE: Final = 0.165e-9
+"""Range of adhesive forces between silicon surfaces [m], where a surface names no ``interaction_range`` of its own."""
 
 
 class Surface(Protocol):
@@ -68,6 +71,8 @@ class Asperity:
     stretch_limit : float
         Stretch at which a JKR asperity lets go, ``(9 beta P_c / (4 E*))**(2/3) / (3 beta)`` [m]: the length by which
         adhesion deforms a tip, under whatever law.
+    interaction_range : float, optional
+        Range eps of the adhesive forces, the equilibrium spacing of two atoms [m]; for laws that have one.
     """
 
     modulus: float
@@ -75,6 +80,7 @@ class Asperity:
     work_of_adhesion: float
     pull_off: float
     stretch_limit: float
+    interaction_range: float = INTERACTION_RANGE
 
     @property
     def hertz_factor(self) -> float:
@@ -106,7 +112,7 @@ def asperity_of(surface: Surface) -> Asperity:
     Parameters
     ----------
     surface : Surface
-        Elastic constants, energy and tip radius (SI).
+        Elastic constants, energy and tip radius (SI), and an ``interaction_range`` if it has one.
 
     Returns
     -------
@@ -116,10 +122,13 @@ def asperity_of(surface: Surface) -> Asperity:
     modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
     radius = surface.asperity_radius
     adhesion = 2.0 * surface.energy
-    return make_tip(modulus, radius, adhesion)
+    reach = getattr(surface, "interaction_range", INTERACTION_RANGE)
+    return make_tip(modulus, radius, adhesion, reach)
 
 
-def make_tip(modulus: float, radius: float, adhesion: float) -> Asperity:
+def make_tip(
+    modulus: float, radius: float, adhesion: float, interaction_range: float = INTERACTION_RANGE
+) -> Asperity:
     """Return a tip with the two figures that follow from its others.
 
     Parameters
@@ -130,10 +139,12 @@ def make_tip(modulus: float, radius: float, adhesion: float) -> Asperity:
         Tip radius [m].
     adhesion : float
         Work of adhesion [J/m^2].
+    interaction_range : float, optional
+        Range eps of the adhesive forces [m].
     """
     pull_off = 1.5 * math.pi * radius * adhesion
     stretch_limit = (9.0 * radius * pull_off / (4.0 * modulus)) ** (2.0 / 3.0) / (3.0 * radius)
-    return Asperity(modulus, radius, adhesion, pull_off, stretch_limit)
+    return Asperity(modulus, radius, adhesion, pull_off, stretch_limit, interaction_range)
 
 
 def tabor_parameter(surface: Surface, eps: float = 0.165e-9) -> float:

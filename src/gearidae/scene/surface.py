@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from gearidae.contact.asperities import law_names
+from gearidae.contact.tip import INTERACTION_RANGE
 from gearidae.scene.group import Group
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Quantity
@@ -34,6 +35,10 @@ class Surface(Group):
     )
     roughness: Annotated[float, Quantity(unit="m", above=0, at_most=0.1, shown=("nm", -9))] = Field(
         description="rms height of the asperities, sigma"
+    )
+    interaction_range: Annotated[float, Quantity(unit="m", above=0, at_most=1e-6, shown=("nm", -9))] = Field(
+        default=INTERACTION_RANGE,
+        description="range of the adhesive forces, eps (equilibrium spacing of atoms); for maugis asperities",
     )
 
 

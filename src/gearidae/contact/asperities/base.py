@@ -69,6 +69,11 @@ class AsperityLaw(ABC):
     def pull_off(self) -> float:
         """Largest tension that an asperity carries; 0 if it carries none."""
 
+    @property
+    def pieces(self) -> int:
+        """Even pieces in ``sqrt((displacement + detach) / (detach - join))``, of degree seven, that the load wants."""
+        return 4
+
     @abstractmethod
     def load(self, displacement: ArrayLike) -> Floats:
         """Load of an asperity in contact, on the branch that is stable under given displacement.

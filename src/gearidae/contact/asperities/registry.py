@@ -117,13 +117,15 @@ def law_of(name: str, surface: Surface) -> AsperityLaw:
     return law_of_tip(name, asperity_of(surface), surface.roughness)
 
 
-def asperity(name: str) -> AsperityLaw:
+def asperity(name: str, *, tabor: float = 5.0) -> AsperityLaw:
     """Return the law of one asperity in the units of adhesion.
 
     Parameters
     ----------
     name : str
-        The law's name, such as ``jkr``, ``dmt`` or ``hertz``.
+        The law's name, such as ``jkr``, ``dmt``, ``hertz`` or ``maugis``.
+    tabor : float, optional
+        Tabor's parameter, see `gearidae.contact.tabor_parameter`; for laws in which the adhesive forces have a range.
 
     Returns
     -------
@@ -134,14 +136,18 @@ def asperity(name: str) -> AsperityLaw:
     Raises
     ------
     SceneError
-        If there is no such law.
+        If there is no such law, or Tabor's parameter is not a positive number.
 
     References
     ----------
     D. Maugis, J. Colloid Interface Sci. 150 (1992) 243-269, doi:10.1016/0021-9797(92)90285-T.
     """
     # K = 1, beta = 1 and pi dgamma = 1: the units are those of this tip
-    return law_of_tip(name, make_tip(modulus=0.75, radius=1.0, adhesion=1.0 / math.pi), 1.0)
+    if not 0.0 < tabor < math.inf:
+        raise SceneError("tabor", tabor, "must be a positive number")
+    modulus, adhesion = 0.75, 1.0 / math.pi
+    reach = (adhesion / modulus) ** (2.0 / 3.0) / tabor
+    return law_of_tip(name, make_tip(modulus, 1.0, adhesion, reach), 1.0)
 
 
 def asperity_load(displacement: ArrayLike, asperity: Asperity, law: str = "jkr") -> Floats:

@@ -96,7 +96,6 @@ NEGLIGIBLE_STRETCH: Final = (
 )
 TABULATED_STRETCH: Final = 1.0  # above this the partly stretched branch is integrated when asked for
 PIECE_STRETCH: Final = 0.04  # a Chebyshev piece in v covers no more than about twice this stretch
-PIECES_LOW: Final = 4  # the asperity's own law wants this many however small the stretch
 
 
 def force_scale(roughness: float, hertz_factor: float, density: float, width: float) -> float:
@@ -186,7 +185,7 @@ def _add_stretched(parts: list[Floats], law: AsperityLaw, kernel: Kernel) -> Non
     parts.append(hermite_pieces(joined, end).ravel())
     following = sum(part.size for part in parts)
     if limit <= TABULATED_STRETCH:
-        pieces = max(PIECES_LOW, math.ceil(limit / PIECE_STRETCH))
+        pieces = max(law.pieces, math.ceil(limit / PIECE_STRETCH))
         header[[H_MODE, H_PARTIAL, H_PIECES]] = MODE_TABLE, following, pieces
         parts.append(partial_pieces(joined, end, law, pieces, kernel).ravel())
     else:
