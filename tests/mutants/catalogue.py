@@ -69,11 +69,11 @@ MUTANTS = (
         JKR,
     ),
     Mutant(
-        "wrong constant in the table's measure (12^(1/3))",
+        "wrong constant in the measure of an asperity's quadrature (12^(1/3))",
         "contact/asperities/jkr.py",
         "rate = 4.0 * 12.0 ** (1 / 3) * s**3",
         "rate = 4.0 * 12.0 ** (1 / 3.01) * s**3",
-        LAW,
+        JKR,
     ),
     Mutant(
         "fold at another radius (a^3 = 1/18)",

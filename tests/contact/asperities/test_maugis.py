@@ -19,7 +19,8 @@ from gearidae.engine import solve
 from gearidae.errors import SceneError
 from reference.surface import PlainSurface
 
-# Tabor's parameter (lambda over 1.157), distance of joining, of letting go, pull-off, loss: computed independently, printed with these digits
+# Tabor's parameter (lambda over 1.157), distances of joining and of letting go, pull-off, loss; computed independently
+# and printed with these digits
 PRINTED = [
     (0.10, 5.50233, 5.50715, 1.93986, 0.00002),
     (0.45, 1.22274, 1.32040, 1.71046, 0.04420),
@@ -180,3 +181,12 @@ def test_an_impact_loses_what_its_asperities_cost(fraction):
     speed = run.samples["speed"]
     assert 0.5 * roller.mass * (speed[0] ** 2 - speed[-1] ** 2) == pytest.approx(lost, rel=1e-5, abs=0)
     assert abs(run.ledger.residual) <= run.ledger.bound(scene.run.rtol, roller=True)
+
+
+def test_gears_on_coated_teeth_run_as_an_independent_integrator_has_them():
+    """Speed at 0.1 s, printed with seven digits; the rough law's error of 1e-10 and the tolerance are far below."""
+    scene = gd.preset("teodorescu2009_low_speed").replace(
+        {"contact.asperity": "maugis", "contact.model": "asperity", "coating.sam_fraction": 1.0}
+    )
+    run = solve(scene.replace({"run.duration": 0.1, "run.samples": 10_001, "run.rtol": 1e-8}))
+    assert run.samples["gear_speed"][-1] == pytest.approx(1.499738, abs=2e-6)
