@@ -6,9 +6,8 @@ At every node of a `LineGrid` the mean gap is that of the rigid shapes plus the 
 
     h_i = \frac{x_i^2}{2R} + g + \sum_k K_{ik}\, p(h_k, S_k), \qquad W = \sum_i w_i\, p(h_i, S_i),
 
-and each node remembers the height zeta above which its asperities are joined, a play operator:
-``zeta = min(max(zeta, h - detach), h - join)``, S = h - zeta, with the distances at which an asperity joins and at
-which it lets go.
+and each node remembers the height zeta above which its asperities are joined, a play operator: S = h - zeta lies
+between the distances at which an asperity joins and lets go.
 
 The rigid gap g is moved in small steps. A step counts only if its solution lies where the tangent of the last one
 pointed and is stable (``det(I - K dp/dh) > 0``). Where no step however small does, adhesion has outgrown the
@@ -294,8 +293,7 @@ class _RoughLayer:
         total = np.zeros_like(gap)
         H = gap / self.roughness
         for (unit, part), zeta in zip(self.parts, joined, strict=True):
-            join, detach = part.law.join, part.law.detach
-            extension = (gap - zeta) / self.roughness
+            join, detach, extension = part.law.join, part.law.detach, (gap - zeta) / self.roughness
             S = np.clip(extension, join, detach)
             total += unit * part.integral(normal_density_slope, H, S, decays_left=True)
             if detach > join:
