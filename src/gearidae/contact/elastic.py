@@ -7,7 +7,8 @@ At every node of a `LineGrid` the mean gap is that of the rigid shapes plus the 
     h_i = \frac{x_i^2}{2R} + g + \sum_k K_{ik}\, p(h_k, S_k), \qquad W = \sum_i w_i\, p(h_i, S_i),
 
 and each node remembers the height zeta above which its asperities are joined, a play operator: S = h - zeta lies
-between the distances at which an asperity joins and lets go. The rigid gap g is moved in small steps. A step counts only if its solution lies where the tangent of the last one
+between the distances at which an asperity joins and lets go.
+The rigid gap g is moved in small steps. A step counts only if its solution lies where the tangent of the last one
 pointed and is stable (``det(I - K dp/dh) > 0``). Where no step however small does, adhesion has outgrown the
 stiffness of the bodies: the static curve folds back, and a real contact would jump. That is reported, not crossed.
 
