@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from gearidae.contact.jkr import ADHESION_LOSS, S_FOLD, jkr_load, jkr_root
+from gearidae.contact.asperities.dmt import Dmt
+from gearidae.contact.asperities.hertz import Hertz
+from gearidae.contact.asperities.jkr import JOINING, S_FOLD, Jkr, jkr_load, jkr_root
 from gearidae.contact.kernels.energy import (
     energy_table,
     joining_energy,
@@ -42,20 +44,20 @@ def stored(gap, stretch, limit, kernel):
 def test_what_joining_costs_is_the_area_under_the_load():
     e, weight = panels(0.0, 1.0, 4)
     area = np.sum(weight * 2 * e * jkr_load(e**2 - 1))
-    assert -area == pytest.approx(ADHESION_LOSS, rel=1e-12, abs=0)
-    assert pytest.approx(0.93550, abs=5e-6) == ADHESION_LOSS
+    assert -area == pytest.approx(JOINING, rel=1e-12, abs=0)
+    assert pytest.approx(0.93550, abs=5e-6) == JOINING
 
 
 @pytest.mark.parametrize("kernel", ["line", "plane"])
 @pytest.mark.parametrize("limit", [0.036, 0.22, 0.9, 2.5])  # the last has no tabulated branch
 def test_the_potential_is_the_integral_over_the_asperities(limit, kernel):
     table, law, number = (
-        energy_table(limit, "jkr", kernel),
-        law_table(limit, "jkr", kernel),
+        energy_table(Jkr(limit), kernel),
+        law_table(Jkr(limit), kernel),
         number_table(kernel),
     )
     for joined in (-6.0, -1.03, 0.2, 3.1, 5.7):
-        booked = -joining_energy(limit) * loading_value(number, 0, joined)[0]
+        booked = -joining_energy(Jkr(limit)) * loading_value(number, 0, joined)[0]
         for share in (1e-3, 0.2, 0.9, 0.9999, 1.4):
             gap = joined + share * limit
             potential, push = loading_value(table, HEADER, gap)
@@ -68,10 +70,10 @@ def test_the_potential_is_the_integral_over_the_asperities(limit, kernel):
             assert -(push + slope) == pytest.approx(force, rel=1e-8, abs=0)
 
 
-@pytest.mark.parametrize(("limit", "asperity"), [(0.22, "dmt"), (0.22, "hertz"), (1e-5, "jkr"), (0.0, "jkr")])
-def test_without_stretch_there_is_nothing_beyond_the_loading_branch(limit, asperity):
-    table, law = energy_table(limit, asperity), law_table(limit, asperity)
-    assert joining_energy(table[0]) == 0.0
+@pytest.mark.parametrize("asperity", [Dmt(0.22), Hertz(), Jkr(1e-5)], ids=str)
+def test_without_stretch_there_is_nothing_beyond_the_loading_branch(asperity):
+    table, law = energy_table(asperity), law_table(asperity)
+    assert joining_energy(asperity) == 0.0
     assert stretched_energy(table, 0.0, 1.0, 0.5) == (0.0, 0.0)
     gap, weight = panels(0.5, 13.0, 40)
     work = np.sum(weight * [loading_value(law, HEADER, g)[0] for g in gap])

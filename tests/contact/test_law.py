@@ -7,10 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.contact.jkr import asperity_of
+from gearidae.contact.asperities.dmt import Dmt
+from gearidae.contact.asperities.hertz import Hertz
+from gearidae.contact.asperities.jkr import Jkr
 from gearidae.contact.kernels import law
 from gearidae.contact.line import line_force
 from gearidae.contact.rough import rough_pressure
+from gearidae.contact.tip import asperity_of
 from reference.surface import PlainSurface
 
 RADIUS, WIDTH = 10e-6, 2e-6
@@ -31,7 +34,7 @@ def unit_force(surface):
 def law_error(stretch_limit, gaps, share):
     """Largest error over the sum of what pushes and what pulls, which is what cancellation leaves to be had."""
     surface = surface_with(stretch_limit)
-    table = law.law_table(stretch_limit)
+    table = law.law_table(Jkr(stretch_limit))
     stretch = share * stretch_limit
     sigma = surface.roughness
     exact = line_force(gaps * sigma, stretch * sigma, RADIUS, WIDTH, surface) / unit_force(surface)
@@ -53,7 +56,7 @@ def test_pressure_between_planes_is_right_to_1e_9(stretch_limit):
     surface = surface_with(stretch_limit)
     sigma = surface.roughness
     unit = surface.asperity_density * asperity_of(surface).hertz_factor * sigma**1.5
-    table = law.law_table(stretch_limit, kernel="plane")
+    table = law.law_table(Jkr(stretch_limit), kernel="plane")
     rng = np.random.default_rng(4)
     gaps = rng.uniform(-8.0, 12.0, 200)
     stretch = stretch_limit * np.clip(rng.uniform(-0.2, 1.2, 200), 0.0, 1.0)
@@ -68,19 +71,19 @@ def test_deep_contact_is_tabulated_too():
     assert law_error(0.2219, gaps, np.linspace(0, 1, 40)) < 1e-9
 
 
-@pytest.mark.parametrize("kind", ["dmt", "hertz"])
+@pytest.mark.parametrize("kind", [Dmt(0.2219), Hertz()], ids=lambda kind: kind.name)
 def test_asperities_that_do_not_stretch(kind):
     surface = surface_with(0.2219)
-    table = law.law_table(0.2219, kind)
+    table = law.law_table(kind)
     gaps = np.linspace(-8.0, 12.0, 101)
-    exact = line_force(gaps * surface.roughness, 0.0, RADIUS, WIDTH, surface, kind) / unit_force(surface)
+    exact = line_force(gaps * surface.roughness, 0.0, RADIUS, WIDTH, surface, kind.name) / unit_force(surface)
     pushing = line_force(gaps * surface.roughness, 0.0, RADIUS, WIDTH, surface, "hertz") / unit_force(surface)
     values = np.array([law.law_value(table, g, g - 0.2) for g in gaps])
     assert np.max(np.abs(values[:, 0] - exact) / (np.abs(pushing) + np.abs(exact))) < 1e-9
 
 
 def test_law_ends_at_the_widest_gap():
-    table = law.law_table(0.2219)
+    table = law.law_table(Jkr(0.2219))
     widest = law.GAP_HIGH + 0.2219  # where the last stretched asperity lets go
     inside, _ = law.law_value(table, widest - 1e-9, -math.inf)
     assert law.law_value(table, widest, -math.inf) == (0.0, 0.0)
@@ -90,7 +93,7 @@ def test_law_ends_at_the_widest_gap():
 
 @given(gap=st.floats(-10, 12), share=st.floats(0.02, 0.98), limit=st.sampled_from([0.0363, 0.2219, 0.9, 5.0]))
 def test_slope_is_the_derivative_at_fixed_joined_height(gap, share, limit):
-    table = law.law_table(limit)
+    table = law.law_table(Jkr(limit))
     joined = gap - share * limit
     step = 1e-4 * min(share, 1 - share) * limit
     ahead, behind = (law.law_value(table, gap + d, joined)[0] for d in (step, -step))
@@ -102,7 +105,7 @@ def test_slope_is_the_derivative_at_fixed_joined_height(gap, share, limit):
 
 @given(gap=st.floats(-10, 11), limit=st.sampled_from([0.0363, 0.2219, 0.9, 5.0]))
 def test_branches_join_without_a_step(gap, limit):
-    table = law.law_table(limit)
+    table = law.law_table(Jkr(limit))
     touch = law.law_value(table, gap, gap)[0]
     touch_after = law.law_value(table, gap, math.nextafter(gap, -math.inf))[0]
     full_before = law.law_value(table, gap, gap - limit * (1 - 1e-15))[0]
@@ -115,7 +118,7 @@ def test_branches_join_without_a_step(gap, limit):
 @pytest.mark.parametrize("branch", ["loading", "stretched"])
 def test_three_derivatives_are_continuous_at_every_knot(branch):
     """Septic Hermite pieces share three derivatives: one-sided differences must agree to their own error."""
-    table = law.law_table(0.2219)
+    table = law.law_table(Jkr(0.2219))
     joined = (lambda g: g) if branch == "loading" else (lambda g: -math.inf)
     shift = 0.0 if branch == "loading" else 0.2219
 
@@ -133,7 +136,7 @@ def test_three_derivatives_are_continuous_at_every_knot(branch):
 
 @given(joined=st.floats(-10, 11), share=st.just(0.0) | st.just(1.0) | st.floats(1e-9, 1 - 1e-9))
 def test_a_kept_branch_is_the_law(joined, share):
-    table = law.law_table(0.2219)
+    table = law.law_table(Jkr(0.2219))
     branch = np.empty(law.branch_length(table))
     law.set_branch(table, joined, branch)
     stretch = share * 0.2219
@@ -147,11 +150,12 @@ def test_a_kept_branch_is_the_law(joined, share):
 
 
 def test_no_adhesion_is_hertz():
-    np.testing.assert_array_equal(law.law_table(0.0), law.law_table(0.0, "hertz"))
+    np.testing.assert_array_equal(law.law_table(Dmt(0.0)), law.law_table(Hertz()))
+    assert Jkr.of(asperity_of(PlainSurface(energy=0.0)), 1e-9) == Hertz()
 
 
 def test_negligible_stretch_keeps_no_branches():
-    table = law.law_table(1e-5)
+    table = law.law_table(Jkr(1e-5))
     assert law.branch_length(table) == 0
     assert law.law_value(table, 3.0, -math.inf) == law.law_value(table, 3.0, 3.0)
     # what is skipped is below the table's own error
@@ -163,15 +167,15 @@ def test_negligible_stretch_keeps_no_branches():
 
 
 def test_tables_are_shared_and_protected():
-    assert law.law_table(0.2219) is law.law_table(0.2219)
+    assert law.law_table(Jkr(0.2219)) is law.law_table(Jkr(0.2219))
     with pytest.raises(ValueError, match="read-only"):
-        law.law_table(0.2219)[0] = 1.0
+        law.law_table(Jkr(0.2219))[0] = 1.0
 
 
 def test_asperities_that_stretch_far_hold_beyond_the_widest_gap():
     """What is joined within the tables pulls until it lets go, however wide the gap is by then."""
     surface = surface_with(5.0)
-    table = law.law_table(5.0)
+    table = law.law_table(Jkr(5.0))
     for gap in (12.9, 13.0, 13.1):
         exact = line_force(gap * surface.roughness, (gap - 8.5) * surface.roughness, RADIUS, WIDTH, surface)
         assert law.law_value(table, gap, 8.5)[0] == pytest.approx(

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize, special
 
-from gearidae.contact.jkr import ADHESION_LOSS, asperity_of
+from gearidae.contact.asperities.jkr import JOINING
 from gearidae.contact.rough import (
     adhesion_loss_per_asperity,
     maximum_tension,
     rough_pressure,
     rough_pressure_slopes,
 )
+from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from reference import heights as brute
 
@@ -130,11 +131,9 @@ def test_adhesion_loss_is_the_work_of_stretching(silicon):
     t = np.polynomial.Polynomial
     load, displacement = t([0, 0, 0, -6, 0, 0, 1]) / 9, t([0, -4, 0, 0, 1]) / 3
     work = (load * displacement.deriv()).integ()
-    assert -(work(4 ** (1 / 3)) - work(1.0)) == pytest.approx(ADHESION_LOSS, rel=1e-15, abs=0)
-    assert pytest.approx(0.93550, abs=5e-6) == ADHESION_LOSS
-    assert adhesion_loss_per_asperity(silicon) == pytest.approx(
-        ADHESION_LOSS * tip.pull_off * tip.stretch_limit
-    )
+    assert -(work(4 ** (1 / 3)) - work(1.0)) == pytest.approx(JOINING, rel=1e-15, abs=0)
+    assert pytest.approx(0.93550, abs=5e-6) == JOINING
+    assert adhesion_loss_per_asperity(silicon) == pytest.approx(JOINING * tip.pull_off * tip.stretch_limit)
 
 
 @pytest.mark.parametrize("lowest", [-1.0, 1.5])

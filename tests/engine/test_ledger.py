@@ -11,7 +11,7 @@ import pytest
 import gearidae as gd
 from gearidae import engine
 from gearidae.contact import asperity_of
-from gearidae.contact.jkr import ADHESION_LOSS, S_FOLD, jkr_root
+from gearidae.contact.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
 from gearidae.engine.energy import balance as ledger_kernel
@@ -46,7 +46,7 @@ def numbers(surface, width, radius):
     """Asperities per psi, and the energy that one of them loses in joining [J]."""
     tip = asperity_of(surface)
     count = surface.asperity_density * width * np.sqrt(2 * radius * surface.roughness)
-    return count, ADHESION_LOSS * tip.pull_off * tip.stretch_limit
+    return count, JOINING * tip.pull_off * tip.stretch_limit
 
 
 # -- formulas --------------------------------------------------------------------------------------------------------
@@ -220,7 +220,7 @@ def walk(gap, limit, energy):
         delta = limit * (e**2 - 1)
         stored[k] = np.sum(0.5 * (high - low) * w * 2 * limit * e * energy(delta) * psi(g + delta))
         # what a closing contact joins is booked at its turning point
-        stored[k] += ADHESION_LOSS * (tail(g) - tail(joined)) if g < joined else 0.0
+        stored[k] += JOINING * (tail(g) - tail(joined)) if g < joined else 0.0
     return stored, lost
 
 

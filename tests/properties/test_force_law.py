@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from gearidae.contact.asperities.hertz import Hertz
+from gearidae.contact.asperities.jkr import Jkr
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import law_table, law_value
 from gearidae.contact.line import line_force
@@ -24,7 +26,7 @@ turns = st.lists(st.floats(-6.0, 9.0), min_size=2, max_size=6)
 
 def walk(limit, gaps):
     """Force and slope along a path, the joined height followed point by point."""
-    table, joined = law_table(limit), gaps[0]
+    table, joined = law_table(Jkr(limit)), gaps[0]
     out = []
     for gap in gaps:
         joined = joined_height(joined, gap, limit)
@@ -46,7 +48,7 @@ def test_force_is_continuous_through_every_branch(limit, turning, share, place):
     near = walk(limit, np.array([*turning, at - step, at]))[0][-2:]
     there = walk(limit, np.array([*turning, at, at + step]))[0][-2:]
     back = walk(limit, np.array([*turning, at, at - step]))[0][-2:]
-    pushes = law_value(law_table(0.0), at, at)[
+    pushes = law_value(law_table(Hertz()), at, at)[
         0
     ]  # without adhesion: what the pull takes away may leave little
     size = pushes + np.abs([*near, *there, *back]).max()
@@ -59,7 +61,7 @@ def test_force_is_continuous_through_every_branch(limit, turning, share, place):
 @given(gap=st.floats(-10.0, 6.0), limit=st.sampled_from([0.0, 0.001, 0.01, 0.03]))
 def test_loading_rises_steadily_where_adhesion_is_weak(gap, limit):
     """Adhesion pulls only where H Dc is of order one: below a tenth of that the approach is met by rising force."""
-    table = law_table(limit)
+    table = law_table(Jkr(limit) if limit else Hertz())
     near = min(gap, 0.1 / limit) if limit else gap
     assert law_value(table, near, near)[1] < 0.0
     assert law_value(table, near - 0.01, near - 0.01)[0] > law_value(table, near, near)[0] > 0.0
@@ -94,7 +96,7 @@ def test_adhesion_energy_of_one_asperity():
 @given(limit=limits, deepest=st.floats(-4.0, 6.0))
 def test_a_full_loop_loses_exactly_the_adhesion_energy(limit, deepest):
     """0.93550 Pc dc for every asperity higher than the smallest gap, however the gap got there."""
-    table = law_table(limit)
+    table = law_table(Jkr(limit))
     edges = np.array([deepest, deepest + limit, *np.arange(deepest + limit + 0.25, 13.0, 0.25), 13.0])
     x, w = np.polynomial.legendre.leggauss(24)
 

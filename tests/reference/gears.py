@@ -11,8 +11,8 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from gearidae.contact.jkr import asperity_of
 from gearidae.contact.line import line_force
+from gearidae.contact.tip import asperity_of
 from gearidae.mesh import curvature_radii, separation
 
 

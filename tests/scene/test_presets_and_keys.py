@@ -14,7 +14,7 @@ CONTRACT = {
     "face_width",
     "mesh": "backlash tip_relief_radius damping static_error static_error.order static_error.amplitude "
     "static_error.phase",
-    "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness",
+    "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range",
     "coating": "sam_fraction energy",
     "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase",
     "load": "torque harmonic drag schedule harmonic.amplitude harmonic.frequency harmonic.phase",

@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 import gearidae
-from gearidae.contact.jkr import tabor_parameter, tabor_regime
+from gearidae.contact.tip import tabor_parameter, tabor_regime
 from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
 """Physics of one contact, plain numbers in SI units in and out.
 
-`jkr_load` is one asperity, `rough_pressure` two rough planes, `line_force` two teeth whose asperities alone give way,
-`elastic_line_force` two teeth whose bodies give way too. A surface is anything with the properties of `Surface`, such
-as ``scene.surface`` (bare) or ``scene.coated_surface``.
+`asperity` is the law of one asperity (`register` adds another), `rough_pressure` two rough planes, `line_force` two
+teeth whose asperities alone give way, `elastic_line_force` two teeth whose bodies give way too. A surface is anything
+with the properties of `Surface`, such as ``scene.surface`` (bare) or ``scene.coated_surface``.
 
 Names are loaded on first use, so that a caller of one law does not pay for the others.
 """
@@ -14,23 +14,21 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from gearidae.contact.asperities import (
+        AsperityLaw,
+        asperity,
+        asperity_load,
+        law_names,
+        register,
+        unregister,
+    )
+    from gearidae.contact.asperities.jkr import jkr_load, jkr_slope
     from gearidae.contact.bulk import bulk_influence
     from gearidae.contact.elastic import (
         ElasticCurve,
         ElasticFoldError,
         elastic_line_curve,
         elastic_line_force,
-    )
-    from gearidae.contact.jkr import (
-        Asperity,
-        Surface,
-        asperity_load,
-        asperity_of,
-        contact_modulus,
-        jkr_load,
-        jkr_slope,
-        tabor_parameter,
-        tabor_regime,
     )
     from gearidae.contact.line import line_force
     from gearidae.contact.rough import (
@@ -39,13 +37,23 @@ if TYPE_CHECKING:
         rough_pressure,
         rough_pressure_slopes,
     )
+    from gearidae.contact.tip import (
+        Asperity,
+        Surface,
+        asperity_of,
+        contact_modulus,
+        tabor_parameter,
+        tabor_regime,
+    )
 
 __all__ = [
     "Asperity",
+    "AsperityLaw",
     "ElasticCurve",
     "ElasticFoldError",
     "Surface",
     "adhesion_loss_per_asperity",
+    "asperity",
     "asperity_load",
     "asperity_of",
     "bulk_influence",
@@ -54,34 +62,42 @@ __all__ = [
     "elastic_line_force",
     "jkr_load",
     "jkr_slope",
+    "law_names",
     "line_force",
     "maximum_tension",
+    "register",
     "rough_pressure",
     "rough_pressure_slopes",
     "tabor_parameter",
     "tabor_regime",
+    "unregister",
 ]
 
 _HOME = {
-    "Asperity": "jkr",
+    "Asperity": "tip",
+    "AsperityLaw": "asperities",
     "ElasticCurve": "elastic",
     "ElasticFoldError": "elastic",
-    "Surface": "jkr",
+    "Surface": "tip",
     "adhesion_loss_per_asperity": "rough",
-    "asperity_load": "jkr",
-    "asperity_of": "jkr",
+    "asperity": "asperities",
+    "asperity_load": "asperities",
+    "asperity_of": "tip",
     "bulk_influence": "bulk",
-    "contact_modulus": "jkr",
+    "contact_modulus": "tip",
     "elastic_line_curve": "elastic",
     "elastic_line_force": "elastic",
-    "jkr_load": "jkr",
-    "jkr_slope": "jkr",
+    "jkr_load": "asperities.jkr",
+    "jkr_slope": "asperities.jkr",
+    "law_names": "asperities",
     "line_force": "line",
     "maximum_tension": "rough",
+    "register": "asperities",
     "rough_pressure": "rough",
     "rough_pressure_slopes": "rough",
-    "tabor_parameter": "jkr",
-    "tabor_regime": "jkr",
+    "tabor_parameter": "tip",
+    "tabor_regime": "tip",
+    "unregister": "asperities",
 }
 
 __getattr__, __dir__ = lazy_names(globals(), _HOME)

@@ -6,9 +6,8 @@ At every node of a `LineGrid` the mean gap is that of the rigid shapes plus the 
 
     h_i = \frac{x_i^2}{2R} + g + \sum_k K_{ik}\, p(h_k, S_k), \qquad W = \sum_i w_i\, p(h_i, S_i),
 
-and each node remembers the height zeta above which its asperities are joined, a play operator:
-``zeta = min(max(zeta, h - dc), h)``, S = h - zeta.
-
+and each node remembers the height zeta above which its asperities are joined, a play operator: S = h - zeta lies
+between the distances at which an asperity joins and lets go.
 The rigid gap g is moved in small steps. A step counts only if its solution lies where the tangent of the last one
 pointed and is stable (``det(I - K dp/dh) > 0``). Where no step however small does, adhesion has outgrown the
 stiffness of the bodies: the static curve folds back, and a real contact would jump. That is reported, not crossed.
@@ -30,7 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearidae.contact.bulk import LineGrid, line_grid
 from gearidae.contact.heights import Heights, heights_of, normal_density, normal_density_slope
-from gearidae.contact.jkr import AsperityLaw, Surface, contact_modulus
+from gearidae.contact.tip import Surface, contact_modulus
 from gearidae.errors import SceneError, SolverError
 
 __all__ = ["ElasticCurve", "ElasticFoldError", "elastic_grid", "elastic_line_curve", "elastic_line_force"]
@@ -108,7 +107,7 @@ def elastic_line_force(
     width: float,
     surface: Surface,
     *,
-    asperity: AsperityLaw = "jkr",
+    asperity: str = "jkr",
     coated_surface: Surface | None = None,
     sam_fraction: float = 0.0,
     nodes: int = 24,
@@ -128,8 +127,8 @@ def elastic_line_force(
         Face width L [m].
     surface : Surface
         Elastic constants, energy and roughness (SI); its modulus is the bodies' too.
-    asperity : {"jkr", "dmt", "hertz"}, optional
-        Law of one asperity.
+    asperity : str, optional
+        Name of the law of one asperity: ``jkr``, ``dmt``, ``hertz`` or another that is registered.
     coated_surface : Surface, optional
         The same under a coating, if a share of the interface is covered.
     sam_fraction : float, optional
@@ -169,7 +168,7 @@ def elastic_line_curve(
     width: float,
     surface: Surface,
     *,
-    asperity: AsperityLaw = "jkr",
+    asperity: str = "jkr",
     coated_surface: Surface | None = None,
     sam_fraction: float = 0.0,
     nodes: int = 24,
@@ -206,7 +205,7 @@ def elastic_grid(
     width: float,
     surface: Surface,
     *,
-    asperity: AsperityLaw = "jkr",
+    asperity: str = "jkr",
     coated_surface: Surface | None = None,
     sam_fraction: float = 0.0,
     nodes: int = 24,
@@ -242,7 +241,7 @@ def _fitted_grid(
         if not 0.0 < value < math.inf:
             raise SceneError(key, value, "must be a positive number of metres")
     modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
-    tail = _TAIL * layer.roughness + layer.stretch_limit
+    tail = _TAIL * layer.roughness + layer.reach
     least = math.sqrt(2.0 * radius * tail)
     reach = math.sqrt(2.0 * radius * (tail + max(-lowest_gap, 0.0)))
     # Bodies that give way leave the contact narrower than the rigid shapes would: see on a coarse grid how much.
@@ -267,23 +266,24 @@ class _RoughLayer:
     """What lies between the bodies: shares of asperities that adhere differently, each with its own history."""
 
     roughness: float
-    stretch_limit: float
+    reach: float
     parts: tuple[tuple[float, Heights], ...]
 
     def far_apart(self, gap: Array) -> Array:
         """Joined heights of a contact with nothing joined, shape (parts, n)."""
-        return np.stack([gap - part.stretch_limit * self.roughness for _, part in self.parts])
+        return np.stack([gap - part.law.detach * self.roughness for _, part in self.parts])
 
     def advance(self, gap: Array, joined: Array) -> Array:
         """Joined heights after a monotone motion to `gap`: the play operator."""
-        return np.minimum(np.maximum(joined, self.far_apart(gap)), gap)
+        highest = np.stack([gap - part.law.join * self.roughness for _, part in self.parts])
+        return np.minimum(np.maximum(joined, self.far_apart(gap)), highest)
 
     def pressure(self, gap: Array, joined: Array) -> Array:
         """Pressure after a monotone motion to `gap` [Pa]."""
         total = np.zeros_like(gap)
         stretch = gap - self.advance(gap, joined)
         for (unit, part), extension in zip(self.parts, stretch, strict=True):
-            S = np.minimum(extension / self.roughness, part.stretch_limit)
+            S = np.clip(extension / self.roughness, part.law.join, part.law.detach)
             total += unit * part.integral(normal_density, gap / self.roughness, S, decays_left=True)
         return total
 
@@ -292,19 +292,19 @@ class _RoughLayer:
         total = np.zeros_like(gap)
         H = gap / self.roughness
         for (unit, part), zeta in zip(self.parts, joined, strict=True):
-            extension = (gap - zeta) / self.roughness
-            S = np.clip(extension, 0.0, part.stretch_limit)
+            join, detach, extension = part.law.join, part.law.detach, (gap - zeta) / self.roughness
+            S = np.clip(extension, join, detach)
             total += unit * part.integral(normal_density_slope, H, S, decays_left=True)
-            if part.stretch_limit > 0.0:
+            if detach > join:
                 # An end of the range belongs to the motion that leaves it inwards; give it room for rounding.
-                room = 1e-9 * part.stretch_limit * (1.0 if opening else -1.0)
-                stretching = (extension > -room) & (extension < part.stretch_limit - room)
+                room = 1e-9 * (detach - join) * (1.0 if opening else -1.0)
+                stretching = (extension > join - room) & (extension < detach - room)
                 total += np.where(stretching, unit * part.edge_load(S) * normal_density(H - S), 0.0)
         return total / self.roughness
 
 
 def _rough_layer(
-    surface: Surface, asperity: AsperityLaw, coated_surface: Surface | None, sam_fraction: float
+    surface: Surface, asperity: str, coated_surface: Surface | None, sam_fraction: float
 ) -> _RoughLayer:
     if not 0.0 <= sam_fraction <= 1.0:
         raise SceneError("coating.sam_fraction", sam_fraction, "must lie in 0..1")
@@ -322,7 +322,7 @@ def _rough_layer(
     parts = [(share, heights_of(which, asperity)) for share, which in shares if share > 0.0]
     return _RoughLayer(
         roughness=surface.roughness,
-        stretch_limit=max(part.stretch_limit for _, part in parts) * surface.roughness,
+        reach=max(part.law.detach for _, part in parts) * surface.roughness,
         parts=tuple((share * surface.asperity_density * part.unit_load, part) for share, part in parts),
     )
 
@@ -346,7 +346,7 @@ class _Contact:
             np.full((path.size, n), np.nan),
             np.full((path.size, n), np.nan),
         )
-        far = _FAR * self.layer.roughness + self.layer.stretch_limit
+        far = _FAR * self.layer.roughness + self.layer.reach
         here = max(far, float(path[0]))
         gap = here + self.grid.x**2 / (2.0 * self.radius)
         joined = self.layer.far_apart(gap)

@@ -1,15 +1,16 @@
 r"""The asperities' load added up over their heights.
 
 With lengths in units of the roughness and loads in units of ``4/3 E* sqrt(beta) sigma^1.5`` (the Hertz load at a
-compression of one roughness), the three asperity laws read
+compression of one roughness), a law of `gearidae.contact.asperities` gives the load P of an asperity at its
+displacement, and heights add it up to
 
 .. math::
 
-    P_\mathrm{JKR} = \tau^3(\tau^3 - 6k), \quad \Delta = \tau^4 - 4k\tau \ge -D_c; \qquad
-    P_\mathrm{DMT} = \tau^6 - 12k^2, \quad P_\mathrm{Hertz} = \tau^6, \quad \Delta = \tau^4 \ge 0,
+    \int_{-S}^\infty P(\Delta)\,K(H + \Delta)\,\mathrm{d}\Delta ,
 
-with :math:`k = (D_c/3)^{3/4}`. Integrated over :math:`\tau` the square-root singularity at the JKR fold
-:math:`\tau^3 = k` is gone, and no adhesion at all is just k = 0.
+with K the density of heights, and S the extension of the asperity that is stretched most. An approaching contact has
+S = `join`; one that parts stretches its asperities up to S = `detach`. The law lays the quadrature out, so that the
+square root at the end of its stable branch does no harm.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.contact.jkr import ASPERITY_LAWS, S_FOLD, AsperityLaw, Surface, asperity_of, jkr_root
+from gearidae.contact.asperities import AsperityLaw, law_of
+from gearidae.contact.tip import Surface, asperity_of
 from gearidae.errors import SceneError
 
 __all__ = ["Heights", "checked_gap_and_stretch", "heights_of", "normal_density", "normal_density_slope"]
@@ -33,7 +35,8 @@ Kernel: TypeAlias = Callable[[Array], Array]
 # Nothing counts beyond 9.5 standard deviations, nor 45 e-foldings past the first asperity that joins.
 _DEEP, _EFOLDINGS = -9.5, 45.0
 _X, _W = np.polynomial.legendre.leggauss(80)
-_X, _W = 0.5 * (1.0 + _X), 0.5 * _W
+# Crowded quadratically to the right: for panels with the kernel's bend at 0 near their end.
+_X_RIGHT, _W_RIGHT = 0.5 * (1.0 + _X) * (3.0 - _X) - 1.0, _W * (1.0 - _X)
 _CHUNK = 4096
 
 
@@ -47,18 +50,12 @@ class Heights:
         Unit of length [m].
     unit_load : float
         Unit of load, ``4/3 E* sqrt(beta) sigma^1.5`` [N].
-    adhesion : float
-        The k of the asperity law; 0 without adhesion.
-    stretch_limit : float
-        How far an asperity stretches before it lets go, in roughnesses: ``dc/sigma`` for JKR, else 0.
-    law : {"jkr", "dmt", "hertz"}
-        The asperity law.
+    law : AsperityLaw
+        The asperity law in these units.
     """
 
     roughness: float
     unit_load: float
-    adhesion: float
-    stretch_limit: float
     law: AsperityLaw
 
     def integral(self, kernel: Kernel, gap: Array, stretch: Array, *, decays_left: bool) -> Array:
@@ -69,7 +66,7 @@ class Heights:
         kernel : callable
             K, elementwise; decays like ``exp(-z**2/2)`` to the right.
         gap, stretch : ndarray, one shape
-            H and S in roughnesses, 0 <= S <= `stretch_limit`.
+            H and S in roughnesses, S from where an asperity joins to where it lets go.
         decays_left : bool
             Whether K decays the same way to the left (if not: algebraically).
 
@@ -88,56 +85,28 @@ class Heights:
 
     def edge_load(self, stretch: Array) -> Array:
         """Load of the asperity that is stretched most, in units of `unit_load`."""
-        return self._load(self._root(-stretch))
+        return self.law.load(-stretch)
 
     def _integral(self, kernel: Kernel, gap: Array, stretch: Array, decays_left: bool) -> Array:
         first = gap - stretch
-        middle = np.maximum(first, _DEEP)
-        last = np.sqrt(np.maximum(middle, 0.0) ** 2 + 2.0 * _EFOLDINGS)
-        upper = self._root(last - gap)
-        # Where the window starts at the first joined asperity take its root from the stretch: the gap has been
-        # rounded into the difference.
-        lower = self._root(np.where(first < _DEEP, _DEEP - gap, -stretch))
-        total = self._panel(kernel, gap, lower, upper, _X, _W)
         deep = first < _DEEP
+        last = np.sqrt(np.maximum(first, 0.0) ** 2 + 2.0 * _EFOLDINGS)
+        # Where the window starts at the first joined asperity take its displacement from the stretch: the gap has been
+        # rounded into the difference.
+        lower = np.where(deep, _DEEP - gap, -stretch)
+        total = self._panel(kernel, gap, lower, last - gap, _X, _W)
         if not decays_left and deep.any():
-            # Crowded quadratically to the right, where the kernel's bend at 0 is near the end of this panel.
-            total[deep] += self._panel(
-                kernel,
-                gap[deep],
-                self._root(-stretch[deep]),
-                lower[deep],
-                _X * (2.0 - _X),
-                2.0 * _W * (1.0 - _X),
-            )
+            total[deep] += self._panel(kernel, gap[deep], -stretch[deep], lower[deep], _X_RIGHT, _W_RIGHT)
         return total
 
     def _panel(
         self, kernel: Kernel, gap: Array, lower: Array, upper: Array, nodes: Array, weights: Array
     ) -> Array:
-        root = lower[:, None] + (upper - lower)[:, None] * nodes
-        if self.law == "jkr":
-            displacement = root * (root**3 - 4.0 * self.adhesion)
-            rate = 4.0 * (root**3 - self.adhesion)
-        else:
-            displacement = root**4
-            rate = 4.0 * root**3
-        integrand = self._load(root) * rate * kernel(gap[:, None] + displacement)
-        return np.asarray((upper - lower) * (integrand @ weights))
-
-    def _load(self, root: Array) -> Array:
-        cube = root**3
-        if self.law == "jkr":
-            return cube * (cube - 6.0 * self.adhesion)
-        return cube**2 - 12.0 * self.adhesion**2
-
-    def _root(self, displacement: Array) -> Array:
-        if self.stretch_limit > 0.0:
-            return jkr_root(displacement / self.stretch_limit) * (math.cbrt(self.adhesion) / S_FOLD)
-        return np.maximum(displacement, 0.0) ** 0.25
+        displacement, load = self.law.nodes(lower, upper, nodes, weights)
+        return np.asarray((load * kernel(gap[:, None] + displacement)).sum(axis=-1))
 
 
-def heights_of(surface: Surface, law: AsperityLaw) -> Heights:
+def heights_of(surface: Surface, law: str) -> Heights:
     """Return the asperities of a surface under a law, checked and in units of the roughness.
 
     Raises
@@ -145,27 +114,20 @@ def heights_of(surface: Surface, law: AsperityLaw) -> Heights:
     SceneError
         If the law is unknown, or a property of the surface is not a positive number (the energy may be zero).
     """
-    if law not in ASPERITY_LAWS:
-        raise SceneError("contact.asperity", law, "must be one of " + ", ".join(ASPERITY_LAWS))
     for key in ("youngs_modulus", "asperity_density", "asperity_radius", "roughness"):
         value = getattr(surface, key)
         if not 0.0 < value < math.inf:
             raise SceneError(f"surface.{key}", value, "must be a positive number")
     if not 0.0 <= surface.energy < math.inf:
         raise SceneError("surface.energy", surface.energy, "must be zero or a positive number")
-    tip = asperity_of(surface)
-    reach = tip.stretch_limit / surface.roughness
-    return Heights(
-        roughness=surface.roughness,
-        unit_load=tip.hertz_factor * surface.roughness**1.5,
-        adhesion=0.0 if law == "hertz" else (reach / 3.0) ** 0.75,
-        stretch_limit=reach if law == "jkr" else 0.0,
-        law=law,
-    )
+    unit_load = asperity_of(surface).hertz_factor * surface.roughness**1.5
+    return Heights(surface.roughness, unit_load, law_of(law, surface))
 
 
 def checked_gap_and_stretch(gap: ArrayLike, stretch: ArrayLike, heights: Heights) -> tuple[Array, Array]:
-    """Broadcast gap and stretch [m] to one shape and return them in roughnesses, the stretch within its limit.
+    """Broadcast gap and stretch [m] to one shape and return them in roughnesses.
+
+    A stretch below the distance of joining counts as that, one above the distance of letting go as that.
 
     Raises
     ------
@@ -177,7 +139,7 @@ def checked_gap_and_stretch(gap: ArrayLike, stretch: ArrayLike, heights: Heights
         raise SceneError("gap", h[~np.isfinite(h)].flat[0], "must be a finite number of metres")
     if not np.all(s >= 0.0):
         raise SceneError("stretch", s[~(s >= 0.0)].flat[0], "must be zero or more metres")
-    return h / heights.roughness, np.minimum(s / heights.roughness, heights.stretch_limit)
+    return h / heights.roughness, np.clip(s / heights.roughness, heights.law.join, heights.law.detach)
 
 
 def normal_density(z: Array) -> Array:

@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearidae.contact.heights import checked_gap_and_stretch, heights_of
-from gearidae.contact.jkr import AsperityLaw, Surface
 from gearidae.contact.psi import psi
+from gearidae.contact.tip import Surface
 from gearidae.errors import SceneError
 
 __all__ = ["line_force"]
@@ -37,7 +37,7 @@ def line_force(
     radius: float,
     width: float,
     surface: Surface,
-    asperity: AsperityLaw = "jkr",
+    asperity: str = "jkr",
 ) -> NDArray[np.float64]:
     """Force between two rough teeth without bulk deflection (Teodorescu et al. 2009, Eq. 15).
 
@@ -46,16 +46,17 @@ def line_force(
     gap : array_like
         Smallest mean gap g between the rigid shapes [m]; negative in compression.
     stretch : array_like
-        Extension S of the most stretched asperity still in contact [m]; broadcasts against `gap`. More than the
-        stretch limit counts as the limit; "dmt" and "hertz" asperities ignore it.
+        Extension S of the most stretched asperity still in contact [m]; broadcasts against `gap`. Less than the
+        distance at which an asperity joins counts as that, more than that at which it lets go as that; "dmt" and
+        "hertz" asperities ignore it.
     radius : float
         Reduced radius R of the two profiles, ``r1 r2/(r1 + r2)`` [m].
     width : float
         Face width L [m].
     surface : Surface
         Elastic constants, energy and roughness (SI).
-    asperity : {"jkr", "dmt", "hertz"}, optional
-        Law of one asperity.
+    asperity : str, optional
+        Name of the law of one asperity: ``jkr``, ``dmt``, ``hertz`` or another that is registered.
 
     Returns
     -------

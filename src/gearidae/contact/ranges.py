@@ -1,4 +1,4 @@
-"""Ranges in gap and stretch that the tabulated force law is made for; here, without what compiles it, for checks of a scene."""
+"""Ranges in gap and stretch that the tabulated force law is made for, without what compiles it."""
 
 from __future__ import annotations
 

@@ -6,8 +6,9 @@ r"""Two rough planes: Fuller and Tabor's adhesion of Gaussian asperities, with a
               \mathrm{d}\delta
 
 for asperities of density N and heights of standard deviation sigma at a mean gap h, each with the load P at its
-displacement delta. S is how far the most stretched asperity still in contact is extended: 0 while the surfaces approach
-(an asperity joins when it touches), up to the stretch limit dc while they part (it lets go there).
+displacement delta. S is how far the most stretched asperity still in contact is extended: to the distance of joining
+while the surfaces approach (0 for laws whose asperities join when they touch), up to the distance of letting go while
+they part (dc for JKR).
 
 References
 ----------
@@ -25,13 +26,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize
 
+from gearidae.contact.asperities import law_of_tip
 from gearidae.contact.heights import (
     checked_gap_and_stretch,
     heights_of,
     normal_density,
     normal_density_slope,
 )
-from gearidae.contact.jkr import ADHESION_LOSS, AsperityLaw, Surface, asperity_of
+from gearidae.contact.tip import Surface, asperity_of
 
 __all__ = [
     "MaximumTension",
@@ -52,7 +54,7 @@ class MaximumTension(NamedTuple):
 
 
 def rough_pressure(
-    gap: ArrayLike, stretch: ArrayLike, surface: Surface, asperity: AsperityLaw = "jkr"
+    gap: ArrayLike, stretch: ArrayLike, surface: Surface, asperity: str = "jkr"
 ) -> NDArray[np.float64]:
     """Pressure between two rough planes (Teodorescu et al. 2009, Eqs. 9-12).
 
@@ -61,13 +63,13 @@ def rough_pressure(
     gap : array_like
         Mean gap h [m].
     stretch : array_like
-        Extension S of the most stretched asperity still in contact [m]; broadcasts against `gap`. More than the
-        stretch limit counts as the limit (so ``numpy.inf`` is the curve of parting); "dmt" and "hertz" asperities do
-        not stretch, and ignore it.
+        Extension S of the most stretched asperity still in contact [m]; broadcasts against `gap`. Less than the
+        distance at which an asperity joins counts as that, more than that at which it lets go as that (so that 0 is the
+        curve of approach and ``numpy.inf`` that of parting); "dmt" and "hertz" asperities ignore it.
     surface : Surface
         Elastic constants, energy and roughness (SI).
-    asperity : {"jkr", "dmt", "hertz"}, optional
-        Law of one asperity.
+    asperity : str, optional
+        Name of the law of one asperity: ``jkr``, ``dmt``, ``hertz`` or another that is registered.
 
     Returns
     -------
@@ -87,7 +89,7 @@ def rough_pressure(
 
 
 def rough_pressure_slopes(
-    gap: ArrayLike, stretch: ArrayLike, surface: Surface, asperity: AsperityLaw = "jkr"
+    gap: ArrayLike, stretch: ArrayLike, surface: Surface, asperity: str = "jkr"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Partial derivatives of `rough_pressure` with respect to gap and stretch.
 
@@ -113,13 +115,13 @@ def rough_pressure_slopes(
     h, s = checked_gap_and_stretch(gap, stretch, heights)
     unit = surface.asperity_density * heights.unit_load / surface.roughness
     gap_slope = unit * heights.integral(normal_density_slope, h, s, decays_left=True)
-    if heights.stretch_limit == 0.0:
+    if heights.law.detach == heights.law.join:
         return gap_slope, np.zeros_like(gap_slope)
     return gap_slope, unit * heights.edge_load(s) * normal_density(h - s)
 
 
 def maximum_tension(
-    surface: Surface, asperity: AsperityLaw = "jkr", *, motion: Literal["parting", "approaching"] = "parting"
+    surface: Surface, asperity: str = "jkr", *, motion: Literal["parting", "approaching"] = "parting"
 ) -> MaximumTension:
     """Largest tension two rough planes can carry, and the gap at which they do.
 
@@ -127,8 +129,8 @@ def maximum_tension(
     ----------
     surface : Surface
         Elastic constants, energy and roughness (SI).
-    asperity : {"jkr", "dmt", "hertz"}, optional
-        Law of one asperity.
+    asperity : str, optional
+        Name of the law of one asperity: ``jkr``, ``dmt``, ``hertz`` or another that is registered.
     motion : {"parting", "approaching"}, optional
         Asperities stretched to their limit, or not stretched at all.
 
@@ -143,9 +145,9 @@ def maximum_tension(
         If the surface or the law is not valid.
     """
     heights = heights_of(surface, asperity)
-    if heights.adhesion == 0.0:
+    if heights.law.pull_off == 0.0:
         return MaximumTension(0.0, math.nan)
-    stretch = heights.stretch_limit if motion == "parting" else 0.0
+    stretch = heights.law.detach if motion == "parting" else heights.law.join
 
     def pressure(gap: NDArray[np.float64]) -> NDArray[np.float64]:
         return heights.integral(normal_density, gap, np.full_like(gap, stretch), decays_left=True)
@@ -164,18 +166,25 @@ def maximum_tension(
     return MaximumTension(-unit * float(found.fun), surface.roughness * float(found.x))
 
 
-def adhesion_loss_per_asperity(surface: Surface) -> float:
-    """Energy lost each time one JKR asperity joins at zero displacement and lets go at its stretch limit.
+def adhesion_loss_per_asperity(surface: Surface, asperity: str = "jkr") -> float:
+    """Energy lost each time one asperity joins and lets go again.
 
     Parameters
     ----------
     surface : Surface
         Elastic constants, energy and tip radius (SI).
+    asperity : str, optional
+        Name of the law of one asperity.
 
     Returns
     -------
     float
-        ``4/45 (1 + 6 * 4^(1/3)) P_c dc`` [J], minus the integral of the load over the stretch.
+        Minus the integral of the load from letting go to joining [J]; for JKR ``4/45 (1 + 6 * 4^(1/3)) P_c dc``.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
     """
     tip = asperity_of(surface)
-    return ADHESION_LOSS * tip.pull_off * tip.stretch_limit
+    return tip.hertz_factor * law_of_tip(asperity, tip, 1.0).loss

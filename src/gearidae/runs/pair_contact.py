@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 
-from gearidae.contact.jkr import AsperityLaw, asperity_of
 from gearidae.contact.line import line_force
+from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 
@@ -57,7 +57,7 @@ class PairContact:
     """
 
     parts: tuple[tuple[float, Surface], ...]
-    law: AsperityLaw
+    law: str
     radius: float
     width: float
 

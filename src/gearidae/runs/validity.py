@@ -16,7 +16,6 @@ from gearidae.contact.asperity_statistics import (
     half_spacing,
     zero_load_radius,
 )
-from gearidae.contact.jkr import tabor_parameter
 from gearidae.contact.surroundings import (
     AIR_MEAN_FREE_PATH,
     ROOM_TEMPERATURE,
@@ -24,6 +23,7 @@ from gearidae.contact.surroundings import (
     film_damping,
     thermal_amplitude,
 )
+from gearidae.contact.tip import tabor_parameter
 from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
 from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.runs.validity_row import ValidityRow, rows_to_json

@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, did_you_mean, shorten
+from gearidae.scene.named import Named
 from gearidae.scene.quantity import Count, Quantity
 
 __all__ = ["KeyInfo", "find_key", "keys_of", "put"]
@@ -149,9 +150,12 @@ def _table(annotation: Any) -> tuple[type[Group] | None, bool]:
 
 def _describe(key: str, field: FieldInfo) -> KeyInfo:
     number = next((one for one in field.metadata if isinstance(one, (Quantity, Count))), None)
+    named = next((one for one in field.metadata if isinstance(one, Named)), None)
     choices = [one for one in get_args(field.annotation) if isinstance(one, str)]
     if number is not None:
         allowed = number.allowed().removeprefix("must be ")
+    elif named is not None:
+        allowed = named.allowed().removeprefix("must be ")
     elif choices:
         allowed = "one of " + ", ".join(choices)
     else:

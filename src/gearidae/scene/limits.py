@@ -6,7 +6,7 @@ import math
 import sys
 from typing import TYPE_CHECKING, Final
 
-from gearidae.contact.jkr import asperity_of
+from gearidae.contact.asperities import law_of
 from gearidae.contact.ranges import GAP_LOW, STRETCH_HIGH
 from gearidae.errors import SceneError
 
@@ -29,11 +29,9 @@ def check_stretch(scene: Scene) -> None:
     SceneError
         Naming ``surface.roughness``.
     """
-    if scene.contact.asperity != "jkr":  # no others stretch
-        return
-    fraction = scene.coating.sam_fraction
-    for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
-        limit = asperity_of(surface).stretch_limit / surface.roughness
+    for surface, share in scene.materials():
+        law = law_of(scene.contact.asperity, surface)
+        limit = law.detach - law.join
         if share > 0.0 and not limit <= STRETCH_HIGH:
             raise SceneError(
                 "surface.roughness",

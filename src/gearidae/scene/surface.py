@@ -6,7 +6,10 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
+from gearidae.contact.asperities import law_names
+from gearidae.contact.tip import INTERACTION_RANGE
 from gearidae.scene.group import Group
+from gearidae.scene.named import Named
 from gearidae.scene.quantity import Quantity
 
 __all__ = ["MATERIAL_NAMES", "Coating", "Contact", "Material", "Surface"]
@@ -32,6 +35,10 @@ class Surface(Group):
     )
     roughness: Annotated[float, Quantity(unit="m", at_least=1e-12, at_most=0.1, shown=("nm", -9))] = Field(
         description="rms height of the asperities, sigma"
+    )
+    interaction_range: Annotated[float, Quantity(unit="m", above=0, at_most=1e-6, shown=("nm", -9))] = Field(
+        default=INTERACTION_RANGE,
+        description="range of the adhesive forces, eps (equilibrium spacing of atoms); for maugis asperities",
     )
 
 
@@ -61,4 +68,4 @@ class Contact(Group):
     model: Literal["auto", "asperity", "elastic"] = Field(
         default="auto", description="asperity: teeth stay rigid; elastic: they deflect too; auto: as needed"
     )
-    asperity: Literal["jkr", "dmt", "hertz"] = Field(default="jkr", description="force law of one asperity")
+    asperity: Annotated[str, Named(law_names)] = Field(default="jkr", description="force law of one asperity")

@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from gearidae.contact.jkr import asperity_of
+from gearidae.contact.asperities import law_of
 from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_value
+from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.runs.estimates import resting_gap
@@ -185,8 +186,8 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
             asperity = asperity_of(surface)
             hertz = 4.0 / 3.0 * asperity.modulus * math.sqrt(surface.asperity_radius)
             scale = share * force_scale(roughness, hertz, surface.asperity_density, width)
-            limit = asperity.stretch_limit / roughness
-            laws[name] = MaterialLaw(scale, limit, law_table(limit, scene.contact.asperity))
+            law = law_of(scene.contact.asperity, surface)
+            laws[name] = MaterialLaw(scale, law.detach - law.join, law_table(law))
     return laws
 
 

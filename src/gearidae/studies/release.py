@@ -25,7 +25,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearidae.contact.jkr import asperity_of
+from gearidae.contact.asperities import law_of_tip
+from gearidae.contact.tip import asperity_of
 from gearidae.studies.equilibrium import leaving_radii, nearest_gap, pair_law, settled_gap
 
 if TYPE_CHECKING:
@@ -59,7 +60,8 @@ def holding_forces(scene: Scene, force: float, impacts: int) -> list[float]:
     assert scene.mesh is not None
     law, rho = pair_law(scene), scene.mesh.tip_relief_radius
     leaving, staying = leaving_radii(scene)
-    reach = _REACH * scene.surface.roughness + asperity_of(scene.surface).stretch_limit
+    law_of_one = law_of_tip(scene.contact.asperity, asperity_of(scene.surface), 1.0)  # in metres
+    reach = _REACH * scene.surface.roughness + law_of_one.detach
     ends = np.linspace(0.0, math.sqrt(2.0 * rho * reach), _STEPS + 1)[1:]
 
     def loading(gap: float) -> float:

@@ -19,8 +19,11 @@ with :math:`\partial U / \partial G = -q` while Z stays. At full stretch e is a 
 
     e(Z, S) = V(Z) + \int_S^D t(Z, S')\,dS'.
 
-An asperity that joins drops from nothing to :math:`E(0) = -0.93550\, P_c d_c`, and nothing more is lost when it lets
-go. A surface without stretch has no such drop: E is counted from touching, e = 0.
+An asperity that joins drops from nothing to :math:`E(0)` (for JKR :math:`-0.93550\, P_c d_c`), and nothing more is lost
+when it lets go. A surface without stretch has no such drop: E is counted from touching, e = 0.
+
+Asperities that join before they touch drop to :math:`E(-d_\mathrm{on})`. With Z and S as in `law` the same holds, where
+:math:`\Psi(Z)` counts the asperities above the height that Z stands for, :math:`Z - d_\mathrm{on}`.
 
 The integrals are taken over the polynomials of a law's own table, so that table and potential agree as closely as the
 table and the law. The potential has the law's layout: A in the place of the loading branch, V in that of t(Z, D), e in
@@ -34,11 +37,13 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
-from gearidae.contact.jkr import ADHESION_LOSS, AsperityLaw
-from gearidae.contact.kernels.law import (
+from gearidae.contact.asperities import AsperityLaw
+from gearidae.contact.kernels.densities import kernel_at_knots
+from gearidae.contact.kernels.evaluate import integrated_work, stretched_value
+from gearidae.contact.kernels.law import law_table, stretch_followed
+from gearidae.contact.kernels.layout import (
     DEGREE,
     GAP_HIGH,
     GAP_LOW,
@@ -54,39 +59,39 @@ from gearidae.contact.kernels.law import (
     MODE_INTEGRATED,
     MODE_TABLE,
     N_LOADING,
+    Floats,
     Kernel,
-    hermite_matrix,
-    integrated_value,
-    kernel_table,
-    law_table,
-    stretched_value,
 )
+from gearidae.contact.kernels.pieces import hermite_matrix, hermite_pieces
 
 __all__ = ["energy_table", "joining_energy", "number_table", "stretched_energy"]
-
-Floats = NDArray[np.float64]
 
 _GAUSS: Final = 16
 
 
-def joining_energy(stretch_limit: float) -> float:
+def joining_energy(law: AsperityLaw) -> float:
     """Energy that an asperity loses when it joins, in the unit of the force law times the roughness.
 
     Parameters
     ----------
-    stretch_limit : float
-        D = dc / sigma as the law's table has it: 0 where the surface has no hysteresis worth following.
+    law : AsperityLaw
+        In units of the roughness.
+
+    Returns
+    -------
+    float
+        0 where the surface has no hysteresis worth following.
     """
-    return ADHESION_LOSS * math.sqrt(3.0) * stretch_limit**2.5
+    return law.loss if stretch_followed(law) > 0.0 else 0.0
 
 
 @lru_cache(maxsize=32)
-def energy_table(stretch_limit: float, asperity: AsperityLaw = "jkr", kernel: Kernel = "line") -> Floats:
+def energy_table(law: AsperityLaw, kernel: Kernel = "line") -> Floats:
     """Tabulate the stored energy that goes with a force law.
 
     Parameters
     ----------
-    stretch_limit, asperity, kernel
+    law, kernel
         As for `gearidae.contact.kernels.law.law_table`.
 
     Returns
@@ -94,26 +99,38 @@ def energy_table(stretch_limit: float, asperity: AsperityLaw = "jkr", kernel: Ke
     ndarray, shape (n,)
         In the layout of a force law. Read-only, shared between callers.
     """
-    law = law_table(stretch_limit, asperity, kernel)
-    table = law.copy()
+    force = law_table(law, kernel)
+    table = force.copy()
     loading = slice(HEADER, HEADER + 8 * N_LOADING)
-    table[loading] = _potential(law[loading].reshape(-1, 8), GAP_LOW).ravel()
-    if law[H_STRETCH] > 0.0:
-        count, first = int(law[H_COUNT]), int(law[H_END])
-        end = law[first : first + 8 * count].reshape(-1, 8)
-        table[first : first + 8 * count] = _potential(end, law[H_LOW]).ravel()
-        if law[H_MODE] == MODE_TABLE:
-            _store_partial(law, end, table)
+    table[loading] = _potential(force[loading].reshape(-1, 8), GAP_LOW).ravel()
+    if force[H_STRETCH] > 0.0:
+        count, first = int(force[H_COUNT]), int(force[H_END])
+        end = force[first : first + 8 * count].reshape(-1, 8)
+        table[first : first + 8 * count] = _potential(end, force[H_LOW]).ravel()
+        if force[H_MODE] == MODE_TABLE:
+            _store_partial(force, end, table)
     table.setflags(write=False)
     return table
 
 
-@lru_cache(maxsize=2)
-def number_table(kernel: Kernel = "line") -> Floats:
-    """Tabulate Psi, the number of asperities above a height, laid out as a loading branch without a header."""
-    low, *body = kernel_table(kernel)
-    first = round((GAP_LOW - low) * KNOTS_PER_SIGMA)
-    table = _potential(np.array(body).reshape(-1, 8)[first:], GAP_LOW).ravel()
+@lru_cache(maxsize=8)
+def number_table(kernel: Kernel = "line", join: float = 0.0) -> Floats:
+    """Tabulate Psi, the number of asperities above a height, laid out as a loading branch without a header.
+
+    Parameters
+    ----------
+    kernel : {"line", "plane"}, optional
+        As for `gearidae.contact.kernels.law.law_table`.
+    join : float, optional
+        Distance at which asperities join, in roughnesses: the table is read at heights that are larger by that.
+
+    Returns
+    -------
+    ndarray, shape (8 * N_LOADING,)
+        Read-only, shared between callers.
+    """
+    knots = GAP_LOW + np.arange(N_LOADING + 1) / KNOTS_PER_SIGMA
+    table = _potential(hermite_pieces(knots, kernel_at_knots(kernel, knots - join)), GAP_LOW).ravel()
     table.setflags(write=False)
     return table
 
@@ -203,6 +220,6 @@ def stretched_energy(table: Floats, booked: float, gap: float, joined: float) ->
     if stretch <= 0.0:
         return booked, 0.0
     if stretch < limit and table[H_MODE] == MODE_INTEGRATED and joined < GAP_HIGH:
-        lifted, slope = integrated_value(table, joined, stretch, True)
-        return booked - lifted, -slope
+        work, slope = integrated_work(table, joined, stretch)
+        return booked - work, -slope
     return stretched_value(table, gap, joined)

@@ -84,11 +84,12 @@ def nodes_joining_loss(m: Model, k: int, y: Floats, gap: float) -> float:
     for material in range(MATERIALS):
         if m.scene.material[material].stretch_limit == 0.0:
             continue
-        joining, scale = m.scene.material[material].joining_energy, m.scene.material[material].force_scale
+        own = m.scene.material[material]
+        joining, scale, number = own.joining_energy, own.force_scale, own.number_at
         heights, booked = row(m, k, JOINED + material), row(m, k, BOOKED + material)
         for i in range(gaps.size):
             if gaps[i] < heights[i]:
-                more = joining * loading_value(m.tables, m.scene.number_at, gaps[i])[0] + booked[i]
+                more = joining * loading_value(m.tables, number, gaps[i])[0] + booked[i]
                 loss += scale * finer[i] * more
     return loss
 

@@ -72,4 +72,4 @@ def book_points(m: Model, k: int, material: int) -> None:
     joined, booked = row(m, k, JOINED + material), row(m, k, BOOKED + material)
     joining = m.scene.material[material].joining_energy
     for i in range(m.scene.points if joining != 0.0 else 0):
-        booked[i] = -joining * loading_value(m.tables, m.scene.number_at, joined[i])[0]
+        booked[i] = -joining * loading_value(m.tables, m.scene.material[material].number_at, joined[i])[0]

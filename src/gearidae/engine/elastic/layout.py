@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.contact.asperities import law_of
 from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_nodes
-from gearidae.contact.jkr import asperity_of, contact_modulus
 from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_table, law_value
+from gearidae.contact.tip import asperity_of, contact_modulus
 from gearidae.engine.elastic.rows import FINER, point_count
 from gearidae.scene import Scene
 
@@ -155,11 +156,9 @@ def node_grid(
 
 def _stretch(scene: Scene) -> float:
     """How far asperities stretch at most, in roughnesses."""
-    if scene.contact.asperity != "jkr":
-        return 0.0
     fraction = scene.coating.sam_fraction
     shares = ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
-    return max(asperity_of(s).stretch_limit / s.roughness for s, share in shares if share > 0.0)
+    return max(law_of(scene.contact.asperity, s).detach for s, share in shares if share > 0.0)
 
 
 def deepest_gap(scene: Scene, bounds: ContactBounds) -> float:
@@ -224,7 +223,7 @@ def _static(
         if share > 0.0:
             tip = asperity_of(surface)
             # a copy: numba compiles everything a second time for arrays that are read-only
-            table = law_table(tip.stretch_limit / sigma, scene.contact.asperity, "plane").copy()
+            table = law_table(law_of(scene.contact.asperity, surface), "plane").copy()
             scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
             surfaces.append((table, scale))
     return grid, kappa, surfaces

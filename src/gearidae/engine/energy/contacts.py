@@ -86,11 +86,10 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
 @compiled
 def joining_loss(m: Model, k: int, gap: float) -> float:
     """What the asperities that a closing contact has joined since its last turning point have lost, per length."""
-    loss = 0.0
-    number = loading_value(m.tables, m.scene.number_at, gap)[0]
+    loss, h = 0.0, m.state.history[k]
     for material in range(MATERIALS):
-        if m.scene.material[material].stretch_limit > 0.0 and gap < m.state.history[k].joined[material]:
-            joining = m.scene.material[material].joining_energy
-            scale = m.scene.material[material].force_scale
-            loss += scale * (joining * number + m.state.history[k].booked[material])
+        own = m.scene.material[material]
+        if own.stretch_limit > 0.0 and gap < h.joined[material]:
+            number = loading_value(m.tables, own.number_at, gap)[0]
+            loss += own.force_scale * (own.joining_energy * number + h.booked[material])
     return loss

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearidae.contact.jkr import asperity_of
+from gearidae.contact.asperities import law_of
 from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table
 from gearidae.contact.kernels.law import (
     GAP_HIGH,
@@ -15,18 +15,18 @@ from gearidae.contact.kernels.law import (
     H_STRETCH,
     HEADER,
     N_LOADING,
-    STRETCH_HIGH,
     Kernel,
     branch_length,
+    check_reach,
     force_scale,
     law_table,
     law_value,
 )
+from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
 from gearidae.engine.model.state import Floats, Record
 from gearidae.engine.model.tables import Tables
-from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
 __all__ = ["Nodes", "add_contact", "add_nodes", "choose_model"]
@@ -95,24 +95,19 @@ def add_contact(
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
-    fraction, longest = scene.coating.sam_fraction, 0
-    shares = ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
-    for material, (surface, share) in enumerate(shares):
+    longest = 0
+    for material, (surface, share) in enumerate(scene.materials()):
         own, tip = s.material[material], asperity_of(surface)
-        limit = tip.stretch_limit / surface.roughness
-        if limit > STRETCH_HIGH:
-            raise SceneError(
-                "surface.roughness",
-                surface.roughness,
-                f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
-            )
-        table = law_table(limit, scene.contact.asperity, kernel).copy() if share > 0.0 else np.zeros(HEADER)
-        energy = energy_table(limit, scene.contact.asperity, kernel) if share > 0.0 else table
+        law = law_of(scene.contact.asperity, surface)
+        check_reach(law, surface.roughness)
+        table = law_table(law, kernel).copy() if share > 0.0 else np.zeros(HEADER)
+        energy = energy_table(law, kernel) if share > 0.0 else table
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * unit_length / float(s.force_unit)
         own.force_scale, own.stretch_limit = force, table[H_STRETCH]
-        own.joining_energy = joining_energy(table[H_STRETCH])
+        own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
         own.table_at, own.energy_at, own.table_count = tables.add(table), tables.add(energy), table.size
+        own.number_at = tables.add(number_table(kernel, law.join))
         longest = max(longest, branch_length(table))
         if share > 0.0:
             loading += force * table[HEADER : HEADER + loading.size]
@@ -121,7 +116,6 @@ def add_contact(
                 reach[floor] = max(gap, _outermost(table, force * widest, floor))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
     s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
-    s.number_at = tables.add(number_table(kernel))
     s.branch_length = 0 if s.nodes > 0 else longest
 
 

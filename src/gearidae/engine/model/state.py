@@ -93,8 +93,9 @@ MATERIAL: Final = _record(
     ("force_scale", _REAL),  # per sqrt(radius / pitch), with the material's share of the surface
     ("stretch_limit", _REAL),  # over sigma; 0 where there is no hysteresis worth following
     ("joining_energy", _REAL),  # what an asperity loses when it joins, in the unit of `force_scale`
-    ("table_at", _INT),  # where its force law and its stored energy begin among the tables
+    ("table_at", _INT),  # where its force law and its stored energy begin among the tables,
     ("energy_at", _INT),
+    ("number_at", _INT),  # and the number of its asperities above a height
     ("table_count", _INT),  # numbers in each
 )
 
@@ -143,7 +144,6 @@ SCENE: Final = _record(
     ("material", MATERIAL, (MATERIALS,)),
     ("loading_at", _INT),  # loading branch of all materials together, in forces
     ("potential_at", _INT),  # potential of that branch
-    ("number_at", _INT),  # number of asperities above a height
     ("slots", _INT),  # histories per flank in use, a power of two, and of all flanks
     ("histories", _INT),
     ("branch_length", _INT),  # size of a branch of the force law or the stored energy; 0 if none is kept

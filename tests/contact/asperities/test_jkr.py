@@ -1,3 +1,5 @@
+"""One JKR asperity: landmarks, the paper's polynomials, JKR's own equations in SI, limits."""
+
 import math
 
 import numpy as np
@@ -5,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.contact import jkr
-from gearidae.errors import SceneError
+from gearidae.contact.asperities import AsperityLaw, asperity_load, jkr
+from gearidae.contact.tip import asperity_of
 from reference import asperity as dimensional
 
 
@@ -55,26 +57,11 @@ def test_no_digit_is_lost_at_the_fold(distance):
 
 def test_si_load_agrees_with_johnson_kendall_roberts(silicon):
     radius = dimensional.jkr_fold(silicon) * np.geomspace(1.001, 300.0, 200)
-    tip = jkr.asperity_of(silicon)
-    got = jkr.asperity_load(dimensional.jkr_displacement(radius, silicon), tip)
+    tip = asperity_of(silicon)
+    got = asperity_load(dimensional.jkr_displacement(radius, silicon), tip)
     want = dimensional.jkr_force(radius, silicon)
     # Near the fold a displacement rounded to 1e-16 fixes the radius no better than 1e-16 over its distance, 5e-4.
     assert got == pytest.approx(want, rel=1e-12, abs=5e-12 * tip.pull_off)
-
-
-def test_silicon_asperity(silicon):
-    tip = jkr.asperity_of(silicon)
-    assert tip.modulus == pytest.approx(84.996e9, rel=1e-5, abs=0)
-    assert tip.pull_off == pytest.approx(1.5 * math.pi * 450e-9 * 3.0, rel=1e-15, abs=0)
-    fold = dimensional.jkr_fold(silicon)
-    assert tip.stretch_limit == pytest.approx(-dimensional.jkr_displacement(fold, silicon), rel=1e-13, abs=0)
-
-
-def test_pull_off_is_root_three_times_hertz_at_the_stretch_limit(silicon):
-    tip = jkr.asperity_of(silicon)
-    assert tip.pull_off == pytest.approx(
-        math.sqrt(3) * tip.hertz_factor * tip.stretch_limit**1.5, rel=1e-14, abs=0
-    )
 
 
 @pytest.mark.parametrize("depth", [1e4, 1e6, 1e8])
@@ -102,44 +89,20 @@ def test_out_of_reach_and_extremes():
     assert jkr.jkr_load(np.zeros((2, 3))).shape == (2, 3)
 
 
-def test_without_energy_an_asperity_is_hertzian(silicon):
-    bare = jkr.Asperity(80e9, 4e-7, 0.0, 0.0, 0.0)
-    delta = np.array([-1e-9, 0.0, 1e-9, 5e-9])
-    hertz = 4 / 3 * 80e9 * math.sqrt(4e-7) * np.maximum(delta, 0.0) ** 1.5
-    for law in jkr.ASPERITY_LAWS:
-        assert jkr.asperity_load(delta, bare, law) == pytest.approx(hertz, rel=1e-14, abs=0)
+@given(st.floats(min_value=1e-4, max_value=30.0), st.floats(min_value=-0.999, max_value=100.0))
+def test_energy_is_the_integral_of_the_load(limit, share):
+    law = jkr.Jkr(limit)
+    # the inherited quadrature, which knows nothing of the polynomials: 48 nodes in sqrt(1 + displacement)
+    inherited = AsperityLaw.energy(law, share * limit)
+    size = law.pull_off * limit * (1 + abs(share)) ** 2.5
+    assert law.energy(share * limit) == pytest.approx(float(inherited), rel=0, abs=1e-11 * size)
+    assert law.loss == pytest.approx(-float(law.energy(0.0)), rel=1e-14, abs=0)
 
 
-def test_dmt_adheres_without_stretching(silicon):
-    tip = jkr.asperity_of(silicon)
-    touch, away, deep = jkr.asperity_load([0.0, -1e-15, 1e-8], tip, "dmt")
-    assert touch == pytest.approx(-2 * math.pi * 450e-9 * 3.0, rel=1e-14, abs=0)
-    assert away == 0.0
-    assert deep - touch == pytest.approx(float(jkr.asperity_load(1e-8, tip, "hertz")), rel=1e-13, abs=0)
-
-
-def test_unknown_law_is_named(silicon):
-    with pytest.raises(SceneError, match=r"contact\.asperity = maugis: must be one of jkr, dmt, hertz"):
-        jkr.asperity_load(0.0, jkr.asperity_of(silicon), "maugis")
-
-
-def test_tabor_parameter(silicon, coated):
-    # Preset's asperity radius was chosen for mu = 5 at 0.165 nm; mu goes with energy to the power 2/3.
-    assert jkr.tabor_parameter(silicon) == pytest.approx(5.0, abs=0.005)
-    assert jkr.tabor_parameter(coated) == pytest.approx(5.0 / 15 ** (2 / 3), rel=1e-3, abs=0)
-    assert jkr.tabor_parameter(silicon, eps=0.33e-9) == pytest.approx(jkr.tabor_parameter(silicon) / 2)
-
-
-@pytest.mark.parametrize(
-    ("mu", "regime"),
-    [(50.0, "jkr"), (4.5, "jkr"), (4.49, "transition"), (0.15, "transition"), (0.149, "dmt"), (0.0, "dmt")],
-)
-def test_tabor_regime(mu, regime):
-    """Bounds of one digit, 5 and 0.1 (Johnson and Greenwood 1997), told from the numbers that round to them."""
-    assert jkr.tabor_regime(mu) == regime
-
-
-def test_regimes_of_the_paper(silicon, coated):
-    """Bare silicon is where JKR holds, to the digit that the bound has; the monolayer is not."""
-    assert jkr.tabor_regime(jkr.tabor_parameter(silicon)) == "jkr"
-    assert jkr.tabor_regime(jkr.tabor_parameter(coated)) == "transition"
+def test_quadrature_of_the_law_is_the_load_over_the_displacement():
+    law, rule = jkr.Jkr(0.3), np.polynomial.legendre.leggauss(24)
+    for low, high in ((-0.3, 0.0), (-0.1, 0.4), (0.0, 2.0)):
+        place, weight = law.nodes(low, high, *rule)
+        other, inherited = AsperityLaw.nodes(law, low, high, *np.polynomial.legendre.leggauss(60))
+        assert np.all((place >= low) & (place <= high))
+        assert weight @ np.cos(place) == pytest.approx(inherited @ np.cos(other), rel=1e-12, abs=0)

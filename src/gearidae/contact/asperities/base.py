@@ -1,0 +1,136 @@
+r"""What the law of one asperity consists of; a file of this folder holds one law.
+
+**Units.** Lengths are over some length l, whichever, and loads over the Hertz load at a compression of l,
+:math:`\tfrac43 E^*\sqrt\beta\,l^{3/2}`. In these units Hertz's law is :math:`P = \Delta^{3/2}`, and a law is written
+once for metres, for roughnesses, and for the length by which adhesion deforms a tip.
+
+**Displacement.** Positive in compression, zero where the undeformed tip would just touch. An asperity that approaches
+*joins* at the displacement ``-join``; when it is drawn away it stretches to ``-detach`` and lets go, with
+``detach >= join >= 0``. Where the two differ there is hysteresis, and each cycle costs the ``loss``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearidae.contact.tip import Asperity
+
+__all__ = ["AsperityLaw", "Floats"]
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_X, _W = np.polynomial.legendre.leggauss(48)
+
+
+class AsperityLaw(ABC):
+    """Load of one asperity over its displacement, with the distances at which it joins and lets go.
+
+    A law is a frozen dataclass: two that are equal share their tables. What it must give are a `name`, `of`, `detach`,
+    `pull_off` and `load`; the rest follows from these, and is replaced where a closed form is at hand.
+    """
+
+    name: ClassVar[str]
+    """What ``contact.asperity`` calls it."""
+
+    @classmethod
+    @abstractmethod
+    def of(cls, tip: Asperity, unit: float) -> AsperityLaw:
+        """Return the law of a tip.
+
+        Parameters
+        ----------
+        tip : Asperity
+            Elastic constants, radius and adhesion (SI).
+        unit : float
+            The law's unit of length [m].
+
+        Returns
+        -------
+        AsperityLaw
+            Of this kind, or of a simpler one that this kind turns into (without adhesion, say).
+        """
+
+    @property
+    @abstractmethod
+    def detach(self) -> float:
+        """Distance at which a stretched asperity lets go, d_off; 0 if it does not stretch."""
+
+    @property
+    def join(self) -> float:
+        """Distance at which an approaching asperity joins, d_on <= d_off; 0 if it must touch."""
+        return 0.0
+
+    @property
+    @abstractmethod
+    def pull_off(self) -> float:
+        """Largest tension that an asperity carries; 0 if it carries none."""
+
+    @property
+    def pieces(self) -> int:
+        """Even pieces in ``sqrt((displacement + detach) / (detach - join))``, of degree seven, that the load wants."""
+        return 4
+
+    @abstractmethod
+    def load(self, displacement: ArrayLike) -> Floats:
+        """Load of an asperity in contact, on the branch that is stable under given displacement.
+
+        Parameters
+        ----------
+        displacement : array_like
+            Displacement, positive in compression. The load must be smooth above ``-detach``, where it may end in a
+            fold (a square root), and smooth or Hertzian at 0.
+
+        Returns
+        -------
+        ndarray
+            Positive pushes apart, the shape of `displacement`; zero below ``-detach``.
+        """
+
+    def nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
+        """Lay a quadrature rule of the load between two displacements.
+
+        The rule is laid out in a variable in which the load is smooth up to the displacement of letting go: here
+        ``sqrt(displacement + detach)``, which serves any law that ends in a fold there.
+
+        Parameters
+        ----------
+        low, high : array_like, one shape
+            Displacements between which to integrate, ``-detach`` or more.
+        x, w : ndarray, shape (n,)
+            Nodes and weights of the rule on -1..1.
+
+        Returns
+        -------
+        displacement, weight : ndarray, shape (..., n)
+            Nodes, and weights times load times measure: ``weight @ f(displacement)`` is the integral of load times f.
+        """
+        ends = np.sqrt(np.maximum(np.stack(np.broadcast_arrays(low, high)) + self.detach, 0.0))[..., None]
+        span = ends[1] - ends[0]
+        root = ends[0] + 0.5 * (x + 1.0) * span
+        displacement = root**2 - self.detach
+        return displacement, 0.5 * span * w * 2.0 * root * self.load(displacement)
+
+    def energy(self, displacement: ArrayLike) -> Floats:
+        """Energy that an asperity in contact stores: the integral of its load from letting go on.
+
+        Parameters
+        ----------
+        displacement : array_like
+            ``-detach`` or more.
+
+        Returns
+        -------
+        ndarray
+            Unit of load times unit of length; zero at ``-detach``. The shape of `displacement`.
+        """
+        high = np.asarray(displacement, dtype=np.float64)
+        return np.asarray(self.nodes(np.full(high.shape, -self.detach), high, _X, _W)[1].sum(axis=-1))
+
+    @property
+    def loss(self) -> float:
+        """Energy that an asperity loses when it joins; nothing more is lost when it lets go."""
+        return -float(self.energy(-self.join))

@@ -1,0 +1,47 @@
+"""Asperities without adhesion (Hertz).
+
+References
+----------
+K. L. Johnson, Contact Mechanics, Cambridge University Press (1985), section 4.2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearidae.contact.asperities.base import AsperityLaw, Floats
+from gearidae.contact.asperities.registry import register
+from gearidae.contact.tip import Asperity
+
+__all__ = ["Hertz"]
+
+
+@register
+@dataclass(frozen=True)
+class Hertz(AsperityLaw):
+    """Elastic spheres that do not adhere: ``P = displacement^1.5`` in compression, nothing else."""
+
+    name: ClassVar[str] = "hertz"
+
+    @classmethod
+    def of(cls, tip: Asperity, unit: float) -> Hertz:
+        """Return the law, the same for all tips."""
+        return cls()
+
+    @property
+    def detach(self) -> float:
+        """Distance of letting go: none."""
+        return 0.0
+
+    @property
+    def pull_off(self) -> float:
+        """Largest tension: none."""
+        return 0.0
+
+    def load(self, displacement: ArrayLike) -> Floats:
+        """Load of an asperity, ``displacement^1.5``; see `AsperityLaw.load`."""
+        return np.asarray(np.maximum(displacement, 0.0) ** 1.5)

@@ -1,0 +1,229 @@
+r"""Asperities whose adhesion has a range: a Dugdale zone of constant stress (Maugis).
+
+The surfaces attract each other with the stress :math:`\sigma_0 = \Delta\gamma/h_0` wherever they are less than
+:math:`h_0` apart, with :math:`h_0 = \tfrac{9\sqrt3}{16}\varepsilon`, so that the stress is the peak of the
+Lennard-Jones law of range :math:`\varepsilon`. With :math:`K = \tfrac43 E^*`, lengths over
+:math:`(\pi^2 \Delta\gamma^2 \beta/K^2)^{1/3}`, loads over :math:`\pi\beta\Delta\gamma`, contact radius A and outer
+radius of the zone C over :math:`(\pi\Delta\gamma\beta^2/K)^{1/3}`, one number is left,
+:math:`\lambda = 2\sigma_0 (\beta/(\pi \Delta\gamma K^2))^{1/3}`, about 1.157 times Tabor's. Where the tip touches, with
+:math:`A = C\cos q`,
+
+.. math::
+
+    1 = \tfrac{\lambda}{2} C^2 \left(\sin q \cos q - q\cos 2q\right)
+        + \tfrac43 \lambda^2 C \left(q \sin q - 1 + \cos q\right), \qquad
+    P = A^3 - \lambda C^2 (\sin q\cos q + q), \qquad \Delta = A^2 - \tfrac43 \lambda C \sin q ;
+
+where it attracts without touching,
+
+.. math::
+
+    P = -\tfrac{\pi}{2} \lambda C^2, \qquad
+    \Delta = \tfrac12 C^2 - \tfrac{8}{3\pi} \lambda C - \tfrac{2}{\pi\lambda},
+
+and the two meet at q = pi/2. An approaching tip joins where the stress begins to act, at the distance
+:math:`h_0 = 2/(\pi\lambda)`; a tip drawn away lets go at the single fold, which lies on the second branch for
+:math:`\lambda < 0.938`.
+
+References
+----------
+D. Maugis, J. Colloid Interface Sci. 150 (1992) 243-269, doi:10.1016/0021-9797(92)90285-T.
+K.-S. Kim, R. M. McMeeking, K. L. Johnson, J. Mech. Phys. Solids 46 (1998) 243-266,
+doi:10.1016/S0022-5096(97)00070-7: the branch without contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import ClassVar, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearidae.contact.asperities.base import AsperityLaw, Floats
+from gearidae.contact.asperities.hertz import Hertz
+from gearidae.contact.asperities.registry import register
+from gearidae.contact.tip import Asperity
+
+__all__ = ["Maugis", "branch_at"]
+
+HALF_PI: Final = 0.5 * math.pi
+Z_TOUCH: Final = HALF_PI**-0.75
+"""z where the tip begins to touch. In ``z = q**(-3/4)`` displacement and load grow like powers, as in JKR's s."""
+_SERIES = np.array([(-1) ** k * (k + 1) * 2.0 ** (2 * k + 3) / math.factorial(2 * k + 3) for k in range(11)])
+
+
+def branch_at(z: Floats, zone: float) -> tuple[Floats, Floats, Floats]:
+    """Displacement, load and rate of the displacement on the branch of tips that touch.
+
+    Parameters
+    ----------
+    z : ndarray
+        Parameter, `Z_TOUCH` or more; ``q**(-3/4)``.
+    zone : float
+        lambda.
+
+    Returns
+    -------
+    displacement, load, rate : ndarray, the shape of `z`
+        In units of adhesion; the last is the derivative of the first in z.
+    """
+    q = z ** (-4.0 / 3.0)
+    s, c, twice = np.sin(q), np.cos(q), np.cos(2.0 * q)
+    # sin q cos q - q cos 2q loses digits where q is small
+    small = q < 0.5
+    near = np.where(small, q, 0.0)
+    f = np.where(small, near**3 * np.polynomial.polynomial.polyval(near**2, _SERIES), s * c - q * twice)
+    g = q * s - 2.0 * np.sin(0.5 * q) ** 2
+    square, linear = 0.5 * zone * f, 4.0 / 3.0 * zone**2 * g
+    root = np.sqrt(linear**2 + 4.0 * square)
+    outer = 2.0 / (linear + root)
+    # both radii change with q so that the equation of the zone holds
+    f_rate, g_rate = 2.0 * q * np.sin(2.0 * q), q * c
+    outer_rate = -(0.5 * zone * f_rate * outer + 4.0 / 3.0 * zone**2 * g_rate) * outer / root
+    inner, inner_rate = outer * c, outer_rate * c - outer * s
+    displacement = inner**2 - 4.0 / 3.0 * zone * outer * s
+    load = inner**3 - zone * outer**2 * (s * c + q)
+    rate = 2.0 * inner * inner_rate - 4.0 / 3.0 * zone * (outer_rate * s + outer * c)
+    return displacement, load, rate * (-4.0 / 3.0) * q / z
+
+
+@lru_cache(maxsize=64)
+def _landmarks(zone: float) -> tuple[float, float, float, float]:
+    """Fold and touch of a law: z at the end of the touching branch, displacements there and at the fold, pull-off."""
+    touch = 2.0 / (4.0 / 3.0 * zone**2 * (HALF_PI - 1.0) + math.sqrt(_zone_square(zone)))
+    fold = 8.0 * zone / (3.0 * math.pi)
+    apart = 0.5 * touch**2 - fold * touch - 2.0 / (math.pi * zone)
+    if (
+        fold < touch
+    ):  # lets go without touching; the pull is largest where the tip touches already, or on the way
+        end, least = Z_TOUCH, -0.5 * fold**2 - 2.0 / (math.pi * zone)
+    else:
+        end = _rising(lambda z: branch_at(z, zone)[2], Z_TOUCH)
+        apart = least = float(branch_at(np.array(end), zone)[0])
+    z = end * np.geomspace(1.0, 20.0, 4001)
+    k = int(np.argmin(branch_at(z, zone)[1]))
+    finer = np.linspace(z[max(k - 1, 0)], z[k + 1], 20_001)
+    pull = -float(np.min(branch_at(finer, zone)[1]))
+    return end, apart, least, pull
+
+
+def _zone_square(zone: float) -> float:
+    """Discriminant of the zone's equation where the tip begins to touch."""
+    return (4.0 / 3.0 * zone**2 * (HALF_PI - 1.0)) ** 2 + math.pi * zone
+
+
+def _rising(function: object, low: float) -> float:
+    """Where a function that is negative at first changes its sign, by bisection."""
+    assert callable(function)
+    high = 2.0 * low
+    while function(np.array(high)) < 0.0:
+        high *= 2.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if function(np.array(middle)) < 0.0 else (low, middle)
+    return high
+
+
+@register
+@dataclass(frozen=True)
+class Maugis(AsperityLaw):
+    """Asperities between JKR's (large `zone`) and those of rigid spheres (small `zone`).
+
+    Attributes
+    ----------
+    length : float
+        ``(pi^2 dgamma^2 beta / K^2)^(1/3)`` in the law's unit of length, above 0.
+    zone : float
+        Maugis' lambda.
+    """
+
+    name: ClassVar[str] = "maugis"
+    length: float
+    zone: float
+
+    @classmethod
+    def of(cls, tip: Asperity, unit: float) -> AsperityLaw:
+        """Return the law of a tip, lengths over `unit` [m]; without adhesion it is Hertz's."""
+        if tip.stretch_limit == 0.0:
+            return Hertz()
+        length = tip.stretch_limit / 0.75 ** (1.0 / 3.0)
+        distance = 9.0 * math.sqrt(3.0) / 16.0 * tip.interaction_range
+        return cls(length / unit, 2.0 * length / (math.pi * distance))
+
+    @cached_property
+    def _marks(self) -> tuple[float, float, float, float]:
+        return _landmarks(self.zone)
+
+    @property
+    def join(self) -> float:
+        """Distance of joining, h0."""
+        return self.length * 2.0 / (math.pi * self.zone)
+
+    @property
+    def detach(self) -> float:
+        """Distance of letting go, at the fold."""
+        return -self.length * self._marks[2]
+
+    @property
+    def pull_off(self) -> float:
+        """Largest tension, between ``1.5 pi beta dgamma`` (JKR) and ``2 pi beta dgamma`` (Bradley)."""
+        return self.length**1.5 * self._marks[3]
+
+    @property
+    def pieces(self) -> int:
+        """Pieces of the load in v: 12 where fold and touch come close together, more to put a kink between two."""
+        join = -2.0 / (math.pi * self.zone)
+        _, touch, fold, _ = self._marks
+        if not fold < touch < join:
+            return 12
+        v = math.sqrt((touch - fold) / (join - fold))
+        return min(range(12, 33), key=lambda n: abs(v * n - round(v * n)) / n)
+
+    def load(self, displacement: ArrayLike) -> Floats:
+        """Load of an asperity on its stable branch; see `AsperityLaw.load`."""
+        delta = np.asarray(displacement, dtype=np.float64) / self.length
+        touches = branch_at(self._parameter(delta), self.zone)[1]
+        apart = -HALF_PI * self.zone * self._zone_radius(delta) ** 2
+        load = np.where(delta >= self._marks[1], touches, apart)
+        return self.length**1.5 * np.where(delta < self._marks[2], 0.0, load)
+
+    def nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
+        """Lay a rule out in the parameter of either branch, one after the other; see `AsperityLaw.nodes`."""
+        ends = np.stack(np.broadcast_arrays(low, high)) / self.length
+        z = self._parameter(ends)[..., None]
+        half = 0.5 * (z[1] - z[0])
+        displacement, load, rate = branch_at(z[0] + half * (x + 1.0), self.zone)
+        weight = half * w * rate * load
+        if self._marks[1] > self._marks[2]:
+            radius = self._zone_radius(np.minimum(ends, self._marks[1]))[..., None]
+            half = 0.5 * (radius[1] - radius[0])
+            outer = radius[0] + half * (x + 1.0)
+            fold = 8.0 * self.zone / (3.0 * math.pi)
+            apart = 0.5 * (outer - fold) ** 2 + self._marks[2]
+            pull = half * w * (outer - fold) * (-HALF_PI * self.zone) * outer**2
+            displacement, weight = (
+                np.concatenate([apart, displacement], -1),
+                np.concatenate([pull, weight], -1),
+            )
+        return displacement * self.length, weight * self.length**2.5
+
+    def _zone_radius(self, delta: Floats) -> Floats:
+        """C of a tip that does not touch, at a displacement."""
+        fold = 8.0 * self.zone / (3.0 * math.pi)
+        return fold + np.sqrt(2.0 * np.maximum(delta - (-0.5 * fold**2 - 2.0 / (math.pi * self.zone)), 0.0))
+
+    def _parameter(self, delta: Floats) -> Floats:
+        """Parameter z of a tip that touches, at a displacement; what is below the branch counts as its end."""
+        end = self._marks[0]
+        low, high = np.full(delta.shape, end), np.full(delta.shape, 2.0 * end)
+        most = float(np.max(delta, initial=0.0))
+        while float(branch_at(np.array(high.flat[0] if high.size else end), self.zone)[0]) < most:
+            high *= 2.0
+        for _ in range(54):
+            middle = 0.5 * (low + high)
+            below = branch_at(middle, self.zone)[0] < delta
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return np.where(delta <= self._marks[1], end, high)

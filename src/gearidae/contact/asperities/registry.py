@@ -1,0 +1,193 @@
+"""The asperity laws by their names: what ``contact.asperity`` may say.
+
+Every file of this folder that registers a law is found by itself. A law from elsewhere is registered in each process
+that uses it, before scenes are made that name it.
+"""
+
+from __future__ import annotations
+
+import math
+import pkgutil
+from functools import cache
+from importlib import import_module
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearidae.contact.asperities.base import AsperityLaw, Floats
+from gearidae.contact.tip import Asperity, Surface, asperity_of, make_tip
+from gearidae.errors import SceneError
+
+__all__ = ["asperity", "asperity_load", "law_names", "law_of", "law_of_tip", "register", "unregister"]
+
+Law = TypeVar("Law", bound=type[AsperityLaw])
+
+_LAWS: dict[str, type[AsperityLaw]] = {}
+
+
+def register(law: Law) -> Law:
+    """Make a law known by its name; a decorator of its class.
+
+    Parameters
+    ----------
+    law : type of AsperityLaw
+
+    Returns
+    -------
+    type of AsperityLaw
+        The same.
+
+    Raises
+    ------
+    SceneError
+        If another law has this name already.
+    """
+    if law.name in _LAWS:
+        raise SceneError("contact.asperity", law.name, "is the name of another asperity law already")
+    _LAWS[law.name] = law
+    return law
+
+
+def unregister(name: str) -> None:
+    """Take a law out again.
+
+    Parameters
+    ----------
+    name : str
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    del _LAWS[_known(name).name]
+
+
+def law_names() -> tuple[str, ...]:
+    """Return the names of all laws, in the order of the alphabet."""
+    _find_laws()
+    return tuple(sorted(_LAWS))
+
+
+def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
+    """Return a law for one tip, in a unit of length.
+
+    Parameters
+    ----------
+    name : str
+        The law's name.
+    tip : Asperity
+        The tip (SI).
+    unit : float
+        Unit of length [m]. With 1.0 loads are in units of ``tip.hertz_factor`` newtons.
+
+    Returns
+    -------
+    AsperityLaw
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    return _known(name).of(tip, unit)
+
+
+def law_of(name: str, surface: Surface) -> AsperityLaw:
+    """Return a law for the asperities of a surface, in units of its roughness.
+
+    Parameters
+    ----------
+    name : str
+        The law's name.
+    surface : Surface
+        Elastic constants, energy and roughness (SI).
+
+    Returns
+    -------
+    AsperityLaw
+        Lengths in roughnesses sigma, loads in ``4/3 E* sqrt(beta) sigma^1.5``.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    return law_of_tip(name, asperity_of(surface), surface.roughness)
+
+
+def asperity(name: str, *, tabor: float = 5.0) -> AsperityLaw:
+    """Return the law of one asperity in the units of adhesion.
+
+    Parameters
+    ----------
+    name : str
+        The law's name, such as ``jkr``, ``dmt``, ``hertz`` or ``maugis``.
+    tabor : float, optional
+        Tabor's parameter, see `gearidae.contact.tabor_parameter`; for laws in which the adhesive forces have a range.
+
+    Returns
+    -------
+    AsperityLaw
+        With `join`, `detach`, `pull_off`, `loss`, and ``load(displacement)`` on the stable branch: lengths over
+        ``(pi^2 dgamma^2 beta / K^2)^(1/3)`` with ``K = 4 E*/3``, loads over ``pi beta dgamma``, losses over both.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law, or Tabor's parameter is not a positive number.
+
+    References
+    ----------
+    D. Maugis, J. Colloid Interface Sci. 150 (1992) 243-269, doi:10.1016/0021-9797(92)90285-T.
+    """
+    # K = 1, beta = 1 and pi dgamma = 1: the units are those of this tip
+    if not 0.0 < tabor < math.inf:
+        raise SceneError("tabor", tabor, "must be a positive number")
+    modulus, adhesion = 0.75, 1.0 / math.pi
+    reach = (adhesion / modulus) ** (2.0 / 3.0) / tabor
+    return law_of_tip(name, make_tip(modulus, 1.0, adhesion, reach), 1.0)
+
+
+def asperity_load(displacement: ArrayLike, asperity: Asperity, law: str = "jkr") -> Floats:
+    """Load of one asperity in contact, in newtons.
+
+    Parameters
+    ----------
+    displacement : array_like
+        Displacement delta [m], positive in compression.
+    asperity : Asperity
+        The tip.
+    law : str, optional
+        Name of the law. ``jkr``: stretches down to ``-dc``. ``dmt``: Hertz minus ``2 pi beta dgamma`` while delta >= 0,
+        no stretch. ``hertz``: ``4/3 E* sqrt(beta) delta^1.5`` while delta >= 0.
+
+    Returns
+    -------
+    ndarray
+        Load [N], positive pushes apart, the shape of `displacement`; zero where the asperity is out of reach.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    return np.asarray(asperity.hertz_factor * law_of_tip(law, asperity, 1.0).load(displacement))
+
+
+@cache
+def _find_laws() -> None:
+    """Import the files of this folder, which register what they hold."""
+    package = __name__.rpartition(".")[0]
+    for module in pkgutil.iter_modules(import_module(package).__path__):
+        import_module(f"{package}.{module.name}")
+
+
+def _known(name: str) -> type[AsperityLaw]:
+    """Look a law up."""
+    _find_laws()
+    law = _LAWS.get(name) if isinstance(name, str) else None
+    if law is None:
+        raise SceneError("contact.asperity", name, "must be one of " + ", ".join(law_names()))
+    return law
