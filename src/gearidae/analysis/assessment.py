@@ -258,7 +258,8 @@ def _read(fit: Fit, model: MapModel, heard: Heard, silent: Assessment, rate: flo
     spacing = float(fractions[1] - fractions[0])
     low = max(float(fractions[0]), float(possible[0]) - spacing)
     high = min(float(fractions[-1]), float(possible[-1]) + spacing)
-    found = replace(silent, low=low, high=high, torque=float(fit.torques[fit.best]))
+    torque = math.nan if model.torques is None else float(fit.torques[fit.best])
+    found = replace(silent, low=low, high=high, torque=torque)
     at = _listed(heard.frequency)
     if np.diff(possible).max(initial=0.0) > _GAP or high - low > _PLAIN:
         why = (
@@ -281,7 +282,10 @@ def _other_speed(fit: Fit, model: MapModel, heard: Heard) -> str:
         low, high = float(np.nanmin(model.speeds)), float(np.nanmax(model.speeds))
         if low * (1.0 - COMMON) <= heard.speed <= high * (1.0 + COMMON):
             return ""
-        return f"the gear turns at {heard.speed:.3g} rad/s where the map has {low:.3g} to {high:.3g} rad/s: another torque"
+        return (
+            f"the gear turns at {heard.speed:.3g} rad/s where the map has {low:.3g} to {high:.3g} rad/s: another "
+            "torque"
+        )
     expected = float(model.speeds[0, fit.best])
     if abs(heard.speed - expected) <= SPEED_RANGE * expected:
         return ""

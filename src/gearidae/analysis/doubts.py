@@ -46,7 +46,7 @@ _PRECISION = 0.005
 
 
 def unsteadiness(signal: Signal) -> float:
-    """Change of the mean speed from the first half of a record to the second, in parts of itself.
+    """Change of the median speed from the first half of a record to the second, in parts of itself.
 
     Parameters
     ----------
@@ -65,9 +65,11 @@ def unsteadiness(signal: Signal) -> float:
         half = pitch * math.floor(half / pitch)
     if half <= 0.0:
         return 0.0
-    early, late = np.interp([half, angle[-1] - half], angle, signal.time)
-    first, last = early - signal.time[0], signal.time[-1] - late
-    return float(abs(first - last) / (0.5 * (first + last))) if first + last > 0.0 else 0.0
+    early, late = np.interp([half, angle[-1] - half], angle, np.arange(len(angle)))
+    # medians, since a worn coating's dips are no drift
+    first = float(np.median(signal.values[: int(early) + 1]))
+    last = float(np.median(signal.values[int(late) :]))
+    return abs(first - last) / (0.5 * (first + last)) if first + last > 0.0 else 0.0
 
 
 def stop(signal: Signal, model: MapModel) -> str:

@@ -4,7 +4,8 @@ With :math:`x = \ln f`, a fraction :math:`\varphi` explains a record as well as
 
 .. math::
 
-    \chi^2(\varphi) = \min_{c, u, \tau} \left[ \frac{c^2}{s^2} + \frac{(\ln\omega - \ln\Omega_\varphi(\tau))^2}{s_\omega^2}
+    \chi^2(\varphi) = \min_{c, u, \tau} \left[ \frac{c^2}{s^2}
+                      + \frac{(\ln\omega - \ln\Omega_\varphi(\tau))^2}{s_\omega^2}
                       + \sum_n \frac{\left(x_n - X_\varphi(n + n_0; \tau) - c - u\right)^2}{s_n^2} \right]
 
 is small. :math:`X_\varphi` interpolates the map, :math:`s_n` joins the measurement's uncertainty with that of the map,
@@ -13,8 +14,8 @@ and c is an error that all impacts share. If the record begins with the map's st
 one impact to the next that tells the fraction.
 
 The torque :math:`\tau` is not known. The gear's speed :math:`\omega` tells it, since the low-speed steady state is
-:math:`M_{10} = (R_1/R_2)\,\alpha\,\omega^2`: a map over torque is searched along :math:`\tau`, with :math:`u = 0`. A map
-at one torque has no :math:`\tau`; there u may lie anywhere between 0 and
+:math:`M_{10} = (R_1/R_2)\,\alpha\,\omega^2`: a map over torque is searched along :math:`\tau`, with :math:`u = 0`. A
+map at one torque has no :math:`\tau`; there u may lie anywhere between 0 and
 :math:`\tfrac12\ln(\tau/\tau_{\mathrm{map}}) = \ln(\omega/\Omega_\varphi)`, because the frequency goes with the torque
 to a power between 0 (a worn contact, whose stiffness is that of its joined asperities) and 1/2 (a whole coating, whose
 stiffness goes with its load).
