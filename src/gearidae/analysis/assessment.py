@@ -258,7 +258,7 @@ def _read(fit: Fit, model: MapModel, heard: Heard, silent: Assessment, rate: flo
     spacing = float(fractions[1] - fractions[0])
     low = max(float(fractions[0]), float(possible[0]) - spacing)
     high = min(float(fractions[-1]), float(possible[-1]) + spacing)
-    torque = math.nan if model.torques is None else float(fit.torques[fit.best])
+    torque = math.nan if model.torques is None else model.torque_at(heard.speed)
     found = replace(silent, low=low, high=high, torque=torque)
     at = _listed(heard.frequency)
     if np.diff(possible).max(initial=0.0) > _GAP or high - low > _PLAIN:
@@ -287,7 +287,7 @@ def _other_speed(fit: Fit, model: MapModel, heard: Heard) -> str:
             "torque"
         )
     expected = float(model.speeds[0, fit.best])
-    if abs(heard.speed - expected) <= SPEED_RANGE * expected:
+    if not abs(heard.speed - expected) > SPEED_RANGE * expected:  # NaN where the map's own gear sticks
         return ""
     return (
         f"the gear turns at {heard.speed:.3g} rad/s where the map has {expected:.3g} rad/s: another torque or load, "
@@ -309,9 +309,9 @@ def _what_would_tell(fit: Fit, model: MapModel, heard: Heard) -> str:
 def _torque_words(fit: Fit, model: MapModel, heard: Heard) -> str:
     """What the gear's speed says about the torque."""
     if model.torques is not None:
-        return f", the torque being {float(fit.torques[fit.best]):.3g} N m by the gear's speed"
+        return f", the torque being {model.torque_at(heard.speed):.3g} N m by the gear's speed"
     expected = float(model.speeds[0, fit.best])
-    if abs(heard.speed - expected) <= COMMON * expected:
+    if not abs(heard.speed - expected) > COMMON * expected:
         return ""
     return (
         f"; the gear turns at {heard.speed:.3g} rad/s where the map has {expected:.3g} rad/s, and the interval allows "

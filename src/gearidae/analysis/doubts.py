@@ -19,8 +19,8 @@ _SMOOTH = 0.02
 """The speed is averaged over this part of a pitch before it is compared with the map's smallest."""
 _MARGIN = 0.02
 """A speed is below the map's smallest if it is by this part of the usual speed, and by four times the noise."""
-_ON_GRID = 1e-3
-"""Largest departure of a rounded value from a multiple of the quantum, in quanta (float32 files have some)."""
+_ON_GRID = 0.05
+"""Largest departure of a rounded value from a multiple of the quantum, in quanta (single precision leaves some)."""
 _DITHERED = 0.45
 """Noise of this many quanta turns rounding into white noise: rounding alone has at most 1/sqrt(12) = 0.29."""
 _SHOWN = 1.0
@@ -155,7 +155,7 @@ def quantum(values: Floats) -> float:
     step = float(apart[apart < 1.5 * smallest].mean())
     multiples = apart / step
     off = np.abs(multiples - np.round(multiples))
-    return step if float(off.max()) < _ON_GRID * max(1.0, float(multiples.max())) + _ON_GRID else 0.0
+    return step if float(off.max()) < _ON_GRID else 0.0
 
 
 def too_coarse(ring: Ring, step: float) -> bool:

@@ -139,8 +139,13 @@ def first_explanation(model: MapModel, heard: Heard, history: str) -> Fit:
         suppositions.append((heard.without_first(), True))
     if history != "auto":
         suppositions = [(heard, history == "unknown")]
-    fits = [_fit(model, each, free=free) for each, free in suppositions]
-    return next((each for each in fits if each.explains), fits[0])
+    likeliest, *further = suppositions
+    fit = first = _fit(model, likeliest[0], free=likeliest[1])
+    for each, free in further:
+        if fit.explains:
+            break
+        fit = _fit(model, each, free=free)
+    return fit if fit.explains else first
 
 
 def _fit(model: MapModel, heard: Heard, *, free: bool) -> Fit:

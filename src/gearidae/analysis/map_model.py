@@ -44,7 +44,7 @@ class MapModel:
     sequences : ndarray, shape (m or 1, n, BEFORE + impacts + AFTER)
         Logarithm of the frequency [ln Hz] after each impact; NaN where the map has nothing.
     speeds : ndarray, shape (m or 1, n)
-        Median speed of the gear [rad/s].
+        Median speed of the gear [rad/s]; NaN where it sticks.
     slowest : float
         Smallest speed of the gear in any run of the map [rad/s].
     highest_first, highest : float
@@ -126,7 +126,25 @@ def require_map(chart: object) -> xr.Dataset:
         raise SceneError(
             "map", "(dataset)", f"is no coating map: it lacks {lacking}; make one with coating_map"
         )
+    for name in (*_VARIABLES, "sam_fraction"):
+        _check_numbers(chart, name)
     return chart
+
+
+def _check_numbers(chart: xr.Dataset, name: str) -> None:
+    """Refuse a variable of a map that is not numbers along the fractions, or along the impacts if it is of these."""
+    if name not in chart.variables or chart[name].dtype.kind not in "fiu":
+        raise SceneError("map", "(dataset)", f"its {name} must be numbers")
+    wanted = {"sam_fraction", "impact"} if name.startswith("impact_") else {"sam_fraction"}
+    lacking = wanted - set(chart[name].dims)
+    if lacking:
+        raise SceneError(
+            "map", "(dataset)", f"its {name} must have the dimension {' and '.join(sorted(lacking))}"
+        )
+    if name == "sam_fraction" and not np.isfinite(chart[name].values).all():
+        raise SceneError("map", "(dataset)", "its fractions must be finite numbers")
+    if name == "impact_frequency" and (chart[name].values <= 0.0).any():
+        raise SceneError("map", "(dataset)", "its frequencies must be above zero")
 
 
 def map_model(chart: object) -> MapModel:
@@ -155,8 +173,13 @@ def map_model(chart: object) -> MapModel:
     if (np.isfinite(frequency[:, :, 0]).sum(axis=1) < 2).any():
         raise SceneError("map", "(dataset)", "needs at least two fractions at which impacts ring")
     known = data["sam_fraction"].values
+    if (np.diff(known) <= 0.0).any():
+        raise SceneError("map", "(dataset)", "holds a fraction twice")
     fractions = np.linspace(known[0], known[-1], _GRID)
     speeds = data["median_gear_speed"].transpose(_TORQUE, "sam_fraction").values
+    speeds = np.where(speeds > 0.0, speeds, np.nan)  # a gear that sticks has no speed to compare with
+    if (np.isfinite(speeds).sum(axis=1) < 2).any():
+        raise SceneError("map", "(dataset)", "needs at least two fractions at which the gear turns")
     return MapModel(
         fractions=fractions,
         torques=torques,
