@@ -30,6 +30,7 @@ def model(torques=None):
         slowest=0.5,
         highest_first=np.exp(9.0),
         highest=np.exp(10.5),
+        first_impact=0.03,
         width=0.2,
         gear_teeth=76,
     )

@@ -27,6 +27,10 @@ _PLAIN = 0.1
 """Intervals wider than this say nothing about the coating."""
 _GAP = 0.02
 """Fractions further apart than this, with none in between that explains the signal, are different answers."""
+_FEWEST_TO_TELL_START = 2
+"""With fewer impacts the frequencies cannot contradict that the record begins with the map's start."""
+_SAME_START, _SAME_START_ALONE = 0.1, 0.04
+"""Pitches by which the first impact of a record from the start may be elsewhere than in the map; of a single one."""
 
 _HISTORIES = ("auto", "start", "unknown")
 
@@ -103,8 +107,8 @@ def assess(
         From `coating_map`, for the same gears. Of a map over ``drive.torque`` too, the torque is estimated from the
         gear's speed; of a map at one torque, a difference of the speed from the map's widens the interval.
     history : {'auto', 'start', 'unknown'}, optional
-        Whether the record begins with the start that the map was made for. ``auto`` supposes so, unless that does
-        not explain the signal.
+        Whether the record begins with the start that the map was made for. ``auto`` supposes so if the first
+        impact comes when the map's does, unless that does not explain the signal.
     anti_alias_filter : float, optional
         Cut-off frequency of a low-pass filter before the sampling [Hz]. Without it, ringing above half the sampling
         rate may be in the record, at another frequency than its own.
@@ -201,9 +205,20 @@ def judge(signal: Signal, model: MapModel, history: str, cutoff: float) -> Asses
     stopped = doubts.stop(signal, model)
     if stopped:
         return replace(silent, verdict="gear stops", explanation=_stop_words(stopped, heard))
-    fit = first_explanation(model, heard, history)
+    fit = first_explanation(
+        model, heard, history, may_be_start=_may_be_start(signal, model, rings, len(shown))
+    )
     found = _read(fit, model, heard, replace(silent, history=fit.history), signal.rate)
     return _vetoed(found, signal, model, heard, fit, cutoff) if found.conclusive else found
+
+
+def _may_be_start(signal: Signal, model: MapModel, rings: list[Ring], shown: int) -> bool:
+    """Whether the first impact is as far from the start of the record as from that of the map's runs."""
+    if math.isnan(model.first_impact):
+        return shown >= _FEWEST_TO_TELL_START
+    angle = (rings[0].time - signal.start) * float(np.median(signal.values))
+    within = _SAME_START if shown >= _FEWEST_TO_TELL_START else _SAME_START_ALONE
+    return abs(angle - model.first_impact) < within * 2.0 * math.pi / model.gear_teeth
 
 
 def _silence(rings: list[Ring]) -> str:

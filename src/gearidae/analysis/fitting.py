@@ -47,6 +47,9 @@ _FITS = 9.0
 """Largest chi-square for each impact of a record that the map explains: three standard uncertainties."""
 SPEED_RANGE = 0.15
 """Largest relative difference between the record's speed and that of a map at one torque."""
+_LESS_LIKELY = 4.0
+"""What an unknown history adds to chi-square: seven to one that a record whose first impact comes when the map's does
+begins with its start; above the rise within the interval, so that a start without misfit is not put in doubt."""
 _FEWEST_LEFT = 3
 """Impacts needed beside one that is left out."""
 _STEPS = 20
@@ -119,7 +122,7 @@ class Fit:
         return np.asarray(self.fractions[self.chi2 <= self.chi2[self.best] + WITHIN])
 
 
-def first_explanation(model: MapModel, heard: Heard, history: str) -> Fit:
+def first_explanation(model: MapModel, heard: Heard, history: str, *, may_be_start: bool = True) -> Fit:
     """Fit of the likeliest supposition about the record's history that explains it.
 
     Parameters
@@ -127,25 +130,37 @@ def first_explanation(model: MapModel, heard: Heard, history: str) -> Fit:
     model : MapModel
     heard : Heard
     history : {'auto', 'start', 'unknown'}
+    may_be_start : bool, optional
+        Whether ``auto`` considers that the record begins with the map's start.
 
     Returns
     -------
     Fit
         If none explains the record, that of the likeliest supposition.
     """
-    # From the likeliest supposition to the loosest: a start of another kind shows in the first impact alone.
-    suppositions = [(heard, False), (heard, True)]
-    if len(heard.numbers) > _FEWEST_LEFT:
-        suppositions.append((heard.without_first(), True))
     if history != "auto":
-        suppositions = [(heard, history == "unknown")]
-    likeliest, *further = suppositions
-    fit = first = _fit(model, likeliest[0], free=likeliest[1])
-    for each, free in further:
-        if fit.explains:
-            break
-        fit = _fit(model, each, free=free)
-    return fit if fit.explains else first
+        return _fit(model, heard, free=history == "unknown")
+    fit = _fit(model, heard, free=True)
+    if may_be_start:
+        fit = _either(_fit(model, heard, free=False), fit)
+    if fit.explains or len(heard.numbers) <= _FEWEST_LEFT:
+        return fit
+    # a start of another kind shows in the first impact alone
+    without = _fit(model, heard.without_first(), free=True)
+    return without if without.explains else fit
+
+
+def _either(start: Fit, unknown: Fit) -> Fit:
+    """Fit by whichever history explains a fraction better, the start being the likelier one beforehand."""
+    later = unknown.chi2 + _LESS_LIKELY < start.chi2
+    best = int(np.where(later, unknown.chi2 + _LESS_LIKELY, start.chi2).argmin())
+    return Fit(
+        start.fractions,
+        np.where(later, unknown.chi2 + _LESS_LIKELY, start.chi2),
+        start.impacts,
+        unknown.history if later[best] else start.history,
+        np.where(later, unknown.torques, start.torques),
+    )
 
 
 def _fit(model: MapModel, heard: Heard, *, free: bool) -> Fit:

@@ -49,6 +49,8 @@ class MapModel:
         Smallest speed of the gear in any run of the map [rad/s].
     highest_first, highest : float
         Highest frequency after the first impact, and after any [Hz].
+    first_impact : float
+        Angle from the start to the first impact [rad], roughly: time times median speed; NaN if the map lacks times.
     width : float
         Of the impact windows, in pitches.
     gear_teeth : int
@@ -61,6 +63,7 @@ class MapModel:
     slowest: float
     highest_first: float
     highest: float
+    first_impact: float
     width: float
     gear_teeth: int
 
@@ -188,6 +191,7 @@ def map_model(chart: object) -> MapModel:
         slowest=float(np.nanmin(data["min_gear_speed"].values)),
         highest_first=float(np.nanmax(frequency[:, :, 0])),
         highest=float(np.nanmax(frequency)),
+        first_impact=_first_impact(data),
         width=_width(data),
         gear_teeth=_gear_teeth(data),
     )
@@ -214,6 +218,14 @@ def _torques(chart: xr.Dataset) -> Floats | None:
             "must hold two different torques above zero, or more",
         )
     return np.asarray(torques, dtype=np.float64)
+
+
+def _first_impact(chart: xr.Dataset) -> float:
+    """Angle from the start to the first impact [rad]; older maps do not tell."""
+    if "impact_time" not in chart or chart["impact_time"].dtype.kind != "f":
+        return math.nan
+    angles = (chart["impact_time"].isel(impact=0) * chart["median_gear_speed"]).values
+    return float(np.nanmedian(angles)) if np.isfinite(angles).any() else math.nan
 
 
 def _width(chart: xr.Dataset) -> float:

@@ -79,8 +79,9 @@ def coating_map(
     -------
     Dataset, dims (..., sam_fraction, impact)
         ``characteristic_frequency`` and its standard ``uncertainty`` [Hz], of the first impact; ``impact_frequency``
-        and ``impact_uncertainty`` [Hz] of each; ``median_gear_speed`` and ``min_gear_speed`` [rad/s]. NaN where
-        nothing rings or a run could not go on. The scene and how it was made are attributes.
+        and ``impact_uncertainty`` [Hz] of each, at ``impact_time`` [s]; ``median_gear_speed`` and
+        ``min_gear_speed`` [rad/s]. NaN where nothing rings or a run could not go on. The scene and how it was made
+        are attributes.
 
     Raises
     ------
@@ -205,6 +206,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
             "uncertainty": first["uncertainty"].drop_vars(["uncertainty", "impacts"]),
             "impact_frequency": impacts["frequency"],
             "impact_uncertainty": impacts["uncertainty"],
+            "impact_time": impacts["impact_time"],
             "median_gear_speed": runs["gear_speed"].median("time").assign_attrs(_SPEED),
             "min_gear_speed": runs["gear_speed"].min("time").assign_attrs(_SLOWEST),
         },
