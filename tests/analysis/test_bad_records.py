@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from gearidae_bench.assessment_signals import CONDITIONS, RATE, clean_speeds
-from gearidae_bench.assessment_table import make_maps, make_rows
 
 from gearidae.analysis import assess
+from gearidae_bench.assessment_signals import CONDITIONS, RATE, clean_speeds
+from gearidae_bench.assessment_table import make_maps, make_rows
 
 
 @pytest.fixture(scope="module")

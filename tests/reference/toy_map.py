@@ -26,6 +26,7 @@ def model(torques=None):
         fractions=FRACTIONS,
         torques=None if torques is None else lines,
         sequences=np.stack([sequences(each) for each in lines]),
+        spread=np.zeros((len(lines), len(FRACTIONS))),
         speeds=np.sqrt(lines)[:, None] * np.ones(len(FRACTIONS)),
         slowest=0.5,
         highest_first=np.exp(9.0),

@@ -176,8 +176,8 @@ def _fit(model: MapModel, heard: Heard, *, free: bool) -> Fit:
         # the speed goes with the square root of the torque
         torque = likeliest * math.exp(2.0 * spread * deviation)
         torque = float(np.clip(torque, model.torques[0], model.torques[-1]))
-        sequences, speeds = model.at_torque(torque)
-        chi2, impacts = _chi_square_of(sequences, heard, np.zeros_like(speeds), 0.0, free=free)
+        sequences, own, speeds = model.at_torque(torque)
+        chi2, impacts = _chi_square_of(sequences, heard, np.zeros_like(speeds), own, free=free)
         chi2 = chi2 + (np.log(heard.speed / speeds) / spread) ** 2
         better = chi2 < best.chi2
         best = Fit(
@@ -198,31 +198,33 @@ def _fit_at_known_torque(model: MapModel, heard: Heard, *, free: bool) -> Fit:
     shift = np.where(np.abs(shift) <= math.log1p(SPEED_RANGE), shift, 0.0)
     drifting = math.copysign(heard.unsteady, float(np.median(shift)) or 1.0)
     uneven = _UNEVEN * abs(float(np.median(shift)) + drifting)
-    chi2, impacts = _chi_square_of(sequences, heard, shift, math.hypot(uneven, heard.unsteady), free=free)
+    own = np.hypot(model.spread[0], math.hypot(uneven, heard.unsteady))
+    chi2, impacts = _chi_square_of(sequences, heard, shift, own, free=free)
     history = "unknown" if free else "start"
     return Fit(model.fractions, chi2, impacts, history, np.full(len(chi2), np.nan))
 
 
 def _chi_square_of(
-    sequences: Floats, heard: Heard, shift: Floats, uneven: float, *, free: bool
+    sequences: Floats, heard: Heard, shift: Floats, own: Floats, *, free: bool
 ) -> tuple[Floats, int]:
     """Chi-square of every fraction, and the number of impacts compared.
 
-    Impact n is compared with the map's n, or with its n + n0 with the best n0.
+    Impact n is compared with the map's n, or with its n + n0 with the best n0. `own` is the relative uncertainty of
+    what each fraction predicts for one impact, beside `_MODEL`.
     """
     numbers, x = heard.numbers, np.log(heard.frequency)
-    variance = (heard.uncertainty / heard.frequency) ** 2 + _MODEL**2 + uneven**2
+    variance = (heard.uncertainty / heard.frequency) ** 2 + _MODEL**2 + own[:, None] ** 2
     if not free:
         kept = numbers + BEFORE < sequences.shape[1]
         model = sequences[:, BEFORE + numbers[kept]]
-        chi2 = _chi_square(x[kept] - model, 1.0 / variance[kept], shift)
+        chi2 = _chi_square(x[kept] - model, 1.0 / variance[:, kept], shift)
         return chi2, max(1, int(kept.sum()))
     steps = numbers - numbers[0]
     kept = steps < sequences.shape[1]  # of a long record the first impacts are the ones that tell
-    steps, x, variance = steps[kept], x[kept], variance[kept]
+    steps, x, variance = steps[kept], x[kept], variance[:, kept]
     furthest = sequences.shape[1] - 1 - int(steps[-1])
     model = at_places(sequences, np.arange(furthest * _STEPS + 1) / _STEPS, steps)
-    chi2 = _chi_square(x - model, 1.0 / variance, shift[:, None])
+    chi2 = _chi_square(x - model, 1.0 / variance[:, None, :], shift[:, None])
     return np.asarray(chi2.min(axis=1)), len(steps)
 
 
@@ -253,9 +255,9 @@ def _chi_square(deviation: Floats, weight: Floats, shift: Floats) -> Floats:
 
     Infinite where the map holds nothing.
     """
-    total = float(weight.sum())
-    if not total:
+    if not deviation.shape[-1]:
         return np.zeros(deviation.shape[:-1])
+    total = weight.sum(axis=-1)
     mean = np.sum(weight * deviation, axis=-1) / total
     mean_left = mean - np.clip(mean, np.minimum(shift, 0.0), np.maximum(shift, 0.0))
     about_mean = np.sum(weight * (deviation - mean[..., None]) ** 2, axis=-1)
