@@ -88,6 +88,15 @@ def test_rounded_speeds_are_not_taken_for_wear(rate, maps, speeds):
         assert not found.conclusive or found.low < 0.97 < found.high
 
 
+def test_an_offset_that_shifts_the_windows_stays_in_the_interval(maps):
+    """Of 1.3 % of the speed: each window lies later than the one before, and the torque is taken for 3 % larger."""
+    offset = CONDITIONS["offset of 0.02 rad/s"]
+    rows = make_rows(maps, {"offset": offset}, fractions=(0.945,), rates=(100e3, 10e3), seed=7)
+    for row in rows["offset"].values():
+        assert row.clear == 2
+        assert not row.wrong
+
+
 REDUCED = (
     "white noise, 20 dB",
     "white noise, -10 dB",

@@ -23,7 +23,7 @@ def test_chi_square_is_that_of_correlated_errors():
     """The common error's minimum in closed form is the quadratic form of the inverse covariance."""
     record = heard(0.8)
     fit = first_explanation(model(), record, "start")
-    covariance = np.diag(np.full(IMPACTS, 0.002**2 + 0.005**2)) + COMMON**2
+    covariance = np.diag(0.002**2 + 0.005**2 + (0.006 * np.arange(IMPACTS)) ** 2) + COMMON**2
     row = np.searchsorted(FRACTIONS, 0.77)
     deviation = np.log(record.frequency) - sequences()[row, BEFORE : BEFORE + IMPACTS]
     # the sums of squares differ by rounding alone

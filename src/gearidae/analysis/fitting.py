@@ -37,8 +37,10 @@ COMMON = 0.012
 """Relative uncertainty that all impacts share: windows a little early or late, and a speed off by half a per cent."""
 _MODEL = 0.005
 """Relative uncertainty of each of the map's frequencies, from interpolation."""
-_SPEED = 0.01
+_SPEED = 0.015
 """Relative uncertainty of the gear's speed: a sensor's calibration."""
+_LATE = 0.006
+"""Relative uncertainty per impact since the first: a speed off by 1.5 % puts each window later than the one before."""
 _UNEVEN = 0.3
 """Uncertainty of one impact's shift by another torque, in parts of the shift in the speed."""
 WITHIN = 3.84
@@ -214,6 +216,7 @@ def _chi_square_of(
     """
     numbers, x = heard.numbers, np.log(heard.frequency)
     variance = (heard.uncertainty / heard.frequency) ** 2 + _MODEL**2 + own[:, None] ** 2
+    variance = variance + (_LATE * (numbers - numbers[0])) ** 2
     if not free:
         kept = numbers + BEFORE < sequences.shape[1]
         model = sequences[:, BEFORE + numbers[kept]]
