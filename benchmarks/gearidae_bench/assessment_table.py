@@ -81,7 +81,7 @@ def make_rows(
     conditions: Mapping[str, Condition],
     fractions: Iterable[float] = FRACTIONS,
     rates: Iterable[float] = RATES,
-    trials: int = 1,
+    trials: int = 2,
     seed: int = 2009,
 ) -> dict[str, dict[str, Row]]:
     """Assess all records of some conditions.
@@ -164,7 +164,7 @@ def main(arguments: list[str]) -> int:
     options = dict(zip(arguments[::2], arguments[1::2], strict=True))
     only = options.get("--only", "")
     chosen = {name: condition for name, condition in CONDITIONS.items() if only in name}
-    rows = make_rows(make_maps(), chosen, trials=int(options.get("--trials", "1")))
+    rows = make_rows(make_maps(), chosen, trials=int(options.get("--trials", "2")))
     table = markdown(rows)
     sys.stdout.write(table)
     for name, each in rows.items():
