@@ -42,9 +42,31 @@ def test_map_over_torque_has_a_line_for_each():
     ratio = both.characteristic_frequency.isel(torque=1) / both.characteristic_frequency.isel(torque=0)
     assert float(ratio.sel(sam_fraction=1.0)) == pytest.approx(np.sqrt(2.0), rel=0.05, abs=0)
     assert 1.1 < float(ratio.sel(sam_fraction=0.8)) < np.sqrt(2.0)
-    with pytest.raises(gd.SceneError, match=r"pick the signal's with .sel\(torque=...\)"):
-        assess(gd.simulate(SCENE), both)
-    assert assess(gd.simulate(SCENE), both.sel(torque=4.5e-18)).sam_fraction == pytest.approx(1.0, abs=0.01)
+    signal = gd.simulate(SCENE)
+    for chart in (both, both.sel(torque=4.5e-18)):
+        assert assess(signal, chart).sam_fraction == pytest.approx(1.0, abs=0.01)
+    assert np.isnan(assess(signal, both.sel(torque=4.5e-18)).torque)
+    assert assess(signal, both).torque == pytest.approx(4.5e-18, rel=0.01, abs=0)
+
+
+def test_map_over_torque_by_its_name_alone():
+    """Torques around the scene's; another speed than all of them is another torque than the map's."""
+    chart = coating_map(SCENE, [1.0, 0.8, 0.6], over="drive.torque")
+    assert np.allclose(chart.torque / 4.5e-18, [0.7, 0.85, 1.0, 1.15, 1.3], rtol=1e-12)
+    # low-speed steady state: the speed goes with the square root of the torque, to what the adhesion takes
+    speeds = chart.median_gear_speed.sel(sam_fraction=1.0)
+    assert np.allclose(speeds / 1.5, np.sqrt(chart.torque / 4.5e-18), rtol=2e-3)
+    found = assess(gd.simulate(SCENE.replace({"drive.torque": 9e-18})), chart)
+    assert found.verdict == "does not fit"
+    assert "another torque" in found.explanation
+    with pytest.raises(gd.SceneError, match="needs a drive torque above zero"):
+        coating_map(SCENE.replace({"drive.torque": 0.0}), [1.0, 0.8], over="drive.torque")
+
+
+def test_lines_over_another_key_are_to_be_picked():
+    chart = coating_map(SCENE, [1.0, 0.8], over={"load.drag": [8e-18, 9e-18]})
+    with pytest.raises(gd.SceneError, match=r"pick the signal's with .sel\(drag=...\)"):
+        assess(gd.simulate(SCENE), chart)
 
 
 def test_map_survives_the_disk(chart, tmp_path):
@@ -183,3 +205,46 @@ def test_wrong_arguments_are_named(chart, worn):
         coating_map(SCENE, "all")
     with pytest.raises(gd.SceneError, match=r"coating\.sam_fraction"):
         coating_map(SCENE, [1.5])
+
+
+@pytest.mark.parametrize(
+    ("over", "message"),
+    [
+        ("load.drag", 'must be "drive.torque" or a table'),
+        (["drive.torque"], 'must be "drive.torque" or a table'),
+        ({"drive.torque": 4e-18}, "must be a list of values"),
+        ({"drive.torque": "4e-18 N m"}, "must be a list of values"),
+        ({"drive.torque": []}, "must be a list of values"),
+    ],
+)
+def test_wrong_further_keys_are_named(over, message):
+    with pytest.raises(gd.SceneError, match=message):
+        coating_map(SCENE, [1.0, 0.8], over=over)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda chart: chart.assign_attrs(width=np.array([1, 2])), "width must be a number"),
+        (lambda chart: chart.assign_attrs(width="wide"), "width must be a number"),
+        (lambda chart: chart.assign_attrs(scene=b"\x00"), "does not say how many teeth"),
+        (lambda chart: chart.assign(uncertainty="sam_fraction"), "its uncertainty must be numbers"),
+        (lambda chart: chart.drop_vars("sam_fraction"), "its sam_fraction must be numbers"),
+        (
+            lambda chart: chart.assign(impact_frequency=chart.impact_frequency.isel(impact=0, drop=True)),
+            "impact_frequency must have the dimension impact",
+        ),
+        (lambda chart: chart.assign(impact_frequency=-chart.impact_frequency), "must be above zero"),
+        (lambda chart: xr.concat([chart, chart], dim="sam_fraction"), "holds a fraction twice"),
+        (lambda chart: chart.assign(median_gear_speed=0.0 * chart.median_gear_speed), "the gear turns"),
+    ],
+)
+def test_damaged_maps_are_named(change, message, chart, worn):
+    with pytest.raises(gd.SceneError, match=message):
+        assess(worn, change(chart))
+
+
+@pytest.mark.parametrize("cutoff", [0.0, -1.0, float("nan"), "high", [1.0, 2.0]])
+def test_a_filter_is_a_frequency(cutoff, chart, worn):
+    with pytest.raises(gd.SceneError, match="must be a frequency in Hz"):
+        assess(worn, chart, anti_alias_filter=cutoff)

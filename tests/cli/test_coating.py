@@ -82,3 +82,45 @@ def test_plot_draws_maps_and_named_pictures(chart, folder, capfd):
     for name in ("impact_spectrum", "power_spectrum", "spectrogram", "cycle"):
         assert main(["plot", "run.nc", "--picture", name, "-o", f"{name}.png"]) == 0
         assert (folder / f"{name}.png").exists()
+
+
+def test_map_over_the_usual_torques(folder, capfd):
+    over = ["--over", "coating.sam_fraction=1,0.8", "--over", "drive.torque"]
+    assert main(["coating-map", CASE, *over, "-o", "map.nc"]) == 0
+    torques = gd.analysis.open_map("map.nc").torque.values
+    assert np.allclose(torques / 4.5e-18, [0.7, 0.85, 1.0, 1.15, 1.3], rtol=1e-12)
+    capfd.readouterr()
+    assert main(["coating-map", CASE, *over, "--over", "load.drag=8e-18", "-o", "other.nc"]) == 2
+    assert "needs values beside load.drag" in capfd.readouterr().err
+
+
+def test_an_estimated_torque_is_printed(folder, capfd):
+    over = ["--over", "coating.sam_fraction=1:0.6:-0.1", "--over", "drive.torque"]
+    assert main(["coating-map", CASE, *over, "-o", "map.nc"]) == 0
+    ds = gd.simulate(gd.preset(CASE).replace({"coating.sam_fraction": 0.72, "drive.torque": 5e-18}))
+    np.savetxt(
+        "rig.csv",
+        np.column_stack([ds.time, ds.gear_speed]),
+        delimiter=",",
+        header="time [s], gear_speed [rad/s]",
+        comments="",
+    )
+    capfd.readouterr()
+    assert main(["assess", "rig.csv", "--map", "map.nc"]) == 0
+    printed = capfd.readouterr().out
+    assert printed.startswith("clear: SAM fraction 0.7")
+    assert "the torque being 5" in printed
+
+
+@pytest.mark.parametrize(
+    "content", [b'name = "a case"\n[gears]\n', b"", b"\x89HDF\r\n\x1a\n" + bytes(40), b"CDF\x01" + bytes(9)]
+)
+def test_a_file_that_is_no_map_is_one_line(content, folder, capfd):
+    (folder / "m.toml").write_bytes(content)
+    (folder / "rig.csv").write_text("time [s], gear_speed [rad/s]\n")
+    assert main(["assess", "rig.csv", "--map", "m.toml"]) == 2
+    error = capfd.readouterr().err
+    assert error.startswith("gearidae: map = m.toml")
+    assert error.count("\n") == 1
+    assert "xarray" not in error
+    assert "engine" not in error

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from gearidae.analysis.assessment import Assessment, assess
     from gearidae.analysis.impacts import impact_windows
     from gearidae.analysis.measured import read_signal
+    from gearidae.analysis.online import OnlineAssessment
     from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies, impact_spectrum
     from gearidae.analysis.spectra import power_spectrum, spectrogram
     from gearidae.studies.coating_map import coating_map, open_map
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Assessment",
+    "OnlineAssessment",
     "assess",
     "characteristic_frequency",
     "coating_map",
@@ -40,6 +42,7 @@ __all__ = [
 
 _HOME = {
     "Assessment": "assessment",
+    "OnlineAssessment": "online",
     "assess": "assessment",
     "characteristic_frequency": "ringing",
     "coating_map": "gearidae.studies.coating_map",

@@ -49,11 +49,27 @@ class Ring:
         [Hz]; NaN if nothing stands out of the noise.
     uncertainty : float
         Standard uncertainty [Hz].
+    amplitude : float
+        Of the ring, averaged over its window, in the unit of the signal.
+    noise : float
+        Standard deviation of the white noise in the window, in the unit of the signal.
     """
 
     time: float
     frequency: float = math.nan
     uncertainty: float = math.nan
+    amplitude: float = math.nan
+    noise: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class _Peak:
+    """The ring in one spectrum: frequency and random uncertainty [Hz], amplitude and noise of the signal."""
+
+    frequency: float = math.nan
+    random: float = math.nan
+    amplitude: float = math.nan
+    noise: float = math.nan
 
 
 def characteristic_frequency(
@@ -266,7 +282,8 @@ def _ring(signal: Signal, window: Floats, teeth: int) -> Ring:
     if len(piece) < FEWEST_SAMPLES:
         return Ring(impact)
     lowest = lowest_frequency(piece, teeth)
-    frequency, noise = _peak(piece, signal.rate, lowest)
+    peak = _peak(piece, signal.rate, lowest)
+    frequency = peak.frequency
     if math.isnan(frequency):
         return Ring(impact)
     same = [frequency]
@@ -274,16 +291,16 @@ def _ring(signal: Signal, window: Floats, teeth: int) -> Ring:
         piece = _piece(signal, start, start + part * (stop - start))
         if len(piece) < FEWEST_SAMPLES:
             continue
-        other = _peak(piece, signal.rate, lowest, near=frequency)[0]
+        other = _peak(piece, signal.rate, lowest, near=frequency).frequency
         # where noise or the change of speed hides the ring, another peak is nearest, beyond a line's width
         if abs(other - frequency) < 2.0 * signal.rate / len(piece):
             same.append(other)
     spread = 0.5 * (max(same) - min(same))
-    return Ring(impact, frequency, math.hypot(spread, noise))
+    return Ring(impact, frequency, math.hypot(spread, peak.random), peak.amplitude, peak.noise)
 
 
-def _peak(piece: Floats, rate: float, lowest: float, near: float | None = None) -> tuple[float, float]:
-    """Frequency of the ring in a window and its random uncertainty [Hz]; NaN if nothing stands out.
+def _peak(piece: Floats, rate: float, lowest: float, near: float | None = None) -> _Peak:
+    """Ring in a window; NaN if nothing stands out.
 
     The ring is the peak of largest acceleration, or the one nearest to a frequency that is known already.
 
@@ -294,13 +311,13 @@ def _peak(piece: Floats, rate: float, lowest: float, near: float | None = None) 
     frequency, density = _periodogram(piece, rate, size)
     first = int(np.searchsorted(frequency, lowest))
     if first >= len(frequency) - 2:
-        return math.nan, math.nan
+        return _Peak()
     floor = float(np.median(density[first:])) + np.finfo(float).tiny
     logarithm = np.log(density + np.finfo(float).tiny)
     peaks, _ = dsp.find_peaks(logarithm, prominence=_PROMINENCE)
     peaks = peaks[(peaks >= first) & (density[peaks] > _ABOVE_NOISE * floor)]
     if not len(peaks):
-        return math.nan, math.nan
+        return _Peak()
     if near is None:
         top = int(peaks[np.argmax(density[peaks] * frequency[peaks] ** 2)])
     else:
@@ -309,7 +326,10 @@ def _peak(piece: Floats, rate: float, lowest: float, near: float | None = None) 
     shift = 0.5 * (left - right) / (left - 2.0 * middle + right)
     ratio = density[top] * math.log(2.0) / floor
     random = 1.6 * math.sqrt(3.0 / ratio) * rate / (2.0 * math.pi * len(piece))
-    return float(frequency[top] + shift * frequency[1]), random
+    # a Hann window is 1.5 bins wide; the median of white noise's spectrum is ln 2 of its mean
+    amplitude = math.sqrt(2.0 * density[top] * 1.5 * rate / len(piece))
+    noise = math.sqrt(0.5 * rate * floor / math.log(2.0))
+    return _Peak(float(frequency[top] + shift * frequency[1]), random, amplitude, noise)
 
 
 def _piece(signal: Signal, start: float, stop: float) -> Floats:

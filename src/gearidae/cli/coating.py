@@ -15,6 +15,7 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import is_quiet, say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.values import default_output, sweep_values
+from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["assess_signal", "map_case"]
 
 _FRACTION = "coating.sam_fraction"
+_TORQUE = "drive.torque"
 _MOST_ROWS = 13
 
 
@@ -42,7 +44,8 @@ def map_case(
     case : str
         Case file or preset.
     over : sequence of str
-        ``key=values`` pairs: the fractions, and further keys for several lines.
+        ``key=values`` pairs: the fractions, and further keys for several lines; ``drive.torque`` alone for torques
+        around that of the case.
     output : Path or None
         File to write; None for the case's name with ``_map.nc``.
     settings : sequence of str
@@ -58,12 +61,16 @@ def map_case(
         Exit code.
     """
     target = output or default_output(case, "_map.nc")
-    values = sweep_values(over)
+    values = sweep_values([pair for pair in over if pair.strip() != _TORQUE])
     fractions = values.pop(_FRACTION, None)
+    usual_torques = any(pair.strip() == _TORQUE for pair in over)
+    if usual_torques and values:
+        raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
+    further = _TORQUE if usual_torques else values
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
     check_target(target, overwrite=overwrite)
-    chart = gd.analysis.coating_map(scene, fractions, over=values, jobs=workers, progress=not is_quiet())
+    chart = gd.analysis.coating_map(scene, fractions, over=further, jobs=workers, progress=not is_quiet())
     save(chart, target, overwrite=overwrite)
     show_rows(_rows(chart))
     say(f"Map: {target}")

@@ -17,6 +17,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from gearidae.analysis.impacts import WIDTH
+from gearidae.analysis.map_model import require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
@@ -30,13 +31,10 @@ if TYPE_CHECKING:
 __all__ = ["coating_map", "open_map", "require_map"]
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
-_VARIABLES = (
-    "characteristic_frequency",
-    "uncertainty",
-    "impact_frequency",
-    "impact_uncertainty",
-    "median_gear_speed",
-)
+_TORQUE = "drive.torque"
+_PARTS_OF_TORQUE = (0.7, 0.85, 1.0, 1.15, 1.3)
+_HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
+"""How netCDF files begin, those of version 4 and the older ones."""
 _SPEED = {
     "units": "rad s-1",
     "long_name": "median speed of the gear",
@@ -53,7 +51,7 @@ def coating_map(
     scene: Scene,
     sam_fraction: ArrayLike | None = None,
     *,
-    over: Mapping[str, Iterable[Any]] | None = None,
+    over: Mapping[str, Iterable[Any]] | str | None = None,
     width: float = WIDTH,
     executor: Executor | None = None,
     jobs: int | None = None,
@@ -68,8 +66,10 @@ def coating_map(
         The pair of gears at the torque and the start that signals will be compared with.
     sam_fraction : array_like, optional
         Fractions of the coating; by default 51 from 1 to 0.5.
-    over : mapping of str to iterable, optional
-        Values of further keys, such as ``{"drive.torque": [...]}``; one line of the map for each combination.
+    over : mapping of str to iterable, or 'drive.torque', optional
+        Values of further keys, such as ``{"drive.torque": [...]}``; one line of the map for each combination. The name
+        ``drive.torque`` alone stands for 0.7, 0.85, 1, 1.15 and 1.3 times the scene's torque: what `assess` needs
+        where the torque of a record is not known.
     width : float, optional
         Of the impact windows, in pitches, see `impact_windows`.
     executor, jobs, backend, progress
@@ -79,8 +79,9 @@ def coating_map(
     -------
     Dataset, dims (..., sam_fraction, impact)
         ``characteristic_frequency`` and its standard ``uncertainty`` [Hz], of the first impact; ``impact_frequency``
-        and ``impact_uncertainty`` [Hz] of each; ``median_gear_speed`` and ``min_gear_speed`` [rad/s]. NaN where
-        nothing rings or a run could not go on. The scene and how it was made are attributes.
+        and ``impact_uncertainty`` [Hz] of each, at ``impact_time`` [s]; ``median_gear_speed`` and
+        ``min_gear_speed`` [rad/s]. NaN where nothing rings or a run could not go on. The scene and how it was made
+        are attributes.
 
     Raises
     ------
@@ -98,9 +99,7 @@ def coating_map(
     if getattr(scene, "gears", None) is None:
         raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
     fractions = _fractions(sam_fraction)
-    keys = {key: list(values) for key, values in (over or {}).items()}
-    if "coating.sam_fraction" in keys:
-        raise SceneError("over", "coating.sam_fraction", "is the map's own axis: give it as sam_fraction")
+    keys = _further_keys(scene, over)
     lines: list[xr.Dataset] = []
     for values in itertools.product(*keys.values()):
         changes = dict(zip(keys, values, strict=True))
@@ -140,44 +139,21 @@ def open_map(path: str | os.PathLike[str]) -> xr.Dataset:
     if not source.is_file():
         raise SceneError("map", path, "there is no such file")
     try:
+        with source.open("rb") as file:
+            head = file.read(8)
+    except OSError as error:
+        raise SceneError("map", path, f"cannot be read ({error.strerror})") from error
+    if not head.startswith(_HEADERS):
+        raise SceneError("map", path, "is no coating map but another kind of file; make one with coating-map")
+    try:
         with xr.open_dataset(source, decode_times=False) as opened:
             chart = opened.load()
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
-        raise SceneError("map", path, f"is damaged or not a netCDF file ({error})") from error
+        raise SceneError("map", path, f"is damaged ({type(error).__name__})") from error
     try:
         return require_map(chart)
     except SceneError as error:
         raise SceneError("map", path, error.allowed) from None
-
-
-def require_map(chart: object) -> xr.Dataset:
-    """Make sure that a dataset is a coating map.
-
-    Parameters
-    ----------
-    chart : object
-
-    Returns
-    -------
-    Dataset
-        The same.
-
-    Raises
-    ------
-    SceneError
-        If it is not, naming what is missing.
-    """
-    if not isinstance(chart, xr.Dataset):
-        raise SceneError("map", type(chart).__name__, "must be a Dataset from coating_map")
-    missing = [name for name in _VARIABLES if name not in chart]
-    missing += [name for name in ("sam_fraction", "impact") if name not in chart.dims]
-    missing += [name for name in ("scene",) if name not in chart.attrs]
-    if missing:
-        lacking = ", ".join(missing)
-        raise SceneError(
-            "map", "(dataset)", f"is no coating map: it lacks {lacking}; make one with coating_map"
-        )
-    return chart
 
 
 def _fractions(given: ArrayLike | None) -> list[float]:
@@ -191,6 +167,35 @@ def _fractions(given: ArrayLike | None) -> list[float]:
     return [float(value) for value in fractions]
 
 
+def _further_keys(scene: Scene, over: object) -> dict[str, list[Any]]:
+    """Keys beside the fraction and their values; sweep checks the values."""
+    if over is None:
+        return {}
+    if over == _TORQUE and isinstance(over, str):
+        torque = scene.to_dict()["drive"].get("torque", 0.0)
+        if not torque > 0.0:
+            raise SceneError(
+                "over", over, 'needs a drive torque above zero, or values: {"drive.torque": [...]}'
+            )
+        return {_TORQUE: [torque * part for part in _PARTS_OF_TORQUE]}
+    if not isinstance(over, Mapping):
+        raise SceneError(
+            "over",
+            over,
+            'must be "drive.torque" or a table of keys and values, {"drive.torque": [4e-18, 5e-18]}',
+        )
+    if "coating.sam_fraction" in over:
+        raise SceneError("over", "coating.sam_fraction", "is the map's own axis: give it as sam_fraction")
+    keys: dict[str, list[Any]] = {}
+    for key, values in over.items():
+        if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
+            raise SceneError(str(key), values, "must be a list of values to map over")
+        keys[str(key)] = list(values)
+        if not keys[str(key)]:
+            raise SceneError(str(key), "[]", "must be a list of values to map over")
+    return keys
+
+
 def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
     """One line of the map."""
     impacts = impact_frequencies(runs, width=width)
@@ -201,6 +206,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
             "uncertainty": first["uncertainty"].drop_vars(["uncertainty", "impacts"]),
             "impact_frequency": impacts["frequency"],
             "impact_uncertainty": impacts["uncertainty"],
+            "impact_time": impacts["impact_time"],
             "median_gear_speed": runs["gear_speed"].median("time").assign_attrs(_SPEED),
             "min_gear_speed": runs["gear_speed"].min("time").assign_attrs(_SLOWEST),
         },

@@ -1,0 +1,291 @@
+"""What may be wrong with a record although a coating map explains it: a stopped gear, coarse rounding, aliasing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from gearidae.analysis.fitting import Fit, Heard, at_places
+from gearidae.analysis.impacts import angle_of
+from gearidae.analysis.map_model import BEFORE, MapModel
+from gearidae.analysis.ringing import HIGHEST, Ring
+from gearidae.analysis.signal import Floats, Signal
+
+__all__ = ["alias", "quantum", "slower_than_map", "stop", "too_coarse", "unsteadiness", "widened"]
+
+_SMOOTH = 0.02
+"""The speed is averaged over this part of a pitch before it is compared with the map's smallest."""
+_MARGIN = 0.02
+"""A speed is below the map's smallest if it is by this part of the usual speed, and by four times the noise."""
+_ON_GRID = 0.05
+"""Largest departure of a rounded value from a multiple of the quantum, in quanta (single precision leaves some)."""
+_DITHERED = 0.45
+"""Noise of this many quanta turns rounding into white noise: rounding alone has at most 1/sqrt(12) = 0.29."""
+_SHOWN = 1.0
+"""Without noise, a ring of at least this many quanta survives the rounding."""
+_ROUNDING = 0.01
+"""Relative uncertainty of the frequency of a ring with an amplitude of one quantum."""
+_IMAGE = 0.02
+"""Relative uncertainty of a frequency that is seen as an image, from continuing the map."""
+_HARMONICS = 3
+_FEWEST = 3
+"""Impacts needed where a coating more worn than the map's could be seen as an image."""
+_BEYOND = 2.0
+"""By how much coatings more worn than the map's ring higher than the map, while the gear still turns."""
+_EVERY = 4
+_STEPS = 10
+"""Every fourth fraction, and ten places between two impacts, are tried as images."""
+_APART = 0.02
+"""An image that means a fraction this near to the interval is no other answer."""
+_LIKELY = 9.0
+"""Images count as an explanation up to this loss of twice the log-likelihood: one in ninety."""
+_PRECISION = 0.005
+"""Relative precision to which a ring that is no image is predicted by the map."""
+
+
+def unsteadiness(signal: Signal) -> float:
+    """Change of the median speed from the first half of a record to the second, in parts of itself.
+
+    Parameters
+    ----------
+    signal : Signal
+        Gear speed.
+
+    Returns
+    -------
+    float
+        Over whole pitches if the record has two, so that the ripple from tooth to tooth does not count.
+    """
+    angle = np.maximum.accumulate(angle_of(signal))
+    pitch = 2.0 * math.pi / (signal.gear_teeth or 1)
+    half = 0.5 * float(angle[-1])
+    if half >= pitch:
+        half = pitch * math.floor(half / pitch)
+    if half <= 0.0:
+        return 0.0
+    early, late = np.interp([half, angle[-1] - half], angle, np.arange(len(angle)))
+    # medians, since a worn coating's dips are no drift
+    first = float(np.median(signal.values[: int(early) + 1]))
+    last = float(np.median(signal.values[int(late) :]))
+    return abs(first - last) / (0.5 * (first + last)) if first + last > 0.0 else 0.0
+
+
+def stop(signal: Signal, model: MapModel) -> str:
+    """Say so if the gear stops or turns back.
+
+    Parameters
+    ----------
+    signal : Signal
+        Gear speed with the gear's teeth.
+    model : MapModel
+
+    Returns
+    -------
+    str
+        Empty if it does not. A gear that starts from rest is judged from when it has reached half of its usual speed.
+    """
+    usual = float(np.median(signal.values))
+    if usual <= 0.0:
+        return "the gear stands still or turns back for half of the record"
+    smallest, noise = _smallest_speed(signal, model, usual)
+    if smallest < -4.0 * noise:
+        return f"the gear turns back, to {smallest:.3g} rad/s"
+    return "the gear stops" if smallest <= _MARGIN * usual else ""
+
+
+def slower_than_map(signal: Signal, model: MapModel) -> str:
+    """Say so if the gear slows down further than in any run of the map.
+
+    Parameters
+    ----------
+    signal : Signal
+        Gear speed, in the median above zero.
+    model : MapModel
+
+    Returns
+    -------
+    str
+        Empty if it does not.
+    """
+    usual = float(np.median(signal.values))
+    smallest, noise = _smallest_speed(signal, model, usual)
+    # another torque slows the gear down throughout
+    limit = model.slowest * min(1.0, usual / float(np.nanmedian(model.speeds)))
+    if smallest >= limit - max(_MARGIN * usual, 4.0 * noise):
+        return ""
+    return f"the gear slows down to {smallest:.3g} rad/s, below the map's smallest speed, {limit:.3g} rad/s"
+
+
+def _smallest_speed(signal: Signal, model: MapModel, usual: float) -> tuple[float, float]:
+    """Smallest speed once the gear has come to half of its usual one, and the noise in it [rad/s].
+
+    Averaged over a part of a pitch, so that neither noise nor a single dip counts.
+    """
+    pitch = 2.0 * math.pi / model.gear_teeth
+    count = max(1, min(round(_SMOOTH * pitch / (usual * signal.interval)), len(signal.values)))
+    slow = uniform_filter1d(signal.values, count, mode="nearest")
+    slow = slow[int((slow >= 0.5 * usual).argmax()) :]
+    noise = 1.48 * float(np.median(np.abs(np.diff(signal.values)))) / math.sqrt(2.0 * count)
+    return float(slow.min()), noise
+
+
+def quantum(values: Floats) -> float:
+    """Step to which a record is rounded [its unit]; 0 if it is not.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+
+    Returns
+    -------
+    float
+        The smallest difference between values that occur, if all of them are multiples of it apart.
+    """
+    levels = np.unique(values)
+    if len(levels) < 2:
+        return 0.0
+    steps = np.diff(levels)
+    apart = steps[steps > 1e-9 * max(abs(float(levels[0])), abs(float(levels[-1])))]
+    if not len(apart):
+        return 0.0
+    smallest = float(apart.min())
+    # the mean of all differences of one step is less rounded itself than the smallest of them
+    step = float(apart[apart < 1.5 * smallest].mean())
+    multiples = apart / step
+    off = np.abs(multiples - np.round(multiples))
+    return step if float(off.max()) < _ON_GRID else 0.0
+
+
+def too_coarse(ring: Ring, step: float) -> bool:
+    """Whether a ring is so small beside the rounding that its frequency is not the contact's.
+
+    Parameters
+    ----------
+    ring : Ring
+    step : float
+        Quantum [rad/s].
+
+    Returns
+    -------
+    bool
+        Rounding turns a ring smaller than a quantum into steps, whose harmonics can be stronger than the ring. Noise
+        of half a quantum before the rounding prevents that.
+    """
+    return ring.amplitude < _SHOWN * step and ring.noise < _DITHERED * step
+
+
+def widened(ring: Ring, step: float) -> float:
+    """Standard uncertainty of a ring's frequency [Hz], rounding included.
+
+    Parameters
+    ----------
+    ring : Ring
+    step : float
+        Quantum [rad/s].
+    """
+    return math.hypot(ring.uncertainty, _ROUNDING * ring.frequency * min(1.0, step / ring.amplitude))
+
+
+def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -> str:
+    """Say so if what is heard could be the image of faster ringing.
+
+    Parameters
+    ----------
+    model : MapModel
+    heard : Heard
+    fit : Fit
+        That explains the record without images.
+    rate : float
+        Sampling rate [Hz].
+    cutoff : float
+        Nothing above this frequency was in the speed when it was sampled [Hz]; infinite if no filter is known.
+
+    Returns
+    -------
+    str
+        Empty if it could not. It could if another fraction of the map rings, in its first three harmonics, above half
+        the sampling rate and its images explain the record; or if the record has fewer than three impacts and a
+        coating more worn than the map's could.
+    """
+    if cutoff <= 0.5 * rate:
+        return ""
+    highest = model.highest_first if fit.history == "start" else model.highest
+    # what shows below HIGHEST of the rate is the image of something above the rest of it
+    lowest_image = (1.0 - HIGHEST) * rate
+    if len(heard.numbers) < _FEWEST and lowest_image < min(_BEYOND * highest, cutoff):
+        return (
+            f"sampled at {rate:.3g} Hz without a low-pass filter, {len(heard.numbers)} impact(s) do not tell ringing "
+            f"at these frequencies from images of ringing above {lowest_image:.3g} Hz"
+        )
+    other = _image_of(model, heard, fit, rate, cutoff)
+    if math.isnan(other):
+        return ""
+    return (
+        f"sampled at {rate:.3g} Hz without a low-pass filter, the ringing of a SAM fraction of {other:.2f} would show "
+        f"at the same frequencies"
+    )
+
+
+def _image_of(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -> float:
+    """Another fraction whose images explain the record best; NaN if none does."""
+    torque = float(fit.torques[fit.best])
+    sequences = model.at_torque(torque)[0][::_EVERY]
+    fractions = model.fractions[::_EVERY]
+    steps = heard.numbers - heard.numbers[0]
+    kept = steps < sequences.shape[1]
+    if fit.history == "start":
+        kept &= heard.numbers + BEFORE < sequences.shape[1]
+        predicted = sequences[:, None, BEFORE + heard.numbers[kept]]
+    else:
+        places = np.arange((sequences.shape[1] - 1 - int(steps[kept][-1])) * _STEPS + 1) / _STEPS
+        predicted = at_places(sequences, places, steps[kept])
+    if not kept.any():
+        return math.nan
+    misfit, folded = _misfit_of_images(
+        np.exp(predicted), heard.frequency[kept], heard.uncertainty[kept], rate, cutoff
+    )
+    misfit = np.where(folded, misfit, np.inf).min(axis=1)
+    possible = fit.possible
+    misfit[(fractions > possible[0] - _APART) & (fractions < possible[-1] + _APART)] = np.inf
+    best = int(misfit.argmin())
+    return float(fractions[best]) if misfit[best] <= fit.chi2[fit.best] + _LIKELY else math.nan
+
+
+def _misfit_of_images(
+    ringing: Floats, heard: Floats, uncertainty: Floats, rate: float, cutoff: float
+) -> tuple[Floats, np.ndarray]:
+    """Misfit of what sampled ringing would show, and whether any of it would be an image.
+
+    An image is predicted less sharply than what is seen directly, the less so the faster its original is. Twice the
+    negative log-likelihood therefore counts the width of each prediction too; else the vaguest would explain most.
+
+    Parameters
+    ----------
+    ringing : ndarray, shape (n, p, m)
+        Frequencies of the contact [Hz]; NaN where unknown.
+    heard, uncertainty : ndarray, shape (m,)
+        Of the record [Hz].
+
+    Returns
+    -------
+    misfit, folded : ndarray, shape (n, p)
+    """
+    direct = uncertainty**2 + (_PRECISION * heard) ** 2
+    nearest = np.full(ringing.shape, np.inf)
+    image = np.zeros(ringing.shape, dtype=bool)
+    for harmonic in range(1, _HARMONICS + 1):
+        frequency = harmonic * ringing
+        folds = frequency > 0.5 * rate
+        shown = np.abs(frequency - rate * np.round(frequency / rate))
+        variance = uncertainty**2 + (_IMAGE * frequency) ** 2
+        each = (shown - heard) ** 2 / variance + np.log(np.maximum(1.0, variance / direct))
+        # a harmonic stands out as an image only where its fundamental is itself out of sight
+        allowed = np.isfinite(each) & (frequency <= cutoff)
+        if harmonic > 1:
+            allowed &= folds & (ringing > HIGHEST * rate)
+        better = allowed & (each < nearest)
+        nearest = np.where(better, each, nearest)
+        image = np.where(better, folds, image)
+    return np.asarray(nearest.sum(axis=-1)), np.asarray(image.any(axis=-1))

@@ -1,0 +1,322 @@
+"""What a coating map predicts: the sequence of impact frequencies for every fraction, and the speed of the gear."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import PchipInterpolator
+
+from gearidae.analysis.impacts import check_width
+from gearidae.analysis.signal import Floats
+from gearidae.errors import SceneError
+
+__all__ = ["AFTER", "BEFORE", "MapModel", "map_model", "require_map"]
+
+BEFORE, AFTER = 1, 6
+"""Impacts by which the map's sequences are continued at both ends."""
+_GRID = 1001
+_INTERPOLATION = 0.4
+_TORQUE = "torque"
+"""The one dimension beside the fraction that an assessment can estimate: that of ``drive.torque``."""
+_VARIABLES = (
+    "characteristic_frequency",
+    "uncertainty",
+    "impact_frequency",
+    "impact_uncertainty",
+    "median_gear_speed",
+    "min_gear_speed",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class MapModel:
+    """A coating map on a fine grid of fractions.
+
+    Attributes
+    ----------
+    fractions : ndarray, shape (n,)
+        Rising [1].
+    torques : ndarray, shape (m,), or None
+        Drive torques of the map's lines, rising [N m]; None for a map at one torque.
+    sequences : ndarray, shape (m or 1, n, BEFORE + impacts + AFTER)
+        Logarithm of the frequency [ln Hz] after each impact; NaN where the map has nothing.
+    spread : ndarray, shape (m or 1, n)
+        Relative uncertainty of the frequencies from interpolating between the fractions of the map.
+    speeds : ndarray, shape (m or 1, n)
+        Median speed of the gear [rad/s]; NaN where it sticks.
+    slowest : float
+        Smallest speed of the gear in any run of the map [rad/s].
+    highest_first, highest : float
+        Highest frequency after the first impact, and after any [Hz].
+    first_impact : float
+        Angle from the start to the first impact [rad], roughly: time times median speed; NaN if the map lacks times.
+    width : float
+        Of the impact windows, in pitches.
+    gear_teeth : int
+    """
+
+    fractions: Floats
+    torques: Floats | None
+    sequences: Floats
+    spread: Floats
+    speeds: Floats
+    slowest: float
+    highest_first: float
+    highest: float
+    first_impact: float
+    width: float
+    gear_teeth: int
+
+    def at_torque(self, torque: float) -> tuple[Floats, Floats, Floats]:
+        """Sequences, their uncertainty and speeds at one torque, interpolated in its logarithm.
+
+        Parameters
+        ----------
+        torque : float
+            Drive torque [N m]; without effect on a map at one torque.
+
+        Returns
+        -------
+        sequences : ndarray, shape (n, k)
+        spread, speeds : ndarray, shape (n,)
+        """
+        if self.torques is None:
+            return self.sequences[0], self.spread[0], self.speeds[0]
+        place = int(np.clip(np.searchsorted(self.torques, torque) - 1, 0, len(self.torques) - 2))
+        low, high = np.log(self.torques[place : place + 2])
+        part = (math.log(torque) - low) / (high - low)
+        lower, upper = self.sequences[place], self.sequences[place + 1]
+        speeds = self.speeds[place] ** (1.0 - part) * self.speeds[place + 1] ** part
+        spread = (1.0 - part) * self.spread[place] + part * self.spread[place + 1]
+        return lower + part * (upper - lower), spread, speeds
+
+    def torque_at(self, speed: float) -> float:
+        """Drive torque [N m] at which the gear turns at a speed [rad/s]; continued beyond the map's ends.
+
+        The median over the fractions: how fast the gear turns depends on the coating by a per cent.
+        """
+        if self.torques is None:
+            raise ValueError("the map holds one torque")
+        known, at = np.log(np.nanmedian(self.speeds, axis=1)), np.log(self.torques)
+        place = int(np.clip(np.searchsorted(known, math.log(speed)) - 1, 0, len(known) - 2))
+        slope = (at[place + 1] - at[place]) / (known[place + 1] - known[place])
+        return float(math.exp(at[place] + slope * (math.log(speed) - known[place])))
+
+
+def require_map(chart: object) -> xr.Dataset:
+    """Make sure that a dataset is a coating map.
+
+    Parameters
+    ----------
+    chart : object
+
+    Returns
+    -------
+    Dataset
+        The same.
+
+    Raises
+    ------
+    SceneError
+        If it is not, naming what is missing.
+    """
+    if not isinstance(chart, xr.Dataset):
+        raise SceneError("map", type(chart).__name__, "must be a Dataset from coating_map")
+    missing = [name for name in _VARIABLES if name not in chart]
+    missing += [name for name in ("sam_fraction", "impact") if name not in chart.dims]
+    missing += [name for name in ("scene", "width") if name not in chart.attrs]
+    if missing:
+        lacking = ", ".join(missing)
+        raise SceneError(
+            "map", "(dataset)", f"is no coating map: it lacks {lacking}; make one with coating_map"
+        )
+    for name in (*_VARIABLES, "sam_fraction"):
+        _check_numbers(chart, name)
+    return chart
+
+
+def _check_numbers(chart: xr.Dataset, name: str) -> None:
+    """Refuse a variable of a map that is not numbers along the fractions, or along the impacts if it is of these."""
+    if name not in chart.variables or chart[name].dtype.kind not in "fiu":
+        raise SceneError("map", "(dataset)", f"its {name} must be numbers")
+    wanted = {"sam_fraction", "impact"} if name.startswith("impact_") else {"sam_fraction"}
+    lacking = wanted - set(chart[name].dims)
+    if lacking:
+        raise SceneError(
+            "map", "(dataset)", f"its {name} must have the dimension {' and '.join(sorted(lacking))}"
+        )
+    if name == "sam_fraction" and not np.isfinite(chart[name].values).all():
+        raise SceneError("map", "(dataset)", "its fractions must be finite numbers")
+    if name == "impact_frequency" and (chart[name].values <= 0.0).any():
+        raise SceneError("map", "(dataset)", "its frequencies must be above zero")
+
+
+def map_model(chart: object) -> MapModel:
+    """Put a coating map on a fine grid.
+
+    Parameters
+    ----------
+    chart : Dataset
+        From `coating_map`: over the fraction, or over the fraction and ``drive.torque``.
+
+    Returns
+    -------
+    MapModel
+
+    Raises
+    ------
+    SceneError
+        If it is no coating map, has lines over another key, or too few points.
+    """
+    data = require_map(chart)
+    torques = _torques(data)
+    if torques is None:
+        data = data.expand_dims(_TORQUE)
+    data = data.sortby([_TORQUE, "sam_fraction"] if torques is not None else "sam_fraction")
+    frequency = data["impact_frequency"].transpose(_TORQUE, "sam_fraction", "impact").values
+    if (np.isfinite(frequency[:, :, 0]).sum(axis=1) < 2).any():
+        raise SceneError("map", "(dataset)", "needs at least two fractions at which impacts ring")
+    known = data["sam_fraction"].values
+    if (np.diff(known) <= 0.0).any():
+        raise SceneError("map", "(dataset)", "holds a fraction twice")
+    fractions = np.linspace(known[0], known[-1], _GRID)
+    speeds = data["median_gear_speed"].transpose(_TORQUE, "sam_fraction").values
+    speeds = np.where(speeds > 0.0, speeds, np.nan)  # a gear that sticks has no speed to compare with
+    if (np.isfinite(speeds).sum(axis=1) < 2).any():
+        raise SceneError("map", "(dataset)", "needs at least two fractions at which the gear turns")
+    return MapModel(
+        fractions=fractions,
+        torques=torques,
+        sequences=np.stack([_sequences(fractions, known, table) for table in frequency]),
+        spread=np.stack([_spread(fractions, known, table) for table in frequency]),
+        speeds=np.stack([_interpolated(fractions, known, row) for row in speeds]),
+        slowest=float(np.nanmin(data["min_gear_speed"].values)),
+        highest_first=float(np.nanmax(frequency[:, :, 0])),
+        highest=float(np.nanmax(frequency)),
+        first_impact=_first_impact(data),
+        width=_width(data),
+        gear_teeth=_gear_teeth(data),
+    )
+
+
+def _torques(chart: xr.Dataset) -> Floats | None:
+    """Torques of the lines of a map, rising; None where it has one line."""
+    further = [str(dim) for dim in chart["impact_frequency"].dims if dim not in ("sam_fraction", "impact")]
+    if not further:
+        return None
+    for dim in further:
+        described = str(chart[dim].attrs.get("long_name", "")) if dim in chart.coords else ""
+        if dim != _TORQUE or not described.startswith("drive.torque"):
+            raise SceneError(
+                "map",
+                f"(dimension {dim})",
+                f"has several lines: pick the signal's with .sel({dim}=...); only drive.torque is estimated",
+            )
+    torques = np.sort(chart[_TORQUE].values.astype(np.float64))
+    if len(torques) < 2 or torques[0] <= 0.0 or (np.diff(torques) <= 0.0).any():
+        raise SceneError(
+            "map",
+            f"(torque {', '.join(f'{value:g}' for value in torques)})",
+            "must hold two different torques above zero, or more",
+        )
+    return np.asarray(torques, dtype=np.float64)
+
+
+def _first_impact(chart: xr.Dataset) -> float:
+    """Angle from the start to the first impact [rad]; older maps do not tell."""
+    if "impact_time" not in chart or chart["impact_time"].dtype.kind != "f":
+        return math.nan
+    angles = (chart["impact_time"].isel(impact=0) * chart["median_gear_speed"]).values
+    return float(np.nanmedian(angles)) if np.isfinite(angles).any() else math.nan
+
+
+def _width(chart: xr.Dataset) -> float:
+    try:
+        return check_width(float(chart.attrs["width"]))
+    except (TypeError, ValueError):
+        raise SceneError(
+            "map", "(dataset)", "its attribute width must be a number (the windows, in pitches)"
+        ) from None
+
+
+def _gear_teeth(chart: xr.Dataset) -> int:
+    try:
+        return int(json.loads(chart.attrs["scene"])["gears"]["gear_teeth"])
+    except (KeyError, TypeError, ValueError):
+        raise SceneError("map", "(dataset)", "its scene does not say how many teeth the gear has") from None
+
+
+def _interpolated(fractions: Floats, known: Floats, values: Floats) -> Floats:
+    """Values between those of the map; NaN where they are unknown on one side."""
+    here = np.isfinite(values)
+    if here.sum() < 2:
+        return np.full(len(fractions), np.nan)
+    return np.asarray(PchipInterpolator(known[here], values[here], extrapolate=False)(fractions))
+
+
+def _spread(fractions: Floats, known: Floats, table: Floats) -> Floats:
+    """Uncertainty of interpolated logarithms: a part of how far a curve and straight lines through the points differ.
+
+    That part is 0.4: maps with steps of 0.1 and 0.05 err by that much against one with steps of 0.01.
+    """
+    apart = np.zeros(len(fractions))
+    for column in np.log(table).T:
+        here = np.isfinite(column)
+        if here.sum() >= 2:
+            curve = _interpolated(fractions, known, column)
+            lines = np.interp(fractions, known[here], column[here])
+            apart = np.fmax(apart, np.abs(curve - lines))
+    return _INTERPOLATION * apart
+
+
+def _sequences(fractions: Floats, known: Floats, table: Floats) -> Floats:
+    """Logarithm of the frequencies on the grid, each sequence continued at both ends.
+
+    Parameters
+    ----------
+    fractions : ndarray, shape (n,)
+    known : ndarray, shape (m,)
+        Fractions of the map.
+    table : ndarray, shape (m, impacts)
+        Its frequencies [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n, BEFORE + impacts + AFTER)
+    """
+    impacts = table.shape[1]
+    inside = np.stack([_interpolated(fractions, known, np.log(column)) for column in table.T], axis=1)
+    sequences = np.full((len(fractions), BEFORE + impacts + AFTER), np.nan)
+    for row, values in zip(sequences, inside, strict=True):
+        count = int(np.isfinite(values).argmin()) if np.isnan(values).any() else impacts
+        if count:
+            _continue(row, values[:count])
+    return sequences
+
+
+def _continue(row: Floats, values: Floats) -> None:
+    """Fill a row with a sequence and its continuation, whose steps change by a constant ratio.
+
+    So do those of a contact that approaches a settled state.
+    """
+    count = len(values)
+    row[BEFORE : BEFORE + count] = values
+    steps = np.diff(values)
+    ahead = behind = 0.0
+    fading = growing = 1.0
+    if len(steps):
+        ahead, behind = float(steps[-1]), float(steps[0])
+    if len(steps) > 1 and steps[0] * steps[1] > 0.0:
+        growing = min(2.0, max(1.0, float(steps[0] / steps[1])))
+    if len(steps) > 1 and steps[-1] * steps[-2] > 0.0:
+        fading = min(1.0, float(steps[-1] / steps[-2]))
+    for place in range(BEFORE + count, min(BEFORE + count + AFTER, len(row))):
+        ahead *= fading
+        row[place] = row[place - 1] + ahead
+    for place in range(BEFORE - 1, -1, -1):
+        behind *= growing
+        row[place] = row[place + 1] - behind
