@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 
+from gearidae.contact.asperities import law_of
 from gearidae.contact.line import line_force
 from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
@@ -67,10 +68,11 @@ class PairContact:
         return self.parts[0][1]
 
     def force(self, gap: ArrayLike, stretch: ArrayLike = 0.0) -> Floats:
-        """Force without bulk deflection [N] at gaps and stretches [m], positive pushes apart."""
+        """Force without bulk deflection [N] at gaps and stretches beyond joining [m], positive pushes apart."""
         total: Floats = np.zeros(np.broadcast_shapes(np.shape(gap), np.shape(stretch)))
         for share, surface in self.parts:
-            total = total + share * line_force(gap, stretch, self.radius, self.width, surface, self.law)
+            stretched = np.asarray(stretch) + law_of(self.law, surface).join * surface.roughness
+            total = total + share * line_force(gap, stretched, self.radius, self.width, surface, self.law)
         return total
 
     def resting_gap(self, load: float, error: float = 1e-12) -> float:
