@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 import gearidae as gd
 from gearidae.engine.integrate import adams, native
 from gearidae.engine.integrate.driver import Tally
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.state import ADAMS, MOST_ORDERS
 from gearidae_bench.error import run_error
 from gearidae_bench.reference import load_reference
 from gearidae_bench.scenes import SCENES
@@ -20,43 +21,43 @@ EPS = np.finfo(float).eps
 REFERENCES = Path(__file__).parents[2] / "benchmarks" / "references"
 
 
-def walk(times, state, rates, back):
-    """A desk that has been through these times by formulas that look back on so many rates.
+def walk(times, state, rates, order):
+    """The record of formulas of one order that have been through these times.
 
     Also the last one's leading coefficient, the rates that it wanted, and its prediction.
     """
-    desk = np.zeros(adams.DESK)
-    desk[adams.WANTED] = 1.0
+    a = np.zeros(1, ADAMS)[0]
+    a.wanted = 1
     n = state(times[0]).size
     correction = np.empty(n)
-    adams.begin(desk, times[0], state(times[0]), rates(times[0]))
+    adams.begin(a, times[0], state(times[0]), rates(times[0]))
     for before, t in pairwise(times):
-        cj = adams.rates_at_end(n, desk, t - before, back, state(t), correction)
-        wanted = desk[adams.PREDICTED_RATES : adams.PREDICTED_RATES + n].copy()
-        desk[adams.NEW_STEP] = t - before
-        desk[adams.NEW_STATE : adams.NEW_STATE + n] = state(t)
-        desk[adams.NEW_RATES : adams.NEW_RATES + n] = rates(t)
-        adams.set_differences(desk, t - before)
+        cj = adams.rates_at_end(n, a, t - before, order, state(t), correction)
+        wanted = a.predicted_rates[:n].copy()
+        a.new_step = t - before
+        a.new_state[:n] = state(t)
+        a.new_differences[0, :n] = rates(t)
+        adams.set_differences(a, t - before)
         yp = np.empty(n)
-        adams.keep(desk, t, yp)
+        adams.keep(a, t, yp)
         np.testing.assert_array_equal(yp, rates(t))
-    return desk, cj, wanted, state(times[-1]) + correction
+    return a, cj, wanted, state(times[-1]) + correction
 
 
 @pytest.mark.parametrize("n", [2, 4])
 @given(
     steps=st.lists(st.floats(0.4, 1.2), min_size=9, max_size=12),
     coefficients=st.lists(st.floats(-1, 1), min_size=36, max_size=36),
-    back=st.integers(1, adams.DEEPEST),
+    order=st.integers(1, MOST_ORDERS),
 )
-def test_the_formula_is_exact_for_rates_of_its_order(n, steps, coefficients, back):
+def test_the_formula_is_exact_for_rates_of_its_order(n, steps, coefficients, order):
     """The polynomial through so many known rates and the new one is the rates' own, if they are one of that degree.
 
     The prediction, by the known ones alone, is exact for one degree less.
     """
-    of_rates = np.array(coefficients).reshape(4, 9)[:n, : back + 1]
+    of_rates = np.array(coefficients).reshape(4, 9)[:n, : order + 1]
     times = np.concatenate([[0.0], np.cumsum(steps)]) / sum(steps)
-    powers = np.arange(back + 1)
+    powers = np.arange(order + 1)
 
     def rates(t):
         return of_rates @ t**powers
@@ -64,17 +65,17 @@ def test_the_formula_is_exact_for_rates_of_its_order(n, steps, coefficients, bac
     def state(t):
         return of_rates @ (t ** (powers + 1) / (powers + 1))
 
-    desk, _, wanted, _ = walk(times, state, rates, back)
+    a, _, wanted, _ = walk(times, state, rates, order)
     # the weights of nine rates at steps that differ by a factor of three add up to some 1e5
     rounding, closest = 1e6 * EPS, np.diff(times).min()
     np.testing.assert_allclose(wanted, rates(times[-1]), rtol=0, atol=rounding / closest)
     of_rates[:, -1] = 0.0
-    *_, prediction = walk(times, state, rates, back)
+    *_, prediction = walk(times, state, rates, order)
     np.testing.assert_allclose(prediction, state(times[-1]), rtol=0, atol=rounding)
-    of_rates[:] = np.array(coefficients).reshape(4, 9)[:n, : back + 1]
+    of_rates[:] = np.array(coefficients).reshape(4, 9)[:n, : order + 1]
     y, yp = np.empty(n), np.empty(n)
     for t in np.linspace(times[-2], times[-1], 7):
-        adams.between(desk, t, y, yp)
+        adams.between(a, t, y, yp)
         np.testing.assert_allclose(y, state(t), rtol=0, atol=rounding)
         np.testing.assert_allclose(yp, rates(t), rtol=0, atol=rounding / closest)
 
@@ -82,11 +83,11 @@ def test_the_formula_is_exact_for_rates_of_its_order(n, steps, coefficients, bac
 LEADING = {1: 1 / 2, 2: 5 / 12, 3: 9 / 24, 4: 251 / 720, 5: 475 / 1440, 6: 19087 / 60480, 7: 36799 / 120960}
 
 
-@pytest.mark.parametrize("back", LEADING)
-def test_equal_steps_give_the_formulas_of_adams_and_moulton(back):
+@pytest.mark.parametrize("order", LEADING)
+def test_equal_steps_give_the_formulas_of_adams_and_moulton(order):
     """Leading coefficients of the implicit formulas (Hairer, Norsett and Wanner, III.1)."""
-    _, cj, *_ = walk(0.1 * np.arange(12), lambda t: np.zeros(2), lambda t: np.zeros(2), back)
-    assert 1.0 / (0.1 * cj) == pytest.approx(LEADING[back], rel=1e-12)
+    _, cj, *_ = walk(0.1 * np.arange(12), lambda t: np.zeros(2), lambda t: np.zeros(2), order)
+    assert 1.0 / (0.1 * cj) == pytest.approx(LEADING[order], rel=1e-12)
 
 
 def test_the_first_step_has_one_rate_to_look_back_on():
@@ -97,13 +98,13 @@ def test_the_first_step_has_one_rate_to_look_back_on():
 
 
 def test_a_step_that_was_not_accepted_leaves_no_trace():
-    desk, *_ = walk(0.1 * np.arange(5), np.atleast_1d, lambda t: np.ones(1), 3)
-    before = desk.copy()
-    adams.rates_at_end(1, desk, 0.3, 3, np.array([0.7]), np.empty(1))
-    adams.set_differences(desk, 0.3)
-    adams.keep(desk, 0.7, np.empty(1))
-    for part in (slice(adams.STATE, adams.AREA), slice(adams.TABLE, adams.NEW_TABLE)):
-        np.testing.assert_array_equal(desk[part], before[part])
+    a, *_ = walk(0.1 * np.arange(5), np.atleast_1d, lambda t: np.ones(1), 3)
+    before = a.copy()
+    adams.rates_at_end(1, a, 0.3, 3, np.array([0.7]), np.empty(1))
+    adams.set_differences(a, 0.3)
+    adams.keep(a, 0.7, np.empty(1))
+    for part in ("time", "last_step", "n_history", "state", "time_lags", "differences"):
+        np.testing.assert_array_equal(a[part], before[part])
 
 
 @pytest.mark.parametrize(("name", "gain"), [("low_sam", 3.0), ("high_bare", 4.0)])

@@ -6,9 +6,11 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate import native, portable
+from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.integrate import driver, epilogue, native, portable, start
 from gearidae.engine.integrate.driver import Tally
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.state import PHASE
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace(
     {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 301}
@@ -26,15 +28,19 @@ def backend(request):
     return request.param
 
 
-def test_small_blocks_hold_the_same_run(backend, monkeypatch):
+@pytest.mark.parametrize("room", [driver.BLOCK_EVENTS, EVENTS_AT_ONCE + 1])
+def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
+    """Full of samples, or of events: the second has room for two, and for what may come at once."""
     whole = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
-    module = native if backend == "native" else portable
-    monkeypatch.setattr(module, "BLOCK_ROWS", 7)
-    monkeypatch.setattr(module, "BLOCK_EVENTS", 150)
+    for module in (driver, portable):
+        monkeypatch.setattr(module, "BLOCK_ROWS", 7)
+    monkeypatch.setattr(driver, "BLOCK_EVENTS", room)
     if backend == "native":
-        monkeypatch.setattr(module, "BLOCK_STEPS", 13)
+        monkeypatch.setattr(native, "BLOCK_STEPS", 13)
     pieces = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
     assert len(pieces[2]) > 40
+    assert max(len(block.rows) for block in pieces[2]) <= 7
+    assert max(len(block.events) for block in pieces[2]) < len(whole[1])
     np.testing.assert_array_equal(pieces[0], whole[0])
     np.testing.assert_array_equal(pieces[1], whole[1])
 
@@ -77,8 +83,12 @@ def test_a_foreign_checkpoint_is_refused():
 def test_phase_is_taken_back_without_a_trace(monkeypatch):
     """Whole pitches move out of the phase now and then; angle, pairs and motion go on as if nothing had been."""
     plain = solve(FAST, rtol=1e-7, t_end=2e-4, samples=501, backend="sksundae")
-    monkeypatch.setattr(portable, "PHASE_HIGH", 5.0)
-    monkeypatch.setattr(portable, "rebase", lambda d, y: _rebase_now(d, y))
+    finish = portable.finish_step
+    monkeypatch.setattr(
+        portable, "finish_step", lambda m, y, *rest: finish(m, y, *rest) or abs(y[PHASE]) > 5.0
+    )
+    monkeypatch.setattr(portable, "prepare_restart", epilogue.prepare_restart.py_func)
+    monkeypatch.setattr(epilogue, "rebase", _rebase_now)
     shifted = solve(FAST, rtol=1e-7, t_end=2e-4, samples=501, backend="sksundae")
     assert shifted.statistics.restarts > 0
     # each restart changes the steps, and with them the error: some hundred times the tolerance of 1e-7 per step
@@ -89,11 +99,9 @@ def test_phase_is_taken_back_without_a_trace(monkeypatch):
     np.testing.assert_array_equal(*passages)
 
 
-def _rebase_now(d, y):
-    from gearidae.engine.integrate import start
-
+def _rebase_now(m, y):
     start.rebase.py_func.__globals__["PHASE_HIGH"] = 5.0
     try:
-        start.rebase.py_func(d, y)
+        start.rebase.py_func(m, y)
     finally:
         start.rebase.py_func.__globals__["PHASE_HIGH"] = 16.0

@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine.integrate.correction import correct
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.residual import jacobian, residual
+from gearidae.engine.model.state import U, V, W
 
 SMALL = st.floats(-1.0, 1.0)
 
@@ -34,16 +34,16 @@ PROBLEMS = {
 def test_it_solves_the_linear_equations(case, at_rest, depth, moves, cj):
     """Elimination loses a few digits where cj is not large against the slopes: bounded by the condition number."""
     problem = PROBLEMS[case]
-    d, n = problem.data.copy(), problem.start.size
+    m, n = problem.shortened(1.0).model, problem.start.size  # a copy
     if at_rest and n == 4:
-        d[at.DRY], d[at.SLIP] = 1.0, 0.0
+        m.scene.dry, m.state.slip = 1, 0.0
     y = problem.start + 0.1 * np.array(moves[:n])
-    y[at.U] = depth if n == 2 else d[at.HALF_BACKLASH] - depth
+    y[U] = depth if n == 2 else m.scene.half_backlash - depth
     yp = np.array(moves[4 : 4 + n])
     delta, right, dense = np.empty(n), np.empty(n), np.empty(n * n)
-    frequency = correct(d, 0.3, cj, y, yp, delta)
-    residual(d, 0.3, y, yp, right)
-    jacobian(d, 0.3, cj, y, dense)
+    frequency = correct(m, 0.3, cj, y, yp, delta)
+    residual(m, 0.3, y, yp, right)
+    jacobian(m, 0.3, cj, y, dense)
     matrix = dense.reshape(n, n).T
     condition = np.linalg.cond(matrix)
     assume(condition <= 1e10)  # beyond, the dense solution is no reference
@@ -61,5 +61,5 @@ def _masses(n):
     """dF/dy' of a motion."""
     masses = np.eye(n)
     if n == 4:
-        masses[at.V, at.W] = 1.0
+        masses[V, W] = 1.0
     return masses

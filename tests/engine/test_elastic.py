@@ -19,14 +19,15 @@ from gearidae.engine.elastic.block_jacobian import (
     solve_blocks,
     store_size,
 )
-from gearidae.engine.elastic.nodes import point_count, row
+from gearidae.engine.elastic.rows import JOINED, row_of
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.integrate import native, portable
 from gearidae.engine.integrate.driver import Ending, Tally
-from gearidae.engine.model import layout as at
-from gearidae.engine.model import problem
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model import build_contact
+from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.residual import mesh_forces, residual
+from gearidae.engine.model.state import PHASE, V
+from gearidae.engine.model.tooth_pairs import history_of
 from gearidae.records import EventKind
 from gearidae_bench.random_scenes import random_scene
 
@@ -110,9 +111,9 @@ def test_nodes_have_converged(monkeypatch):
     """12 nodes: loading to 1e-7, and where asperities let go, between node and node, to 1e-5 of the largest force."""
     changes = {"run.rtol": 1e-9, "run.samples": 4001}
     coarse = solve(roller("roller_fast", **changes)).samples
-    assert make_problem(roller("roller_fast")).data[at.NODES] == 12
+    assert make_problem(roller("roller_fast")).model.scene.nodes == 12
     fine_grid = elastic.node_grid
-    monkeypatch.setattr(problem, "node_grid", lambda *arguments: fine_grid(*arguments[:4], 40))
+    monkeypatch.setattr(build_contact, "node_grid", lambda *arguments: fine_grid(*arguments[:4], 40))
     fine = solve(roller("roller_fast", **changes)).samples
     assert coarse["force"].max() == pytest.approx(fine["force"].max(), rel=1e-6, abs=0)
     assert coarse["force"].min() == pytest.approx(fine["force"].min(), rel=1e-6, abs=0)
@@ -143,7 +144,7 @@ def meshing(gap=1.0, phase=0.3, fraction=0.5):
 def test_force_of_a_pair_of_teeth_is_that_of_its_radius(phase):
     """The influence coefficients follow the radius along the path of contact."""
     scene, gears = meshing(phase=phase)
-    d, y = gears.data, gears.start
+    m, y = gears.model, gears.start
     geometry = scene.geometry
     total = 0.0
     inside = [(phase + k) for k in (-1, 0, 1) if 0.0 <= phase + k <= geometry.contact_ratio]
@@ -160,7 +161,7 @@ def test_force_of_a_pair_of_teeth_is_that_of_its_radius(phase):
             sam_fraction=0.5,
             nodes=32,
         )[0]
-    force = mesh_forces(d, 0.0, y)[0] * d[at.FORCE]
+    force = mesh_forces(m, 0.0, y)[0] * m.scene.force_unit
     # six powers of length for the coefficients; pairs outside the path are held off by the tip relief
     assert force == pytest.approx(total, rel=5e-6, abs=0)
 
@@ -169,26 +170,23 @@ def test_force_of_a_pair_of_teeth_is_that_of_its_radius(phase):
 def contact():
     """A state with stretched and loading nodes, away from consistency, as Newton's iteration sees it."""
     _, gears = meshing(gap=2.0, phase=0.05)
-    d, y = gears.data, gears.start
-    points = point_count(int(d[at.NODES]))
-    slots = int(d[at.SLOTS])
+    m, y = gears.model, gears.start
     for pair in (0, -1):  # pull asperities along at some nodes
-        slot = int(d[at.HISTORIES]) + int(d[at.HISTORY]) * (pair % slots)
-        assert d[slot + at.PAIR] == pair
+        k = history_of(m, 0, pair)
+        assert m.state.history[k].pair == pair
         for material in range(2):
-            first = row(d, slot, at.ROW_JOINED + material)
-            d[first : first + points] -= np.linspace(0.01, 0.05, points)
-        d[slot + at.WAY] = 1.0
+            row_of(m, k, JOINED + material)[:] -= np.linspace(0.01, 0.05, m.scene.points)
+        m.state.history[k].direction = 1.0
     y[4:] += 1e-3 * np.sin(np.arange(y.size - 4))
-    y[at.V] = 0.1
-    return d, y
+    y[V] = 0.1
+    return m, y
 
 
 def test_jacobian_is_the_slope_of_the_residual(contact):
-    d, y = contact
-    size, cj, t = y.size, 3.0, d[at.LAST_TIME]
+    m, y = contact
+    size, cj, t = y.size, 3.0, m.state.time
     exact = np.empty((size, size))
-    dense_jacobian(d, t, cj, y, np.empty(store_size(d)), exact)
+    dense_jacobian(m, t, cj, y, np.empty(store_size(m)), exact)
     yp = np.zeros(size)
     step = 1e-6
 
@@ -197,33 +195,33 @@ def test_jacobian_is_the_slope_of_the_residual(contact):
         for side in (0, 1):
             state, rate = y.copy(), yp.copy()
             state[k] += (1 - 2 * side) * step
-            residual(d, t, state, rate, out[side])
+            residual(m, t, state, rate, out[side])
         return (out[0] - out[1]) / (2 * step)
 
     by_state = np.column_stack([slope(k) for k in range(size)])
     by_rate = np.zeros((size, size))
     base = np.empty(size)
-    residual(d, t, y, yp, base)
+    residual(m, t, y, yp, base)
     for k in range(4):
         unit = np.zeros(size)
         unit[k] = 1.0
-        residual(d, t, y, unit, by_rate[k])
+        residual(m, t, y, unit, by_rate[k])
         by_rate[k] -= base
     differences = by_state + cj * by_rate.T
     # the radius' own change with the phase is left out of the Jacobian on purpose
     keep = np.ones(size, bool)
-    keep[at.PHASE] = False
+    keep[PHASE] = False
     scale = np.abs(exact).max(axis=1, keepdims=True)
     # central differences over 1e-6: their rounding
     assert np.max((np.abs(differences - exact) / scale)[:, keep]) < 1e-5
 
 
 def test_blocks_solve_what_the_whole_matrix_does(contact):
-    d, y = contact
-    store, size = np.empty(store_size(d)), y.size
+    m, y = contact
+    store, size = np.empty(store_size(m)), y.size
     whole = np.empty((size, size))
-    dense_jacobian(d, 0.0, 3.0, y, store, whole)
-    assemble(d, 0.0, 3.0, y, store)
+    dense_jacobian(m, 0.0, 3.0, y, store, whole)
+    assemble(m, 0.0, 3.0, y, store)
     assert factorise(store) == 0
     b = np.random.default_rng(5).normal(size=size)
     x = np.empty(size)
@@ -234,10 +232,10 @@ def test_blocks_solve_what_the_whole_matrix_does(contact):
 def test_settled_nodes_satisfy_their_equations():
     _, gears = meshing()
     out = np.empty(gears.start.size)
-    residual(gears.data, 0.0, gears.start, np.zeros_like(gears.start), out)
+    residual(gears.model, 0.0, gears.start, np.zeros_like(gears.start), out)
     assert np.abs(out[4:]).max() < 1e-11
     assert np.abs(gears.start[4:]).max() > 0.01  # and do deflect
-    assert settle_nodes(gears.data, 0.0, gears.start.copy())
+    assert settle_nodes(gears.model, 0.0, gears.start.copy())
 
 
 def test_gears_in_light_contact_hardly_notice():
@@ -288,7 +286,7 @@ def test_automatic_choice(name, fraction, needs_bodies):
 def test_bound_of_the_asperity_model():
     """Where it is left, the static force is some 5 % below that of rigid bodies, as stated."""
     scene = gd.preset("teodorescu2009").replace({"coating.sam_fraction": 1.0})
-    lowest = make_problem(scene).data[at.LOWEST_GAP]
+    lowest = float(make_problem(scene).model.scene.lowest_gap)
     gears = make_problem(scene.replace({"contact.model": "elastic", "initial.gap": lowest * 6e-9}))
     deflected = gears.start[4:].max()
     assert 0.5 * elastic.RIGID_DEFLECTION < deflected < elastic.RIGID_DEFLECTION
@@ -297,7 +295,7 @@ def test_bound_of_the_asperity_model():
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_run_changes_over_to_the_elastic_model(monkeypatch, backend):
     limit = elastic.rigid_limit
-    monkeypatch.setattr(problem, "rigid_limit", lambda *a: (limit(*a)[0], True))
+    monkeypatch.setattr(build_contact, "rigid_limit", lambda *a: (limit(*a)[0], True))
     auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 1001})
     chosen = make_problem(auto)
     blocks = list(run_blocks(chosen, 1e-6, 1001, backend, Tally()))
@@ -312,7 +310,7 @@ def test_run_changes_over_to_the_elastic_model(monkeypatch, backend):
 
 def test_run_resumes_from_before_and_after_the_change(monkeypatch):
     limit = elastic.rigid_limit
-    monkeypatch.setattr(problem, "rigid_limit", lambda *a: (limit(*a)[0], True))
+    monkeypatch.setattr(build_contact, "rigid_limit", lambda *a: (limit(*a)[0], True))
     auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 501})
     blocks = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Tally()))
     rows = np.concatenate([block.rows for block in blocks])
@@ -345,7 +343,7 @@ def test_fold_ends_the_run_by_name(backend):
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_nodes_are_laid_out_anew_when_pressed_too_deep(monkeypatch, backend):
     given = solve(roller("roller_fast", **{"run.samples": 1001, "run.rtol": 1e-8}))
-    monkeypatch.setattr(problem, "deepest_gap", lambda *arguments: 2.0)
+    monkeypatch.setattr(build_contact, "deepest_gap", lambda *arguments: 2.0)
     run = solve(roller("roller_fast", **{"run.samples": 1001, "run.rtol": 1e-8}), backend=backend)
     assert run.status == "finished"
     # up to the new layout the nodes at the edge carry 1e-5 of the force
@@ -360,13 +358,12 @@ def test_a_change_of_model_begins_in_equilibrium():
     resume = [block.checkpoint for block in native.run(rigid, scene.run.rtol, 0, tally)][-1]
     assert tally.ending is Ending.DEFLECTION
     bodies = rigid.elastic()
-    y, counters = np.empty(bodies.start.size), np.empty(native.COUNTERS, np.int64)
+    y = np.empty(bodies.start.size)
     resume = change_over(rigid, bodies, resume)
-    time = bodies.restore(resume, y, counters)
-    d, out = bodies.data, np.empty(y.size)
-    slots = [int(d[at.HISTORIES] + d[at.HISTORY] * k) for k in range(int(d[at.TOTAL_SLOTS]))]
-    assert any(d[slot + at.STRETCHED] for slot in slots)
-    residual(d, time, y, np.zeros(y.size), out)
+    time = bodies.restore(resume, y)
+    m, out = bodies.model, np.empty(y.size)
+    assert any(m.state.history[k].stretched for k in range(m.scene.histories))
+    residual(m, time, y, np.zeros(y.size), out)
     assert np.abs(out[4:]).max() < 1e-11
     # and that is a start from which steps can be made
     blocks = native.run(bodies, scene.run.rtol, 0, tally, resume)
@@ -382,7 +379,7 @@ def test_a_start_beyond_a_fold_is_one():
 
 
 def test_a_run_whose_nodes_are_laid_out_anew_can_be_resumed_before_and_after_that(monkeypatch):
-    monkeypatch.setattr(problem, "deepest_gap", lambda *arguments: 2.0)
+    monkeypatch.setattr(build_contact, "deepest_gap", lambda *arguments: 2.0)
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 40)
     deepen, deepened = backend.deepen, []
     monkeypatch.setattr(backend, "deepen", lambda *given: deepened.append(1) or deepen(*given))

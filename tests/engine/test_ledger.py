@@ -14,11 +14,10 @@ from gearidae.contact import asperity_of
 from gearidae.contact.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
-from gearidae.engine.energy import balance as ledger_kernel
+from gearidae.engine.energy.quadrature import Ends, integral_of_cube, torque_work
 from gearidae.engine.integrate import native as native_driver
 from gearidae.engine.integrate.driver import Tally
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae.mesh import curvature_radii
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -310,7 +309,7 @@ def error_of_cubes(deviation, h):
         speeds, rates = 3.0 + deviation * np.cos(ends), -deviation * np.sin(ends)
         travel = 3.0 * h + deviation * np.diff(np.sin(ends))[0]
         exact = 0.5 * h * w @ (3.0 + deviation * np.cos(start + 0.5 * h * (1.0 + x))) ** 3
-        errors.append(ledger_kernel._cubes(h, travel, speeds[0], rates[0], speeds[1], rates[1]) - exact)
+        errors.append(integral_of_cube(h, travel, speeds[0], rates[0], speeds[1], rates[1]) - exact)
     return np.sqrt(np.mean(np.square(errors)))
 
 
@@ -323,7 +322,7 @@ def test_drag_knows_the_mean_speed():
 
 def test_drag_of_a_speed_that_turns_round():
     # |x|^3 from -0.1 to 1, which has a corner in its third derivative
-    assert ledger_kernel._cubes(1.1, 0.495, -0.1, 1.0, 1.0, 1.0) == pytest.approx(0.25, rel=0.05, abs=0)
+    assert integral_of_cube(1.1, 0.495, -0.1, 1.0, 1.0, 1.0) == pytest.approx(0.25, rel=0.05, abs=0)
 
 
 def work_of_a_torque(h):
@@ -337,8 +336,11 @@ def work_of_a_torque(h):
         travel = 3.0 * h - 0.125 * np.diff(np.cos(4.0 * ends))[0]
         t = start + 0.5 * h * (1.0 + x)
         exact = 0.5 * h * w @ ((2.0 + 0.25 * np.cos(t)) * (3.0 + 0.5 * np.sin(4.0 * t)))
-        known = [float(x) for end in zip(forces, rates, speeds, gains, strict=True) for x in end]
-        work, doubt = ledger_kernel._torque_work(h, travel, *known)
+        force, speed = (
+            Ends(*(float(x) for x in (values[0], slopes[0], values[1], slopes[1])))
+            for values, slopes in ((forces, rates), (speeds, gains))
+        )
+        work, doubt = torque_work(h, travel, force, speed)
         errors.append(work - exact)
         doubts.append(doubt)
     return np.sqrt(np.mean(np.square(errors))), np.sqrt(np.mean(np.square(doubts)))
@@ -365,7 +367,7 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
     }
     scene = HIGH.replace(changes)
     sure = check(scene, solve(scene))
-    monkeypatch.setattr("gearidae.engine.model.problem.DOUBTS", math.inf)
+    monkeypatch.setattr("gearidae.engine.model.problem.ERRORS", math.inf)
     # over six steps at once, whatever comes of it, it would be out by 30 and 80 tolerances
     assert abs(sure.residual) < 0.1 * abs(solve(scene).ledger.residual)
 
@@ -374,7 +376,7 @@ def test_pairs_that_turn_round_between_two_looks():
     """Steps and losses are the same wherever the ledger looks, and the work of the radius nearly so."""
     scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.model": "asperity"})
     often, seldom = make_problem(scene), make_problem(scene)
-    often.data[at.LEDGER_SPAN] = 0.0  # at every step and every root
+    often.model.scene.balance_span = 0.0  # at every step and every root
     ledgers = [
         [block.ledger for block in native_driver.run(problem, 1e-8, 2, Tally())][-1]
         for problem in (often, seldom)
@@ -406,7 +408,7 @@ def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
-    monkeypatch.setattr("gearidae.engine.model.problem.rigid_limit", lambda *_: (2.0, True))
+    monkeypatch.setattr("gearidae.engine.model.build_contact.rigid_limit", lambda *_: (2.0, True))
     scene = gd.preset("roller_slow")
     run = solve(scene, backend=backend)
     assert run.statistics.skipped["elastic_deflection"] == 0
@@ -417,9 +419,10 @@ def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
 
 def test_looking_does_not_disturb():
     problem = make_problem(HIGH)
-    before = problem.data.copy()
+    before = [part.copy() for part in problem.model]
     problem.ledger(1e-3, problem.start, np.zeros_like(problem.start))
-    np.testing.assert_array_equal(problem.data, before)
+    for part, was in zip(problem.model, before, strict=True):
+        np.testing.assert_array_equal(part, was)
 
 
 # -- in a dataset ----------------------------------------------------------------------------------------------------

@@ -5,10 +5,10 @@ import pytest
 
 import gearidae as gd
 from gearidae.contact import line_force
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.residual import jacobian, residual
-from gearidae.engine.model.tooth_pairs import history_slot, pair_force, set_joined
+from gearidae.engine.model.state import U, V
+from gearidae.engine.model.tooth_pairs import history_of, pair_force, set_joined
 
 
 @pytest.mark.parametrize("roughness", [0.9e-9, 1.2e-9, 6e-9, 30e-9])
@@ -23,21 +23,21 @@ def test_pair_force_is_the_readable_law_with_history(roughness, fraction):
             "contact.model": "asperity",
         }
     )
-    d = make_problem(scene).data
-    slot = history_slot(d, 0, 0)
-    d[slot + at.WAY] = 1.0
-    parts = [(m, s) for m, s in ((scene.surface, 1 - fraction), (scene.coated_surface, fraction)) if s > 0]
+    m = make_problem(scene).model
+    k = history_of(m, 0, 0)
+    m.state.history[k].direction = 1.0
+    parts = [(p, s) for p, s in ((scene.surface, 1 - fraction), (scene.coated_surface, fraction)) if s > 0]
     for joined in (3.0, 1.5, -0.5):
         for material in range(2):
-            set_joined(d, slot, material, joined)
+            set_joined(m, k, material, joined)
         for stretch in (0.01, 0.1, 0.5, 1.5):
             gap = joined + stretch
-            ours = pair_force(d, slot, True, 0.0, gap, 1.0, 0.0)[0] * d[at.FORCE]
+            ours = pair_force(m, k, True, 0.0, gap, 1.0, 0.0)[0] * m.scene.force_unit
             geometry = (scene.roller.radius, scene.roller.width)
             terms = [
-                s * float(line_force(gap * roughness, stretch * roughness, *geometry, m)) for m, s in parts
+                s * float(line_force(gap * roughness, stretch * roughness, *geometry, p)) for p, s in parts
             ]
-            pushing = [s * float(line_force(gap * roughness, 0.0, *geometry, m)) for m, s in parts]
+            pushing = [s * float(line_force(gap * roughness, 0.0, *geometry, p)) for p, s in parts]
             # 1e-9 is the law's own bound, on the sum of what pushes and what pulls
             assert ours == pytest.approx(
                 sum(terms), abs=1e-9 * (np.abs(terms).sum() + 2 * np.abs(pushing).sum())
@@ -50,19 +50,19 @@ def test_jacobian_is_the_derivative(name):
     if scene.mesh is not None:
         scene = scene.replace({"mesh.damping": 1e-9, "initial.mesh_phase": 0.02})  # a pair on its tip relief
     problem = make_problem(scene)
-    d, n = problem.data, problem.start.size
+    m, n = problem.model, problem.start.size
     y = problem.start.copy()
-    y[at.U] = 4.0 if n == 2 else d[at.HALF_BACKLASH] - 4.0
-    y[at.V] = -0.1 if n == 2 else 0.1  # the way it was going: within a turning step the Jacobian is a guess
+    y[U] = 4.0 if n == 2 else m.scene.half_backlash - 4.0
+    y[V] = -0.1 if n == 2 else 0.1  # the way it was going: within a turning step the Jacobian is a guess
     yp, cj = np.linspace(0.1, 0.4, n), 2.5
     ours = np.empty(n * n)
-    jacobian(d, 0.3, cj, y, ours)
+    jacobian(m, 0.3, cj, y, ours)
     numeric = np.empty((n, n))
     for j in range(n):
         step = 1e-6 * np.eye(n)[j]
         out = np.empty((2, n))
-        residual(d, 0.3, y + step, yp + cj * step, out[0])
-        residual(d, 0.3, y - step, yp - cj * step, out[1])
+        residual(m, 0.3, y + step, yp + cj * step, out[0])
+        residual(m, 0.3, y - step, yp - cj * step, out[1])
         numeric[:, j] = (out[0] - out[1]) / 2e-6
     # slopes of the contact's length along the path are left out of the Jacobian: a pitch is long against a roughness,
     # so that they are small where each state is counted in the error that matters

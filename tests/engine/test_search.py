@@ -1,7 +1,5 @@
 """Roots of the guard between the ends of a step."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,7 +8,7 @@ from hypothesis import strategies as st
 from gearidae.engine.integrate import native
 from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.integrate.root_finding import _inverse
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae_bench.scenes import SCENES
 
 RTOL = 1e-6
@@ -33,7 +31,7 @@ def run(name, sharpness, monkeypatch):
     """Events and tally of a benchmark scene, its first tenth."""
     monkeypatch.setattr(native, "SHARPNESS", sharpness)
     problem = make_problem(SCENES[name].scene)
-    problem = replace(problem, end=0.1 * problem.end)
+    problem.model.scene.end *= 0.1
     tally = Tally()
     events = np.concatenate([block.events for block in native.run(problem, RTOL, 2, tally)])
     return events, tally

@@ -10,7 +10,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.model import problem
+from gearidae.engine.model import build_contact
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
     {"run.duration": 0.02, "run.samples": 201, "run.rtol": 1e-8}
@@ -76,7 +76,7 @@ def test_flight_and_pairs_out_of_reach(monkeypatch):
     scene = HIGH.replace({"drive.harmonic.amplitude": 6e-11, "run.duration": 1.2e-4, "run.rtol": 1e-10})
     run = solve(scene)
     assert 0 < run.statistics.skipped["flight_steps"] < run.statistics.steps
-    monkeypatch.setattr(problem, "FORCE_FLOOR", 1e-15)
+    monkeypatch.setattr(build_contact, "FORCE_FLOOR", 1e-15)
     wider = solve(scene)
     assert_same_motion(run, wider)
 

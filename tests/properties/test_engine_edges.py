@@ -11,10 +11,10 @@ from scipy.optimize import brentq
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.events.events import begin
+from gearidae.engine.events.histories import begin
 from gearidae.engine.integrate.driver import Ending, Tally
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.state import PHASE
 from gearidae.records import EventKind
 
 BASE = gd.preset("teodorescu2009").replace(
@@ -127,8 +127,8 @@ def test_which_pair_is_called_which_does_not_matter(pitches):
     runs = []
     for shift in (0, pitches):
         problem = make_problem(BASE.replace({"initial.gap": 3e-8, "coating.sam_fraction": 0.5}))
-        problem.start[at.PHASE] += shift
-        begin(problem.data, 0.0, problem.start)
+        problem.start[PHASE] += shift
+        begin(problem.model, 0.0, problem.start)
         tally = Tally()
         blocks = list(run_blocks(problem, 1e-8, 41, "native", tally))
         assert tally.ending is Ending.FINISHED
@@ -144,15 +144,15 @@ def test_which_pair_is_called_which_does_not_matter(pitches):
 
 
 def on_a_guard():
-    head = make_problem(BASE).data
+    head = make_problem(BASE).model.scene
     sigma = BASE.surface.roughness
     return {
-        "onset": {"initial.gap": float(head[at.ENGAGE]) * sigma},
-        "cut-off": {"initial.gap": float(head[at.CUTOFF]) * sigma},
-        "onset of the coast flank": {"initial.gap": BASE.mesh.backlash - float(head[at.ENGAGE]) * sigma},
+        "onset": {"initial.gap": float(head.contact_gap) * sigma},
+        "cut-off": {"initial.gap": float(head.cutoff) * sigma},
+        "onset of the coast flank": {"initial.gap": BASE.mesh.backlash - float(head.contact_gap) * sigma},
         "mesh entry": {"initial.mesh_phase": 0.0, "initial.gap": 3e-8},
-        "mesh exit": {"initial.mesh_phase": float(head[at.PATH]) - 1.0, "initial.gap": 3e-8},
-        "coast passage": {"initial.mesh_phase": float(head[at.COAST_PHASE] % 1.0), "initial.gap": 3e-8},
+        "mesh exit": {"initial.mesh_phase": float(head.contact_ratio) - 1.0, "initial.gap": 3e-8},
+        "coast passage": {"initial.mesh_phase": float(head.coast_phase % 1.0), "initial.gap": 3e-8},
         "rest": {"initial.gear_speed": 0.0, "initial.gap": 3e-8},
         "rest, torque just holding": {
             "initial.gear_speed": 0.0,
@@ -186,7 +186,7 @@ def test_a_grazing_contact_is_seen_if_it_is_one(margin, touches):
     """A pinion that swings freely comes within a hair of the onset and turns round, with no force to speak of."""
     swing = 2 * math.pi * 2e4
     problem = make_problem(FREE.replace({"drive.harmonic": [{"amplitude": 1e-11, "frequency": 2e4}]}))
-    engage = float(problem.data[at.ENGAGE]) * FREE.surface.roughness
+    engage = float(problem.model.scene.contact_gap) * FREE.surface.roughness
     # u'' = R1 M/I1 cos(swing t): the gap falls from its start by twice the amplitude
     fall = 2 * 34.715e-6 * 1e-11 / 1.5263e-20 / swing**2
     scene = FREE.replace(

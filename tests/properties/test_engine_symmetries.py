@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae.records import EventKind
 
 BASE = gd.preset("teodorescu2009").replace(
@@ -110,8 +109,7 @@ def test_units_do_not_matter(length, mass, time):
 @pytest.mark.parametrize("phase", [0.1, 0.45, 0.93])
 def test_backwards_on_the_other_flank_is_the_mirror_image(phase):
     """All torques and speeds the other way round, the phase mirrored about the pitch point."""
-    data = make_problem(BASE).data
-    there = (data[at.COAST_PHASE] - phase) % 1.0
+    there = (make_problem(BASE).model.scene.coast_phase - phase) % 1.0
     forward = solve(BASE.replace({"initial.mesh_phase": phase}))
     torque = BASE.drive.torque
     backward = solve(

@@ -8,8 +8,7 @@ from scipy.optimize import brentq
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae.records import EventKind
 from reference.bouncing import BouncingTooth
 
@@ -40,9 +39,9 @@ def times(run, kind):
 def test_a_bouncing_tooth_keeps_the_times_of_its_bounces_until_one_holds_it(energy, backend):
     """Some ten to twenty bounces, each shorter than the one before, that accumulate at the one that ends them."""
     scene = HEAVY.replace({"coating.energy": energy, "run.rtol": 1e-10, "run.samples": 3})
-    head = make_problem(scene).data
+    head = make_problem(scene).model.scene
     sigma = scene.surface.roughness
-    tooth = BouncingTooth(scene, float(head[at.ENGAGE]) * sigma, float(head[at.CUTOFF]) * sigma)
+    tooth = BouncingTooth(scene, float(head.contact_gap) * sigma, float(head.cutoff) * sigma)
     expected = tooth.bounces(scene.initial.gap)
     end = expected["turning"][-1]
     flights = np.diff(expected["turning"])
@@ -67,7 +66,7 @@ def test_a_bouncing_tooth_keeps_the_times_of_its_bounces_until_one_holds_it(ener
     late = run.events.time[-1]
     assert np.all(after > end)
     # what it still rises to is within the range of adhesion: it never flies again
-    assert run.samples["drive_gap"][-1] < head[at.CUTOFF] * sigma
+    assert run.samples["drive_gap"][-1] < head.cutoff * sigma
     assert late > end
 
 
@@ -122,10 +121,10 @@ def test_a_resistance_that_swings_stops_a_gear_when_its_impulse_has_taken_the_mo
 def test_a_gear_at_rest_slips_when_the_first_impact_has_risen_to_the_resistance():
     """The pinion falls onto the tooth of a gear held at rest; when R2 F reaches M20 is a matter of quadrature."""
     scene = HEAVY.replace({"coating.energy": 0.3, "load.torque": 2e-10, "run.rtol": 1e-10, "run.samples": 3})
-    head = make_problem(scene).data
+    head = make_problem(scene).model.scene
     sigma, radius = scene.surface.roughness, scene.geometry.base_radius_gear
 
-    far = float(head[at.CUTOFF]) * sigma
+    far = float(head.cutoff) * sigma
     held = scene.replace({"gears.gear_inertia": 1.0})  # as good as held: it adds nothing to the motion
 
     def excess(gap):

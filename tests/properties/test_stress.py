@@ -10,7 +10,7 @@ import gearidae as gd
 from gearidae.cli import main
 from gearidae.engine import solve
 from gearidae.engine.integrate.driver import BLOCK_STEPS
-from gearidae.engine.model.problem import ROOT_LIMIT, make_problem
+from gearidae.engine.model.build import ROOT_LIMIT, make_problem
 from gearidae.records import Ending, EventKind
 from gearidae_bench import stress, stress_checks
 from gearidae_bench.random_scenes import random_scene

@@ -118,6 +118,7 @@ def run_blocks(
         Checkpoint of an earlier run of the same problem with the same settings and backend, to go on from.
     """
     driver = ready_driver(backend, problem)
+    problem.prepare(rtol, samples)  # by which checkpoints are judged
     if problem.elastic is None:
         yield from _run_bodies(problem, rtol, samples, driver, tally, resume)
         return
@@ -152,6 +153,7 @@ def _run_bodies(
     """Run a problem that stays with its contact model; nodes that are pressed too deep are laid out anew."""
     if resume is not None:
         problem = problem.of_checkpoint(resume)
+        problem.prepare(rtol, samples)
     while True:
         if resume is not None and problem.deeper is not None and problem.outgrown(resume):
             deeper = problem.deeper()
@@ -389,6 +391,7 @@ def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Le
         If the checkpoint is not of this scene.
     """
     problem = make_problem(scene).of_checkpoint(checkpoint)
+    problem.prepare(scene.run.rtol, scene.run.sample_count)
     state = np.empty(problem.start.size)
     time = problem.restore(checkpoint, state)
     return problem.ledger(time, state, np.zeros_like(state))

@@ -71,11 +71,12 @@ def run(
         yield from _samples(m, out, y, solver.trail)
     solver.start(y)
     between = (np.zeros_like(y), np.zeros_like(y))
-    handed_out = time.monotonic()
+    handed_out, yp = time.monotonic(), np.zeros_like(y)
     while driver.done == 0 and driver.error == 0:
-        flag, y, yp = solver.step(y)
-        if driver.error != 0:
+        flag, *reached = solver.step(y)
+        if driver.error != 0:  # what there is belongs to the last accepted time
             break
+        y, yp = reached
         yield from _samples(m, out, y, solver.trail)
         if not has_room(m, out.events):
             yield out.block(m, driver.time)

@@ -207,7 +207,7 @@ def _check_history(m: Model, s: Record, k: int, y: Floats) -> None:
     _require(set(flags) <= _FLAGS, "flags of a history", "0 or 1")
     _require(h.length >= 0.0, "length", "positive")
     gap = float(gap_and_rate(m, coast, int(h.pair), y)[0])
-    slack = _SLACK * (1.0 + abs(h.gap))
+    slack = (_SLACK + _SLACK_TOLERANCES * scene.rtol) * (1.0 + abs(h.gap))
     if gap < scene.cutoff:
         _require(abs(gap - h.gap) <= slack, "gap of a history", "that of its pair")
     if h.gap >= scene.cutoff or scene.nodes > 0:

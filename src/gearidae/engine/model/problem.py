@@ -15,6 +15,7 @@ from gearidae.engine.model import checkpoint as checkpoints
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, Floats, Model, V, assign
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
+from gearidae.errors import SceneError
 from gearidae.records import Ledger
 
 __all__ = ["Problem"]
@@ -164,6 +165,8 @@ class Problem:
             problem = problem.elastic()
         while problem.depth < depth and problem.deeper is not None:
             problem = problem.deeper()
+        if problem.depth != depth:
+            raise SceneError("checkpoint", f"contact model {depth}", "not one that this scene has")
         return problem
 
     def restore(self, checkpoint: Floats, state: Floats) -> float:

@@ -1,0 +1,63 @@
+"""What a change from the asperity model to the elastic one carries over."""
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.engine.changeover import change_over
+from gearidae.engine.events.dry_resistance import dry_guard
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.state import STATE, W
+
+SCENE = gd.preset("teodorescu2009").replace(
+    {"load.torque": 1e-11, "coating.sam_fraction": 0.5, "initial.gap": 1.5e-8, "run.samples": "off"}
+)
+NOT_CARRIED = {"bound_exceeded", "energy", "history"}  # cleared, booked on, and moved to other slots
+
+
+def carried(change, speed=0.0):
+    """Elastic problem and state vector that go on from an asperity problem whose state has been changed."""
+    rigid = make_problem(SCENE)
+    assert rigid.depth == 0
+    y = rigid.start.copy()
+    y[W] = speed
+    change(rigid.model.state)
+    bodies = rigid.elastic()
+    resume = change_over(rigid, bodies, rigid.checkpoint(0.0, y))
+    state = np.empty(bodies.start.size)
+    bodies.restore(resume, state)
+    return rigid, bodies, state
+
+
+@pytest.mark.parametrize(("slipping", "allowance"), [(0, 2.0), (1, 0.0)])
+@pytest.mark.parametrize("slip", [-1.0, 1.0])
+def test_a_gear_that_has_just_begun_to_slip_keeps_its_allowance(slip, slipping, allowance):
+    """A slip too slow to be told from rest may turn back a little; one that has been faster may not."""
+
+    def begin_slip(state):
+        state.slip, state.slipping = slip, slipping
+
+    rigid, bodies, y = carried(begin_slip, speed=0.1 * slip)
+    state = bodies.model.state
+    assert (state.slip, state.slipping) == (slip, slipping)
+    expected = 0.1 + allowance * bodies.model.scene.rest_speed
+    assert dry_guard(bodies.model, 0.0, y) == pytest.approx(expected, rel=1e-12, abs=0)
+    assert rigid.model.scene.rest_speed == bodies.model.scene.rest_speed > 0.0
+
+
+def test_all_of_the_state_is_carried_over():
+    def mark(state):
+        state.slipping, state.last_flank, state.roots, state.last_root = 1, 1, 7, -0.25
+        state.energy.drive_work, state.energy.quadrature_error, state.energy.throughput = 3.0, 0.5, 9.0
+        state.progress.steps, state.progress.flight_steps = 11, 5
+        state.turns = 64.0
+
+    rigid, bodies, _ = carried(mark)
+    old, new = rigid.model.state, bodies.model.state
+    for name in set(STATE.names) - NOT_CARRIED:
+        np.testing.assert_array_equal(new[name], old[name], err_msg=name)
+    for name in set(STATE["energy"].names) - {"model_change"}:
+        assert new.energy[name] == old.energy[name], name
+    pairs = [{int(h.pair) for h in m.state.history[: m.scene.histories]} for m in (rigid.model, bodies.model)]
+    assert pairs[0] == pairs[1]
+    assert len(pairs[0]) > 1

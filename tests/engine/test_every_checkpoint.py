@@ -1,0 +1,36 @@
+"""Every checkpoint that a run takes is one that a run can go on from, whatever the tolerance."""
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.engine.backend import run_blocks
+from gearidae.engine.integrate import portable
+from gearidae.engine.integrate.driver import Tally
+from gearidae.engine.model.build import make_problem
+
+LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5, "run.duration": 5e-3})
+HIGH = gd.preset("teodorescu2009").replace({"coating.sam_fraction": 0.3, "run.duration": 1e-5})
+SCENES = {
+    "vibrating": LOW.replace({"initial.gap": 5.2 * 6e-9}),
+    "rattling": HIGH.replace({"initial.gap": 3e-8, "load.torque": 1e-11}),
+    "impact": gd.preset("roller_slow").replace({"contact.model": "asperity"}),
+    "elastic impact": gd.preset("roller_slow").replace({"contact.model": "elastic"}),
+}
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("name", SCENES)
+def test_every_checkpoint_is_taken_back(name, rtol, monkeypatch):
+    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 9)
+    scene = SCENES[name].replace({"run.rtol": rtol, "run.samples": 57})
+    problem = make_problem(scene)
+    taken = [
+        b.checkpoint for b in run_blocks(problem, rtol, 57, "sksundae", Tally()) if b.checkpoint is not None
+    ]
+    assert len(taken) > 10
+    again = make_problem(scene)
+    for checkpoint in taken:
+        own = again.of_checkpoint(checkpoint)
+        own.prepare(rtol, 57)
+        own.restore(checkpoint, np.empty(own.start.size))

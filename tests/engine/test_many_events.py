@@ -1,0 +1,69 @@
+"""More events than a block of output holds: blocks are handed out in time, and no event is lost."""
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.engine.backend import run_blocks
+from gearidae.engine.events.record import EVENTS_AT_ONCE, record
+from gearidae.engine.integrate.driver import BLOCK_EVENTS, Ending, Output, Tally
+from gearidae.engine.integrate.epilogue import has_room
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
+from gearidae.records import EventKind
+
+KNOTS = 20_500
+FLIGHT = gd.preset("teodorescu2009").replace(
+    {
+        "mesh.backlash": 4e-6,
+        "initial.gap": 2e-6,
+        "drive.torque": 0.0,
+        "drive.harmonic": [],
+        "load.torque": 0.0,
+        "load.drag": 0.0,
+        "initial.gear_speed": 0.0,
+        "run.duration": 1e-6,
+        "run.samples": 3,
+    }
+)
+
+
+def test_a_block_has_room_for_all_that_can_happen_at_once():
+    """A pair's onset or separation, change of flank, full stretches and turning point; marks, stick or slip, a knot."""
+    of_a_pair = 1 + 1 + MATERIALS + 1
+    assert of_a_pair * 2 * SLOTS_HIGH + 4 + 1 + 1 <= EVENTS_AT_ONCE
+    assert EVENTS_AT_ONCE < BLOCK_EVENTS
+
+
+def test_room_is_for_so_many_and_what_is_full_is_not_written_beyond():
+    m, out = make_problem(FLIGHT).model, Output.empty(9)
+    for count, room in (
+        (0, True),
+        (BLOCK_EVENTS - EVENTS_AT_ONCE, True),
+        (BLOCK_EVENTS - EVENTS_AT_ONCE + 1, False),
+    ):
+        m.work.driver.events = count
+        assert has_room(m, out.events) == room
+    table = np.full((4, 5), -7.0)
+    assert record(m, table[:3], 2, 0.0, 1.0, 0, 0.0, 0.0) == 3
+    assert record(m, table[:3], 3, 0.0, 1.0, 0, 0.0, 0.0) == 3
+    np.testing.assert_array_equal(table[3], -7.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_more_knots_than_a_block_has_room_for(backend):
+    """Each is an event at its own time, and a block of output never has more than it holds."""
+    times = FLIGHT.run.duration * np.arange(1, KNOTS + 1) / (KNOTS + 1)
+    schedule = [[float(t), 1e-16 * (k % 2)] for k, t in enumerate(times)]
+    scene = FLIGHT.replace({"drive.schedule": schedule})
+    tally = Tally()
+    blocks = list(run_blocks(make_problem(scene), 1e-4, 3, backend, tally))
+    assert tally.ending is Ending.FINISHED
+    assert KNOTS > BLOCK_EVENTS >= max(len(block.events) for block in blocks)
+    events = np.concatenate([block.events for block in blocks])
+    assert len(events) == KNOTS
+    assert np.all(events[:, 1] == EventKind.SCHEDULE_KNOT)
+    # times pass through the scale of time and back
+    np.testing.assert_allclose(events[:, 0], times, rtol=1e-14)
+    assert sum(len(block.rows) for block in blocks) == 3

@@ -1,0 +1,51 @@
+"""A small scene of every kind, run by both drivers; what went wrong is on stderr.
+
+``NUMBA_BOUNDSCHECK=1 python small_scenes.py``.
+"""
+
+import sys
+
+import numba
+import numpy as np
+
+import gearidae as gd
+from gearidae.engine import solve
+
+__all__ = ["SCENES"]
+
+_GEARS = gd.preset("teodorescu2009").replace(
+    {"contact.model": "asperity", "initial.gap": 2e-8, "run.duration": 2e-6, "run.samples": 21}
+)
+_ROLLER = gd.preset("roller_slow").replace({"contact.model": "asperity", "run.samples": 21})
+SCENES = {
+    "roller": _ROLLER,
+    "two materials": _ROLLER.replace({"coating.sam_fraction": 0.5}),
+    "gears": _GEARS.replace({"coating.sam_fraction": 0.5}),
+    "both flanks": _GEARS.replace({"mesh.backlash": 4e-8}),
+    "dry resistance": _GEARS.replace({"initial.gear_speed": 0.0, "load.torque": 1e-12, "mesh.damping": 1e-6}),
+    "schedule": _GEARS.replace({"drive.schedule": [[0.0, 0.0], [5e-7, 1e-11], [1e-6, 2e-11]]}),
+    "static error": _GEARS.replace({"mesh.static_error": [{"order": 19, "amplitude": 2e-9}]}),
+    "elastic roller": _ROLLER.replace({"contact.model": "elastic", "run.duration": 1e-6}),
+}
+
+
+@numba.njit
+def _pick(numbers, k):
+    return numbers[k]
+
+
+def checked():
+    """Whether an index beyond an array is an error here."""
+    try:
+        _pick(np.zeros(3), 5)
+    except IndexError:
+        return True
+    return False
+
+
+if __name__ == "__main__":
+    sys.stdout.write(f"checked {checked()}\n")
+    for name, scene in SCENES.items():
+        for backend in ("sksundae", "native"):
+            sys.stdout.write(f"{name}, {backend}: {solve(scene, backend=backend).status}\n")
+            sys.stdout.flush()
