@@ -16,7 +16,7 @@ from typing import Final
 
 from gearidae.engine.backend import choose_backend, run_blocks
 from gearidae.engine.integrate.driver import Tally
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae.scene import Scene
 from gearidae_bench.scenes import SCENES
 
