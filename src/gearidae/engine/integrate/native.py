@@ -90,7 +90,7 @@ def restart(s: Stepper, stop: float) -> int:
     return flag
 
 
-@compiled
+@compiled(inline=True)
 def state_for_sample(s: Stepper, t: float) -> None:
     """State at a time within the last step, beside that at its end: in ``s.dky``."""
     if s.m.work.adams.order_used > 0:
@@ -99,7 +99,7 @@ def state_for_sample(s: Stepper, t: float) -> None:
         sun.IDAGetDky(s.handles[IDA], t, 0, s.handles[DKY])
 
 
-@compiled
+@compiled(inline=True)
 def _sample(s: Stepper, rows: Floats) -> bool:
     """Write the samples up to the time reached; whether the block has room for them all."""
     m, driver, progress = s.m, s.m.work.driver, s.m.state.progress

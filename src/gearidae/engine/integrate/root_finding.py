@@ -57,7 +57,7 @@ class Stepper(NamedTuple):
     clock: Floats
 
 
-@compiled
+@compiled(inline=True)
 def _look(s: Stepper, t: float) -> float:
     """Look at the guard."""
     s.m.work.search.evaluations += 1
@@ -72,7 +72,7 @@ def start_search(s: Stepper) -> None:
     search.rest = search.stop = 0
 
 
-@compiled
+@compiled(inline=True)
 def state_at(s: Stepper, t: float) -> None:
     """Set state and rates to those at a time within the last step."""
     if s.m.work.adams.order_used > 0:
@@ -140,7 +140,7 @@ def _step(s: Stepper) -> int:
     return flag
 
 
-@compiled
+@compiled(inline=True)
 def _stop(s: Stepper) -> int:
     """Return at a stop, now that all roots before it are through."""
     s.m.work.search.stop = 0
@@ -149,7 +149,7 @@ def _stop(s: Stepper) -> int:
     return sun.IDA_TSTOP_RETURN
 
 
-@compiled
+@compiled(inline=True)
 def _rounding(s: Stepper) -> float:
     """What times of this step may differ by."""
     return _ROUNDING * (abs(s.m.work.search.step_end) + abs(memory.step(s.handles[IDA])))

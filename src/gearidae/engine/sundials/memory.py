@@ -135,13 +135,13 @@ step: Any = intrinsic(_step)
 """Length of the step that IDA tries, or has chosen for the next."""
 
 
-@compiled(makes_arrays=True)
+@compiled(makes_arrays=True, inline=True)
 def words(address: int, count: int) -> Ints:
     """Look at what lies at an address as so many pointers."""
     return carray(_integers_at(address), (count,))
 
 
-@compiled(makes_arrays=True)
+@compiled(makes_arrays=True, inline=True)
 def numbers(vector: int, n: int) -> NDArray[np.float64]:
     """Look at the n numbers of a serial vector, given by its address, without a call."""
     return carray(_reals_at(words(words(vector, 1)[0], 2)[1]), (n,))
