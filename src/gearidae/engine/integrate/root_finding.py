@@ -37,6 +37,8 @@ _ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
 class Stepper(NamedTuple):
     """What a native run steps with.
 
+    It is some sixty numbers to a compiled function: those that take it at every step are put into their callers.
+
     Attributes
     ----------
     handles : ndarray of int64
