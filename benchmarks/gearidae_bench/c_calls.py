@@ -1,90 +1,105 @@
-"""What the loop in C calls: the engine's own functions as C functions, which need the SUNDIALS library to be loaded."""
+"""What the loop in C calls: the engine's own functions as C functions, which need the SUNDIALS library to be loaded.
+
+The loop hands on two addresses and knows nothing of what lies there: words (where the model lies, then SUNDIALS'
+handles) and numbers (state, rates, two vectors of work space, and the time reached).
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numba import carray, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
-from gearidae.engine.events.events import accept, guard, handle
+from gearidae.engine.events.events import guard
+from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import BLOCK_EVENTS
-from gearidae.engine.integrate.native import book, restart, state_for_sample
-from gearidae.engine.integrate.root_finding import state_at
-from gearidae.engine.integrate.step_control import change_wanted
-from gearidae.engine.model import layout as at
+from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
+from gearidae.engine.integrate.native import restart, state_for_sample
+from gearidae.engine.integrate.root_finding import Stepper, state_at
 from gearidae.engine.model.observe import observe
-from gearidae.engine.sundials import ida_memory as opened
-from gearidae.engine.sundials.memory import MANY
+from gearidae.engine.sundials.ida_memory import HANDLES
+from gearidae.engine.sundials.memory import POINTERS, model_at, words
 from gearidae_bench.compiling import compiled_callback
 
-__all__ = ["addresses"]
+__all__ = ["VECTORS", "WORDS", "addresses"]
 
+WORDS: Final = POINTERS + HANDLES
+VECTORS: Final = 4
+"""State, rates and work space; the time follows them."""
 
+_GO_ON, _AFRESH, _DONE, _BROKEN = range(4)  # as in loop.c
+
+_PTR: Any = types.intp
 _REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
-_WORDS: Any = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
 
 
-@compiled_callback(types.int32(_REALS, _REALS, types.float64, _REALS, _REALS, _REALS, _REALS, types.int32))
-def _accept(data, desk, t, y, yp, dky, spare, flag):  # type: ignore[no-untyped-def]
-    d, known = carray(data, (MANY,)), carray(desk, (adams.DESK,))
-    n = int(d[at.STATES])
-    state, rates = carray(y, (n,)), carray(yp, (n,))
-    accept(d, t, state)
-    book(known, d, t, state, rates, carray(dky, (n,)), carray(spare, (n,)), flag)
-    return change_wanted(known, d, state, rates)
+@compiled_callback(types.int32(_PTR, _REALS, types.int32, _REALS))
+def _finish(place, numbers, flag, events):  # type: ignore[no-untyped-def]
+    m = model_at(place)
+    n, driver = m.scene.states, m.work.driver
+    a, room = carray(numbers, (VECTORS * n + 1,)), carray(events, (BLOCK_EVENTS, 5))
+    driver.time = a[VECTORS * n]
+    if not has_room(m, room):  # nobody reads them
+        driver.events = 0
+    between = (a[2 * n : 3 * n], a[3 * n : 4 * n])
+    afresh = finish_step(m, a[:n], a[n : 2 * n], between, flag, room)
+    if driver.error != 0:
+        return _BROKEN
+    if driver.done != 0:
+        return _DONE
+    return _AFRESH if afresh else _GO_ON
 
 
-@compiled_callback(types.int32(_REALS, types.float64, _REALS, _REALS, _WORDS))
-def _handle(data, t, y, events, count):  # type: ignore[no-untyped-def]
-    number = carray(count, (1,))
-    number[0], action = handle(
-        carray(data, (MANY,)), t, carray(y, (4,)), carray(events, (BLOCK_EVENTS, 5)), number[0]
-    )
-    return action
+@compiled_callback(types.void(_PTR, _REALS, types.float64, _REALS))
+def _observe(place, numbers, t, row):  # type: ignore[no-untyped-def]
+    m = model_at(place)
+    n, handles = m.scene.states, words(place, WORDS)[POINTERS:]
+    a = carray(numbers, (VECTORS * n + 1,))
+    y, yp, dky, spare = a[:n], a[n : 2 * n], a[2 * n : 3 * n], a[3 * n : 4 * n]
+    state_for_sample(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), t)
+    observe(m, t, dky, carray(row, (9,)))
 
 
-@compiled_callback(types.void(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS, _REALS))
-def _observe(data, handles, desk, t, y, yp, row):  # type: ignore[no-untyped-def]
-    d = carray(data, (MANY,))
-    n = int(d[at.STATES])
-    state, rates = carray(y, (n,)), carray(yp, (n,))
-    state_for_sample(carray(handles, (opened.HANDLES,)), carray(desk, (adams.DESK,)), t, state, rates)
-    observe(d, t, state, carray(row, (9,)))
+@compiled_callback(types.int32(_PTR, _REALS, types.int32))
+def _restart(place, numbers, again):  # type: ignore[no-untyped-def]
+    m = model_at(place)
+    n, handles = m.scene.states, words(place, WORDS)[POINTERS:]
+    a = carray(numbers, (VECTORS * n + 1,))
+    y, yp, dky, spare = a[:n], a[n : 2 * n], a[2 * n : 3 * n], a[3 * n : 4 * n]
+    if again != 0:
+        prepare_restart(m, y, yp)
+    else:
+        m.work.adams.wanted = m.work.adams.own
+    return restart(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), next_stop(m))
 
 
-@compiled_callback(
-    types.int32(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS, _REALS, types.float64, types.float64)
-)
-def _restart(data, handles, desk, t, y, yp, scale, rtol, stop):  # type: ignore[no-untyped-def]
-    d = carray(data, (MANY,))
-    n = int(d[at.STATES])
-    known = carray(handles, (opened.HANDLES,))
-    states, rates, scales = carray(y, (n,)), carray(yp, (n,)), carray(scale, (n,))
-    return restart(known, carray(desk, (adams.DESK,)), d, t, states, rates, scales, rtol, stop)
+@compiled_callback(types.float64(_PTR, _REALS, types.float64))
+def _guard(place, numbers, t):  # type: ignore[no-untyped-def]
+    m = model_at(place)
+    return guard(m, t, carray(numbers, (m.scene.states,)))
 
 
-@compiled_callback(types.float64(_REALS, types.float64, _REALS))
-def _guard(data, t, y):  # type: ignore[no-untyped-def]
-    return guard(carray(data, (MANY,)), t, carray(y, (4,)))
+@compiled_callback(types.void(_PTR, _REALS))
+def _keep(place, numbers):  # type: ignore[no-untyped-def]
+    m = model_at(place)
+    n = m.scene.states
+    a = carray(numbers, (VECTORS * n + 1,))
+    adams.keep(m.work.adams, a[VECTORS * n], a[n : 2 * n])
 
 
-@compiled_callback(types.void(_REALS, _REALS, types.float64, _REALS))
-def _keep(data, desk, t, yp):  # type: ignore[no-untyped-def]
-    adams.keep(carray(desk, (adams.DESK,)), t, carray(yp, (int(carray(data, (MANY,))[at.STATES]),)))
-
-
-@compiled_callback(types.void(_REALS, _WORDS, _REALS, types.float64, _REALS, _REALS))
-def _state_at(data, handles, desk, t, y, yp):  # type: ignore[no-untyped-def]
-    n = int(carray(data, (MANY,))[at.STATES])
-    known = carray(handles, (opened.HANDLES,))
-    vectors = known[opened.Y : opened.YP + 1]
-    state_at(known[opened.SOLVER], vectors, carray(desk, (adams.DESK,)), t, carray(y, (n,)), carray(yp, (n,)))
+@compiled_callback(types.void(_PTR, _REALS, types.float64))
+def _state_at(place, numbers, t):  # type: ignore[no-untyped-def]
+    m = model_at(place)
+    n, handles = m.scene.states, words(place, WORDS)[POINTERS:]
+    a = carray(numbers, (VECTORS * n + 1,))
+    y, yp, dky, spare = a[:n], a[n : 2 * n], a[2 * n : 3 * n], a[3 * n : 4 * n]
+    state_at(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), t)
 
 
 def addresses() -> NDArray[np.int64]:
     """Addresses in the order that the loop has them in."""
-    functions = (_accept, _handle, _observe, _restart, _guard, _keep, _state_at)
+    functions = (_finish, _observe, _restart, _guard, _keep, _state_at)
     return np.array([f.address for f in functions], dtype=np.int64)

@@ -17,14 +17,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.events import EVENTS_AT_ONCE
-from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import BLOCK_EVENTS
 from gearidae.engine.integrate.root_finding import SHARPNESS
 from gearidae.engine.model.observe import observe
 from gearidae.engine.model.problem import Problem
+from gearidae.engine.sundials.memory import POINTERS, note_addresses
 from gearidae.engine.sundials.names import newton_places, places, vector_places
 from gearidae_bench.contender import BROKEN, Contender, Outcome
+from gearidae_bench.reference import end_of
 
 __all__ = ["c_contenders"]
 
@@ -83,46 +83,38 @@ def _pointer(array: NDArray[Any]) -> ctypes.c_void_p:
 def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     from gearidae.engine.sundials import ida_memory as opened
     from gearidae.engine.sundials.callbacks import callbacks
-    from gearidae_bench.c_calls import addresses
+    from gearidae_bench.c_calls import VECTORS, WORDS, addresses
 
-    d, y = problem.data, problem.start
-    yp, dky, spare = np.zeros_like(y), np.zeros_like(y), np.zeros_like(y)
-    problem.set_tolerance(tolerance)
-    known = callbacks(y.size, False)
+    m, n = problem.prepare(tolerance, times.size), problem.start.size
+    words, numbers = np.zeros(WORDS, np.int64), np.zeros(VECTORS * n + 1)
+    pointers, handles = words[:POINTERS], words[POINTERS:]
+    y, yp, dky = (numbers[k * n : (k + 1) * n] for k in range(3))
+    y[:] = problem.start
+    note_addresses(m, pointers)
     rows = np.zeros((times.size, max(len(problem.columns), 9)))
-    events, steps = np.empty((BLOCK_EVENTS, 5)), np.zeros(1, np.int64)
-    handles = np.zeros(opened.HANDLES, np.int64)
-    desk = np.zeros(adams.DESK)
-    desk[adams.WANTED] = 1.0
-    calls = addresses()
-    where = places(), newton_places(), vector_places()
-    observe(d, 0.0, y, rows[0])
+    events, steps, calls = np.empty((BLOCK_EVENTS, 5)), np.zeros(1, np.int64), addresses()
+    m.work.search.sharpness = SHARPNESS * tolerance
+    observe(m, 0.0, y, rows[0])
+    where = opened.Places(places(), newton_places(), vector_places())
     try:
-        own = known.model, known.steps, known.newton, known.vectors
-        if opened.open_solver(handles, *own, *where, desk, d, y, yp, dky) != 0:
+        if opened.open_solver(handles, problem.located.place, callbacks(n, False), where, (y, yp, dky)) != 0:
             return BROKEN
         flag = _library().gearidae_loop(
-            _pointer(calls),
-            _pointer(handles),
-            *(ctypes.c_void_p(int(handles[k])) for k in (opened.SOLVER, opened.Y, opened.YP)),
-            *(_pointer(a) for a in (d, desk, y, yp, dky, spare, problem.tolerance_scale)),
-            ctypes.c_double(tolerance),
+            *(_pointer(a) for a in (calls, words, numbers, numbers[VECTORS * n :])),
+            *(ctypes.c_void_p(int(handles[k])) for k in (opened.IDA, opened.Y, opened.YP)),
             ctypes.c_double(SHARPNESS * tolerance),
-            ctypes.c_double(problem.end),
+            ctypes.c_double(end_of(problem)),
             ctypes.c_int64(times.size),
             ctypes.c_int64(rows.shape[1]),
-            _pointer(rows),
-            _pointer(events),
-            ctypes.c_int64(BLOCK_EVENTS - EVENTS_AT_ONCE),
-            _pointer(steps),
+            *(_pointer(a) for a in (rows, events, steps)),
         )
     finally:
-        opened.close(handles)
+        opened.close_solver(handles)
     if flag != 0:
         return BROKEN
     names = ("speed", "height") if "height" in problem.columns else ("gear_speed", "transmission_error")
     speed, position = (rows[:, problem.columns.index(name)] for name in names)
-    return Outcome(speed, position, int(steps[0]), int(desk[adams.EVALUATIONS]))
+    return Outcome(speed, position, int(steps[0]), int(m.work.adams.evaluations))
 
 
 def c_contenders() -> tuple[Contender, ...]:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
+from gearidae.engine.integrate.driver import Ending, Tally
 from gearidae.engine.model.problem import Problem
-from gearidae.records import Ending, Statistics
+from gearidae.engine.model.state import Model
 from gearidae_bench.loop import run_dop853, run_rk4
-from gearidae_bench.reference import physical
+from gearidae_bench.reference import end_of, physical
 from gearidae_bench.roots import CALLS, FAILED, STEPS
 
-__all__ = ["TOLERANCES", "Contender", "Outcome", "engine_contenders", "explicit_contenders"]
+__all__ = ["TOLERANCES", "Contender", "Outcome", "engine_contenders", "explicit_contenders", "unused"]
 
 Floats = NDArray[np.float64]
 
@@ -44,6 +45,14 @@ class Outcome:
 
 
 BROKEN: Final = Outcome(np.empty(0), np.empty(0), 0, 0)
+
+
+def unused(problem: Problem) -> Problem:
+    """Copy of a problem, for a run that may use it up."""
+    m = problem.model
+    scene, state, work = (np.array([record])[0] for record in (m.scene, m.state, m.work))
+    model = Model(scene, state, work, m.tables.copy(), m.rows.copy())
+    return replace(problem, model=model, start=problem.start.copy())
 
 
 def _always() -> str:
@@ -78,7 +87,7 @@ class Contender:
 
 def _engine(backend: str) -> Callable[[Problem, float, Floats], Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        tally = Statistics()
+        tally = Tally()
         table = np.concatenate([b.rows for b in run_blocks(problem, tolerance, times.size, backend, tally)])
         if tally.ending is not Ending.FINISHED:
             return BROKEN
@@ -107,13 +116,13 @@ def _dop853(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     states, counts = np.empty((times.size, problem.start.size)), np.zeros(4, np.int64)
     atol = tolerance * problem.tolerance_scale
     # ending steps at the kinks was tried and takes twice as long at equal error
-    run_dop853(problem.data, problem.start, problem.end, times, states, atol, False, counts)
+    run_dop853(problem.model, problem.start, end_of(problem), times, states, atol, False, counts)
     return _outcome(problem, states, counts)
 
 
 def _rk4(problem: Problem, step: float, times: Floats) -> Outcome:
     states, counts = np.empty((times.size, problem.start.size)), np.zeros(4, np.int64)
-    run_rk4(problem.data, problem.start, problem.end, times, states, step, counts)
+    run_rk4(problem.model, problem.start, end_of(problem), times, states, step, counts)
     return _outcome(problem, states, counts)
 
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from gearidae.engine.backend import choose_backend, run_blocks
-from gearidae.engine.model.problem import make_problem
-from gearidae.records import Statistics
+from gearidae.engine.model.build import make_problem
+from gearidae.records import Statistics as Tally
 from gearidae.scene import Scene
 from gearidae_bench.scenes import SCENES
 
@@ -65,7 +65,7 @@ class Start:
 
 
 def _drain(scene: Scene) -> int:
-    tally = Statistics()
+    tally = Tally()
     backend = choose_backend()
     for _ in run_blocks(make_problem(scene), scene.run.rtol, scene.run.sample_count, backend, tally):
         pass

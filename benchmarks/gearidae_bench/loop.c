@@ -13,39 +13,36 @@ extern int IDAGetCurrentStep(void *, double *);
 extern int IDAGetNumSteps(void *, long *);
 
 enum { ONE_STEP = 2, TSTOP_RETURN = 1, ROOT_RETURN = 2 };
-enum { CONTINUE = 0, RESTART = 1 };
+enum { GO_ON, AFRESH, DONE, BROKEN }; /* what `finish` answers */
 enum { TRIES = 3 }; /* that of gearidae.engine.integrate.root_finding */
 
-/* Order of gearidae_bench.c_calls.addresses. */
+/* Order of gearidae_bench.c_calls.addresses. What lies at `words` and `numbers` only these functions know. */
 typedef struct {
-    int32_t (*accept)(double *d, double *desk, double t, double *y, double *yp, double *dky, double *spare,
-                      int32_t flag);
-    int32_t (*handle)(double *d, double t, double *y, double *events, int64_t *count);
-    void (*observe)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *row);
-    int32_t (*restart)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp, double *scale,
-                       double rtol, double stop);
-    double (*guard)(double *d, double t, double *y);
-    void (*keep)(double *d, double *desk, double t, double *yp);
-    void (*state_at)(double *d, int64_t *handles, double *desk, double t, double *y, double *yp);
+    int32_t (*finish)(int64_t *words, double *numbers, int32_t flag, double *events);
+    void (*observe)(int64_t *words, double *numbers, double t, double *row);
+    int32_t (*restart)(int64_t *words, double *numbers, int32_t again);
+    double (*guard)(int64_t *words, double *numbers, double t);
+    void (*keep)(int64_t *words, double *numbers);
+    void (*state_at)(int64_t *words, double *numbers, double t);
 } calls_t;
 
 typedef struct {
     const calls_t *call;
-    int64_t *handles;
+    int64_t *words;
+    double *numbers, *t; /* the time reached is one of the numbers */
     void *solver, *yy, *yyp;
-    double *d, *desk, *y, *yp;
     double low, low_time, step_end, stop_time, sharp;
     int rest, stop;
 } search_t;
 
 static void state_at(search_t *s, double t)
 {
-    s->call->state_at(s->d, s->handles, s->desk, t, s->y, s->yp);
+    s->call->state_at(s->words, s->numbers, t);
 }
 
 static double look(const search_t *s, double t)
 {
-    return s->call->guard(s->d, t, s->y);
+    return s->call->guard(s->words, s->numbers, t);
 }
 
 static double rounding(const search_t *s)
@@ -91,16 +88,17 @@ static double find(search_t *s, double high)
     return b;
 }
 
-static int at_stop(search_t *s, double *t)
+static int at_stop(search_t *s)
 {
     s->stop = 0;
-    *t = s->stop_time;
-    state_at(s, *t);
+    *s->t = s->stop_time;
+    state_at(s, *s->t);
     return TSTOP_RETURN;
 }
 
-static int next_time(search_t *s, double end, double *t)
+static int next_time(search_t *s, double end)
 {
+    double *t = s->t;
     if (s->rest) {
         s->low = look(s, *t), s->low_time = *t;
         if (fabs(s->step_end - *t) <= rounding(s))
@@ -111,12 +109,12 @@ static int next_time(search_t *s, double end, double *t)
         *t = s->step_end;
         state_at(s, *t);
     } else if (s->stop) {
-        return at_stop(s, t);
+        return at_stop(s);
     } else {
         int flag = IDASolve(s->solver, end, t, s->yy, s->yyp, ONE_STEP);
         if (flag < 0)
             return flag;
-        s->call->keep(s->d, s->desk, *t, s->yp);
+        s->call->keep(s->words, s->numbers);
         if (flag == TSTOP_RETURN) {
             s->stop = 1, s->stop_time = *t;
             IDAGetCurrentTime(s->solver, t);
@@ -132,13 +130,13 @@ static int next_time(search_t *s, double end, double *t)
     }
     s->low = high, s->low_time = *t;
     s->rest = 0;
-    return s->stop && !rest ? at_stop(s, t) : 0;
+    return s->stop && !rest ? at_stop(s) : 0;
 }
 
-static int start(search_t *s, double t, double *scale, double rtol, double end)
+static int start(search_t *s, int again)
 {
-    int flag = s->call->restart(s->d, s->handles, s->desk, t, s->y, s->yp, scale, rtol, end);
-    s->low = look(s, t), s->low_time = t;
+    const int flag = s->call->restart(s->words, s->numbers, again);
+    s->low = look(s, *s->t), s->low_time = *s->t;
     s->rest = s->stop = 0;
     return flag;
 }
@@ -151,45 +149,36 @@ static int64_t steps(void *solver)
 }
 
 /* Run to the end; 0 if all went well, and the steps taken. */
-int gearidae_loop(const calls_t *call, int64_t *handles, void *solver, void *yy, void *yyp, double *d, double *desk,
-                  double *y, double *yp, double *dky, double *spare, double *scale, double rtol, double sharp,
-                  double end, int64_t total, int64_t columns, double *rows, double *events, int64_t room,
+int gearidae_loop(const calls_t *call, int64_t *words, double *numbers, double *t, void *solver, void *yy, void *yyp,
+                  double sharp, double end, int64_t total, int64_t columns, double *rows, double *events,
                   int64_t *taken)
 {
-    search_t s = {call, handles, solver, yy, yyp, d, desk, y, yp};
+    search_t s = {call, words, numbers, t, solver, yy, yyp};
     s.sharp = sharp;
     const double spacing = end / (double)(total - 1);
-    double t = 0.0;
-    int64_t next = 1, happened = 0;
-    int flag = start(&s, t, scale, rtol, end);
+    int64_t next = 1;
+    int flag = start(&s, 0);
     while (flag == 0) {
-        flag = next_time(&s, end, &t);
+        flag = next_time(&s, end);
         if (flag < 0)
             return flag;
         while (next < total) {
-            double sample = next < total - 1 ? (double)next * spacing : end;
-            if (sample > t)
+            const double sample = next < total - 1 ? (double)next * spacing : end;
+            if (sample > *t)
                 break;
-            call->observe(d, handles, desk, sample, dky, spare, rows + next * columns);
+            call->observe(words, numbers, sample, rows + next * columns);
             next++;
         }
-        int afresh = call->accept(d, desk, t, y, yp, dky, spare, flag);
-        if (flag == ROOT_RETURN) {
-            if (happened >= room)
-                happened = 0;
-            int32_t action = call->handle(d, t, y, events, &happened);
-            if (action != RESTART && action != CONTINUE)
-                return 1;
-            afresh |= action == RESTART;
-            flag = 0;
-        } else if (flag == TSTOP_RETURN) {
-            *taken += steps(solver);
+        const int then = call->finish(words, numbers, flag, events);
+        flag = 0;
+        if (then == GO_ON)
+            continue;
+        *taken += steps(solver);
+        if (then == DONE)
             return 0;
-        }
-        if (afresh) {
-            *taken += steps(solver);
-            flag = start(&s, t, scale, rtol, end);
-        }
+        if (then == BROKEN)
+            return 1;
+        flag = start(&s, 1);
     }
     return flag;
 }

@@ -11,8 +11,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.events import CROWDED, EVENTS_AT_ONCE, accept, guard, handle, pass_knot
-from gearidae.engine.model import layout as at
+from gearidae.engine.events.events import CROWDED, guard, handle
+from gearidae.engine.events.histories import accept
+from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.schedule_knots import pass_knot
+from gearidae.engine.model.state import MATERIALS, Model
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import arm, watch
 from gearidae_bench.roots import (
@@ -45,14 +48,14 @@ Counts = NDArray[np.int64]
 
 @compiled(makes_arrays=True)
 def run_rk4(
-    d: Floats, y: Floats, end: float, times: Floats, states: Floats, step: float, counts: Counts
+    m: Model, y: Floats, end: float, times: Floats, states: Floats, step: float, counts: Counts
 ) -> None:
     """Steps of one length, histories followed at each; events are found on the cubic through the step's ends.
 
     Parameters
     ----------
-    d : ndarray
-        The scene, see `gearidae.engine.model.layout`; changes in place.
+    m : Model
+        The scene, see `gearidae.engine.model.state`; changes in place.
     y : ndarray, shape (n,)
         State at time 0; ends as the last one.
     end : float
@@ -73,27 +76,27 @@ def run_rk4(
     total = math.ceil(end / step)
     h = end / total
     sample = 0
-    rates(d, 0.0, y, zero, k[0])
-    before = guard(d, 0.0, y)
+    rates(m, 0.0, y, zero, k[0])
+    before = guard(m, 0.0, y)
     for number in range(total):
         t, later = number * h, (number + 1) * h if number + 1 < total else end
-        rk4_step(d, t, y, h, k, zero, trial, new)
-        rates(d, later, new, zero, f_new)
+        rk4_step(m, t, y, h, k, zero, trial, new)
+        rates(m, later, new, zero, f_new)
         while sample < times.size and times[sample] <= later:
             hermite_value(y, k[0], new, f_new, h, (times[sample] - t) / h, states[sample])
             sample += 1
-        fallen = before > 0.0 > guard(d, later, new)
+        fallen = before > 0.0 > guard(m, later, new)
         if fallen:
-            pass_events(CUBIC, d, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
+            pass_events(CUBIC, m, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
             if counts[FAILED] != 0:
                 return
-        accept(d, later, new)
+        accept(m, later, new)
         y[:] = new
         if fallen:
-            rates(d, later, y, zero, k[0])
+            rates(m, later, y, zero, k[0])
         else:
             k[0] = f_new
-        before = guard(d, later, y)
+        before = guard(m, later, y)
         if not math.isfinite(y[0]):
             counts[FAILED] = -1
             return
@@ -103,7 +106,7 @@ def run_rk4(
 
 @compiled(makes_arrays=True)
 def run_dop853(
-    d: Floats, y: Floats, end: float, times: Floats, states: Floats, atol: Floats, land: bool, counts: Counts
+    m: Model, y: Floats, end: float, times: Floats, states: Floats, atol: Floats, land: bool, counts: Counts
 ) -> None:
     """Steps of order eight under error control.
 
@@ -113,17 +116,17 @@ def run_dop853(
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
     zero, trial, new, f_new, there = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    room, heights = np.empty((EVENTS_AT_ONCE, 5)), np.empty(2 * int(d[at.TOTAL_SLOTS]))
+    room, heights = np.empty((EVENTS_AT_ONCE, 5)), np.empty(MATERIALS * m.scene.histories)
     sample, t, h = 0, 0.0, 1e-3
     rejected = False
-    rates(d, 0.0, y, zero, k[0])
-    armed = land and arm(d, y, heights)
-    before = watch(d, 0.0, y, heights, armed)
+    rates(m, 0.0, y, zero, k[0])
+    armed = land and arm(m, y, heights)
+    before = watch(m, 0.0, y, heights, armed)
     while t < end:
         last = t + h >= end
         if last:
             h = end - t
-        error = dop853_step(d, t, y, h, atol, k, zero, trial, new)
+        error = dop853_step(m, t, y, h, atol, k, zero, trial, new)
         counts[CALLS] += 12
         if not error < 1.0:
             h *= max(0.2, 0.9 * error**-0.125) if error < math.inf else 0.2
@@ -136,15 +139,15 @@ def run_dop853(
         planned = h * (min(factor, 1.0) if rejected else factor)
         rejected = False
         later = end if last else t + h
-        after = watch(d, later, new, heights, armed)
+        after = watch(m, later, new, heights, armed)
         fallen = before > 0.0 > after
         if fallen or (sample < times.size and times[sample] < later):
-            dop853_prepare(d, t, y, h, k, zero, trial, new, dense)
+            dop853_prepare(m, t, y, h, k, zero, trial, new, dense)
             counts[CALLS] += 3
         if fallen and land:
             h_root = find_root(
                 DOP853,
-                d,
+                m,
                 t,
                 y,
                 h,
@@ -167,10 +170,10 @@ def run_dop853(
             later = t + h_root
             # beyond a kink the step saw another law: make it again, up to there
             h = h_root
-            dop853_step(d, t, y, h, atol, k, zero, trial, new)
+            dop853_step(m, t, y, h, atol, k, zero, trial, new)
             counts[CALLS] += 12
             if sample < times.size and times[sample] < later:
-                dop853_prepare(d, t, y, h, k, zero, trial, new, dense)
+                dop853_prepare(m, t, y, h, k, zero, trial, new, dense)
                 counts[CALLS] += 3
         while sample < times.size and times[sample] < later:
             dop853_value(y, dense, (times[sample] - t) / h, states[sample])
@@ -179,20 +182,20 @@ def run_dop853(
             states[sample] = new
             sample += 1
         if fallen and not land:
-            pass_events(DOP853, d, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
-        accept(d, later, new)
+            pass_events(DOP853, m, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
+        accept(m, later, new)
         y[:] = new
         t = later
         if fallen and land:
-            _, counts[FAILED] = handle(d, t, y, room, 0)
+            _, counts[FAILED] = handle(m, t, y, room, 0)
         if counts[FAILED] != 0:
             return
         if fallen:
-            rates(d, t, y, zero, k[0])
+            rates(m, t, y, zero, k[0])
         else:
             k[0] = k[12]
-        armed = land and arm(d, y, heights)
-        before = watch(d, t, y, heights, armed)
+        armed = land and arm(m, y, heights)
+        before = watch(m, t, y, heights, armed)
         counts[STEPS] += 1
         h = planned
         if last:
@@ -201,7 +204,7 @@ def run_dop853(
 
 @compiled(makes_arrays=True)
 def run_gauss(
-    d: Floats,
+    m: Model,
     y: Floats,
     end: float,
     times: Floats,
@@ -221,28 +224,28 @@ def run_gauss(
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
     zero, trial, new, f_new, there = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    room, heights = np.empty((EVENTS_AT_ONCE, 5)), np.empty(2 * int(d[at.TOTAL_SLOTS]))
+    room, heights = np.empty((EVENTS_AT_ONCE, 5)), np.empty(MATERIALS * m.scene.histories)
     sample, t, h = 0, 0.0, 1e-3
-    rates(d, 0.0, y, zero, k[0])
-    armed = arm(d, y, heights)
-    before = watch(d, 0.0, y, heights, armed)
+    rates(m, 0.0, y, zero, k[0])
+    armed = arm(m, y, heights)
+    before = watch(m, 0.0, y, heights, armed)
     while t < end:
         stop = times[sample] if sample < times.size else end
         if stop <= t:
             states[sample] = y
             sample += 1
             continue
-        knot = int(d[at.NEXT_KNOT])
+        knot = m.state.next_knot
         if knot < knots.size:
             if knots[knot] <= t:
-                pass_knot(d, t, room, 0)
-                rates(d, t, y, zero, k[0])
-                before = watch(d, t, y, heights, armed)
+                pass_knot(m, t, room, 0)
+                rates(m, t, y, zero, k[0])
+                before = watch(m, t, y, heights, armed)
                 continue
             stop = min(stop, knots[knot])
         cut = t + h >= stop
         step = stop - t if cut else h
-        error = gauss_step(d, t, y, step, scale, k, zero, trial, new) / tolerance
+        error = gauss_step(m, t, y, step, scale, k, zero, trial, new) / tolerance
         counts[CALLS] += 60
         if not error < 1.0:
             h = step * (max(0.2, 0.9 * error ** (-1.0 / 7.0)) if error < math.inf else 0.3)
@@ -253,12 +256,12 @@ def run_gauss(
         wider = step * (4.0 if error == 0.0 else min(4.0, 0.9 * error ** (-1.0 / 7.0)))
         h = max(h, wider) if cut else wider
         later = stop if cut else t + step
-        after = watch(d, later, new, heights, armed)
+        after = watch(m, later, new, heights, armed)
         fallen = before > 0.0 > after
         if fallen:
             step = find_root(
                 GAUSS,
-                d,
+                m,
                 t,
                 y,
                 step,
@@ -279,17 +282,17 @@ def run_gauss(
             counts[EVENTS] += 1
             later = t + step
             new[:] = there
-        accept(d, later, new)
+        accept(m, later, new)
         y[:] = new
         t = later
         if fallen:
-            _, action = handle(d, t, y, room, 0)
+            _, action = handle(m, t, y, room, 0)
             if action == CROWDED:
                 counts[FAILED] = action
                 return
-        rates(d, t, y, zero, k[0])
-        armed = arm(d, y, heights)
-        before = watch(d, t, y, heights, armed)
+        rates(m, t, y, zero, k[0])
+        armed = arm(m, y, heights)
+        before = watch(m, t, y, heights, armed)
         counts[STEPS] += 1
     while sample < times.size:
         states[sample] = y

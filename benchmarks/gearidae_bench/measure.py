@@ -8,16 +8,17 @@ import statistics
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.model.problem import Problem, make_problem
-from gearidae_bench.contender import Contender, Outcome
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.problem import Problem
+from gearidae_bench.contender import Contender, Outcome, unused
 from gearidae_bench.error import run_error
-from gearidae_bench.reference import Reference, find_reference
+from gearidae_bench.reference import Reference, end_of, find_reference
 from gearidae_bench.scenes import BenchScene
 
 __all__ = ["Point", "Settings", "measure_scene"]
@@ -116,7 +117,7 @@ def measure_scene(
     report(f"{bench.title}: reference")
     reference = find_reference(bench)
     problem = make_problem(bench.scene)
-    times = np.linspace(0.0, problem.end, bench.scene.run.sample_count)
+    times = np.linspace(0.0, end_of(problem), bench.scene.run.sample_count)
     series: list[_Series] = []
     first_calls: dict[str, float] = {}
     for contender in contenders:
@@ -152,7 +153,7 @@ def _round(series: Sequence[_Series], share: float, problem: Problem, times: Flo
 
 def _timed(contender: Contender, problem: Problem, tolerance: float, times: Floats) -> tuple[float, Outcome]:
     """Run once, on a copy of the problem that the run may use up."""
-    copy = replace(problem, data=problem.data.copy(), start=problem.start.copy())
+    copy = unused(problem)
     started = time.perf_counter()
     outcome = contender.run(copy, tolerance, times)
     return time.perf_counter() - started, outcome

@@ -15,14 +15,23 @@ from numpy.typing import NDArray
 from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
-from gearidae.engine.events.events import CONTINUE, EVENTS_AT_ONCE, accept, guard, handle
+from gearidae.engine.events.events import CONTINUE
+from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.integrate.by_address import (
+    accept_at,
+    guard_at,
+    handle_at,
+    jacobian_at,
+    residual_at,
+)
 from gearidae.engine.integrate.start import set_rates
-from gearidae.engine.model import layout as at
 from gearidae.engine.model.problem import Problem
-from gearidae.engine.model.residual import jacobian, residual
+from gearidae.engine.model.residual import jacobian
+from gearidae.engine.model.state import GEARS, V, W
+from gearidae.engine.sundials.memory import Located, model_at
 from gearidae_bench.compiling import compiled
 from gearidae_bench.contender import BROKEN, Contender, Outcome
-from gearidae_bench.reference import physical
+from gearidae_bench.reference import end_of, physical
 from gearidae_bench.steps import rates
 
 __all__ = ["scipy_contenders", "sundials_contenders"]
@@ -38,45 +47,50 @@ _MOST_STEPS: Final = 10_000_000
 
 
 @compiled(makes_arrays=True)
-def _slope(d: Floats, t: float, y: Floats) -> Floats:
+def _slope(place: int, t: float, y: Floats) -> Floats:
     out = np.empty(y.size)
-    rates(d, t, y, np.zeros(y.size), out)
+    rates(model_at(place), t, y, np.zeros(y.size), out)
     return out
 
 
 @compiled(makes_arrays=True)
-def _slope_jacobian(d: Floats, t: float, y: Floats) -> Floats:
+def _slope_jacobian(place: int, t: float, y: Floats) -> Floats:
     """Partial derivatives of y' by y, from those of the residual."""
-    n = y.size
+    m, n = model_at(place), y.size
     columns = np.empty(n * n)
-    jacobian(d, t, 0.0, y, columns)
+    jacobian(m, t, 0.0, y, columns)
     out = -columns.reshape(n, n).T
-    if d[at.KIND] == at.GEARS:
-        out[at.V] -= out[at.W]
+    if m.scene.kind == GEARS:
+        out[V] -= out[W]
     return out
+
+
+@compiled()
+def _rates(place: int, t: float, y: Floats, zero: Floats, out: Floats) -> None:
+    rates(model_at(place), t, y, zero, out)
 
 
 class _Events:
     """Follows histories and events behind a solver that knows nothing of them."""
 
-    def __init__(self, problem: Problem) -> None:
-        self._d = problem.data
+    def __init__(self, located: Located, start: Floats) -> None:
+        self._located, self._place = located, located.place
         self._room = np.empty((EVENTS_AT_ONCE, 5))
-        self._before = guard(self._d, 0.0, problem.start)
+        self._before = guard_at(self._place, 0.0, start)
         self.failed = False
 
     def follow(
         self, start: float, end: float, y: Floats, value: Callable[[], Callable[[float], Floats]]
     ) -> None:
         """Go from one accepted time to the next; `value` makes the interpolant if it is needed."""
-        after = guard(self._d, end, y)
+        after = guard_at(self._place, end, y)
         while self._before > 0.0 > after:
             start = self._root(start, end, after, value())
             if self.failed:
                 return
-            after = guard(self._d, end, y)
-        accept(self._d, end, y)
-        self._before = guard(self._d, end, y)
+            after = guard_at(self._place, end, y)
+        accept_at(self._place, end, y)
+        self._before = guard_at(self._place, end, y)
 
     def _root(self, a: float, b: float, high: float, value: Callable[[float], Floats]) -> float:
         low, weight, side = self._before, 1.0, 0
@@ -84,7 +98,7 @@ class _Events:
             if b - a <= 1e-15 * abs(b):
                 break
             place = b - (b - a) * min(max(high / (high - weight * low), 1e-3), 0.999)
-            middle = guard(self._d, place, value(place))
+            middle = guard_at(self._place, place, value(place))
             if middle < 0.0:
                 b, high = place, middle
                 weight = 0.5 * weight if side == 1 else 1.0
@@ -99,27 +113,28 @@ class _Events:
 
     def arrive(self, t: float, y: Floats) -> None:
         """Deal with a root at t."""
-        accept(self._d, t, y)
-        _, action = handle(self._d, t, y, self._room, 0)
+        accept_at(self._place, t, y)
+        _, action = handle_at(self._place, t, y, self._room, 0)
         self.failed = action != CONTINUE
-        self._before = guard(self._d, t, y)
+        self._before = guard_at(self._place, t, y)
 
 
 def _scipy(method: Any, implicit: bool) -> Callable[[Problem, float, Floats], Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        d = problem.data
+        located = Located(problem.model)
+        place = located.place
 
         def fun(t: float, y: Floats) -> Floats:
-            return _slope(d, t, y)
+            return _slope(place, t, y)
 
         def jac(t: float, y: Floats) -> Floats:
-            return _slope_jacobian(d, t, y)
+            return _slope_jacobian(place, t, y)
 
         options: dict[str, Any] = {"rtol": _SMALLEST_RTOL, "atol": tolerance * problem.tolerance_scale}
         if implicit:
             options["jac"] = jac
-        solver = method(fun, 0.0, problem.start, problem.end, **options)
-        events = _Events(problem)
+        solver = method(fun, 0.0, problem.start, end_of(problem), **options)
+        events = _Events(located, problem.start)
         states = np.empty((times.size, problem.start.size))
         sample, steps = 0, 0
         while solver.status == "running":
@@ -147,12 +162,15 @@ def _scipy(method: Any, implicit: bool) -> Callable[[Problem, float, Floats], Ou
     return run
 
 
-def _sundials(make: Callable[[Problem, float, Any], Any], names: tuple[str, ...]) -> Callable[..., Outcome]:
+def _sundials(
+    make: Callable[[Problem, int, float, Any], Any], names: tuple[str, ...]
+) -> Callable[..., Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        d = problem.data
+        located, end = Located(problem.model), end_of(problem)
+        place = located.place
 
         def eventsfn(t: float, y: Floats, *rest: Floats) -> None:
-            rest[-1][0] = guard(d, t, y)
+            rest[-1][0] = guard_at(place, t, y)
 
         watch: Any = (
             (lambda t, y, yp, out: eventsfn(t, y, out))
@@ -160,13 +178,13 @@ def _sundials(make: Callable[[Problem, float, Any], Any], names: tuple[str, ...]
             else (lambda t, y, out: eventsfn(t, y, out))
         )
         watch.direction = [-1]
-        solver = make(problem, tolerance, watch)
-        events = _Events(problem)
+        solver = make(problem, place, tolerance, watch)
+        events = _Events(located, problem.start)
         states = np.empty((times.size, problem.start.size))
         states[0] = problem.start
         sample, steps, t = 1, 0, 0.0
-        while t < problem.end:
-            result = solver.step(problem.end, method="onestep", tstop=problem.end)
+        while t < end:
+            result = solver.step(end, method="onestep", tstop=end)
             if result.status < 0:
                 return BROKEN
             if result.t == t and t > 0.0 and result.status != _ROOT:
@@ -184,22 +202,22 @@ def _sundials(make: Callable[[Problem, float, Any], Any], names: tuple[str, ...]
                 for name in names:  # else the whole history is copied at every further step
                     getattr(watch, name).clear()
             else:
-                accept(d, t, y)
+                accept_at(place, t, y)
         states[sample:] = y
         return Outcome(*physical(problem, states), steps, int(result.nfev))
 
     return run
 
 
-def _make_ida(problem: Problem, tolerance: float, watch: Any) -> Any:
-    d, n = problem.data, problem.start.size
+def _make_ida(problem: Problem, place: int, tolerance: float, watch: Any) -> Any:
+    n = problem.start.size
     columns = np.empty(n * n)
 
     def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
-        residual(d, t, y, yp, out)
+        residual_at(place, t, y, yp, out)
 
     def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
-        jacobian(d, t, cj, y, columns)
+        jacobian_at(place, t, cj, y, columns)
         out[:] = columns.reshape(n, n).T
 
     solver = IDA(
@@ -212,21 +230,20 @@ def _make_ida(problem: Problem, tolerance: float, watch: Any) -> Any:
         max_num_steps=_MOST_STEPS,
     )
     yp = np.empty(n)
-    set_rates(d, 0.0, problem.start, yp)
+    set_rates(problem.model, 0.0, problem.start, yp)
     solver.init_step(0.0, problem.start, yp)
     return solver
 
 
-def _make_cvode(method: str) -> Callable[[Problem, float, Any], Any]:
-    def make(problem: Problem, tolerance: float, watch: Any) -> Any:
-        d = problem.data
+def _make_cvode(method: str) -> Callable[[Problem, int, float, Any], Any]:
+    def make(problem: Problem, place: int, tolerance: float, watch: Any) -> Any:
         zero = np.zeros(problem.start.size)
 
         def rhsfn(t: float, y: Floats, yp: Floats) -> None:
-            rates(d, t, y, zero, yp)
+            _rates(place, t, y, zero, yp)
 
         def jacfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
-            out[:] = _slope_jacobian(d, t, y)
+            out[:] = _slope_jacobian(place, t, y)
 
         solver = CVODE(
             rhsfn,

@@ -21,8 +21,9 @@ from platformdirs import user_cache_path
 
 import gearidae
 from gearidae.engine.integrate.start import set_rates
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import Problem, make_problem
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.state import ROLLER, U, V, W
 from gearidae.errors import SolverError
 from gearidae_bench.error import run_error
 from gearidae_bench.loop import run_dop853, run_gauss
@@ -34,6 +35,7 @@ __all__ = [
     "TOLERANCE",
     "Provenance",
     "Reference",
+    "end_of",
     "find_reference",
     "load_reference",
     "make_reference",
@@ -115,25 +117,31 @@ def scene_hash(bench: BenchScene) -> str:
     digest = hashlib.sha256(json.dumps(bench.scene.to_dict(), sort_keys=True, default=str).encode())
     for gap in (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0):
         slopes = np.zeros_like(problem.start)
-        set_rates(problem.data, 0.0, _pressed(problem, gap), slopes)
+        set_rates(problem.model, 0.0, _pressed(problem, gap), slopes)
         digest.update(",".join(f"{x:.6e}" for x in slopes).encode())
     return digest.hexdigest()
 
 
 def _pressed(problem: Problem, gap: float) -> Floats:
     """Start state, moved so that the drive flank's gap is `gap` roughnesses."""
-    y = problem.start.copy()
-    y[at.U] = gap if problem.data[at.KIND] == at.ROLLER else problem.data[at.HALF_BACKLASH] - gap
+    y, s = problem.start.copy(), problem.model.scene
+    y[U] = gap if s.kind == ROLLER else s.half_backlash - gap
     return y
+
+
+def end_of(problem: Problem) -> float:
+    """End of a problem's run, over tau."""
+    return float(problem.model.scene.end)
 
 
 def physical(problem: Problem, states: Floats) -> tuple[Floats, Floats]:
     """Speed [rad/s, or m/s of a roller] and position [m] of scaled states, shape (n, states)."""
-    length = float(problem.data[at.SIGMA])
+    s = problem.model.scene
+    length = float(s.length_unit)
     unit = length / problem.time_unit
-    if problem.data[at.KIND] == at.ROLLER:
-        return states[:, at.V] * unit, states[:, at.U] * length
-    return states[:, at.W] * unit / float(problem.data[at.GEAR_RADIUS]), states[:, at.U] * length
+    if s.kind == ROLLER:
+        return states[:, V] * unit, states[:, U] * length
+    return states[:, W] * unit / float(s.gear_radius), states[:, U] * length
 
 
 def solve_with(bench: BenchScene, method: str, tolerance: float) -> tuple[Floats, Floats, Floats]:
@@ -156,16 +164,15 @@ def solve_with(bench: BenchScene, method: str, tolerance: float) -> tuple[Floats
         If the method fails; ``dop853`` does where the scene restarts (stick, schedule knots).
     """
     problem = make_problem(bench.scene)
-    times = np.linspace(0.0, problem.end, bench.scene.run.sample_count)
+    m, end = problem.model, end_of(problem)
+    times = np.linspace(0.0, end, bench.scene.run.sample_count)
     y, states = problem.start.copy(), np.zeros((times.size, problem.start.size))
     counts = np.zeros(4, np.int64)
     if method == "gauss":
-        scale = problem.tolerance_scale
-        run_gauss(problem.data, y, problem.end, times, states, scale, tolerance, problem.knots, counts)
+        knots = m.tables[m.scene.knots_at : m.scene.knots_at + m.scene.knot_count]
+        run_gauss(m, y, end, times, states, problem.tolerance_scale, tolerance, knots, counts)
     else:
-        run_dop853(
-            problem.data, y, problem.end, times, states, tolerance * problem.tolerance_scale, True, counts
-        )
+        run_dop853(m, y, end, times, states, tolerance * problem.tolerance_scale, True, counts)
     if counts[FAILED] or not np.isfinite(states).all():
         raise SolverError(
             f"no reference for {bench.name}: {method} failed",

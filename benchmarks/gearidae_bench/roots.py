@@ -7,7 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.events import accept, guard, handle
+from gearidae.engine.events.events import guard, handle
+from gearidae.engine.events.histories import accept
+from gearidae.engine.model.state import Model
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import watch
 from gearidae_bench.steps import dop853_value, gauss_step, hermite_value
@@ -33,7 +35,7 @@ _MOST_TRIALS = 60
 @compiled()
 def _value(
     method: int,
-    d: Floats,
+    m: Model,
     t: float,
     y: Floats,
     h: float,
@@ -53,13 +55,13 @@ def _value(
     elif method == DOP853:
         dop853_value(y, dense, theta / h, out)
     else:
-        gauss_step(d, t, y, theta, scale, k, zero, trial, out)
+        gauss_step(m, t, y, theta, scale, k, zero, trial, out)
 
 
 @compiled(makes_arrays=True)
 def find_root(
     method: int,
-    d: Floats,
+    m: Model,
     t: float,
     y: Floats,
     h: float,
@@ -90,8 +92,8 @@ def find_root(
             break
         share = min(max(high / (high - weight * low), 1e-3), 1.0 - 1e-3)
         place = b - (b - a) * share
-        _value(method, d, t, y, h, place, scale, k, zero, trial, new, f_new, dense, state)
-        middle = watch(d, t + place, state, heights, armed)
+        _value(method, m, t, y, h, place, scale, k, zero, trial, new, f_new, dense, state)
+        middle = watch(m, t + place, state, heights, armed)
         if middle < 0.0:
             b, high = place, middle
             out[:] = state
@@ -107,7 +109,7 @@ def find_root(
 @compiled()
 def pass_events(
     method: int,
-    d: Floats,
+    m: Model,
     t: float,
     y: Floats,
     h: float,
@@ -124,11 +126,11 @@ def pass_events(
 ) -> None:
     """Take the history through the events within a step, one after the other, and go on from the step's end."""
     start = 0.0
-    after = guard(d, t + h, new)
+    after = guard(m, t + h, new)
     while before > 0.0 > after:
         start = find_root(
             method,
-            d,
+            m,
             t,
             y,
             h,
@@ -147,9 +149,9 @@ def pass_events(
             False,
         )
         counts[EVENTS] += 1
-        accept(d, t + start, there)
-        _, counts[FAILED] = handle(d, t + start, there, room, 0)
+        accept(m, t + start, there)
+        _, counts[FAILED] = handle(m, t + start, there, room, 0)
         if counts[FAILED] != 0:
             return
-        before = guard(d, t + start, there)
-        after = guard(d, t + h, new)
+        before = guard(m, t + start, there)
+        after = guard(m, t + h, new)

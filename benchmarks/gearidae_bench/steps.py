@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import DOP853 as _SCIPY
 
-from gearidae.engine.model import layout as at
 from gearidae.engine.model.residual import residual
+from gearidae.engine.model.state import GEARS, Model, V, W
 from gearidae_bench.compiling import compiled
 
 __all__ = [
@@ -61,30 +61,30 @@ _GC, _GA, _GB, _GE = _gauss_tableau(_GAUSS_STAGES)
 
 
 @compiled()
-def rates(d: Floats, t: float, y: Floats, zero: Floats, out: Floats) -> None:
+def rates(m: Model, t: float, y: Floats, zero: Floats, out: Floats) -> None:
     """y' at a scaled state, from the engine's residual; `zero` holds zeros and stays so."""
-    residual(d, t, y, zero, out)
+    residual(m, t, y, zero, out)
     for i in range(y.size):
         out[i] = -out[i]
-    if d[at.KIND] == at.GEARS:
-        out[at.V] -= out[at.W]
+    if m.scene.kind == GEARS:
+        out[V] -= out[W]
 
 
 @compiled()
 def rk4_step(
-    d: Floats, t: float, y: Floats, h: float, k: Floats, zero: Floats, trial: Floats, new: Floats
+    m: Model, t: float, y: Floats, h: float, k: Floats, zero: Floats, trial: Floats, new: Floats
 ) -> None:
     """One step of the classical method of order four from t; ``k[0]`` holds y' there."""
     n = y.size
     for i in range(n):
         trial[i] = y[i] + 0.5 * h * k[0, i]
-    rates(d, t + 0.5 * h, trial, zero, k[1])
+    rates(m, t + 0.5 * h, trial, zero, k[1])
     for i in range(n):
         trial[i] = y[i] + 0.5 * h * k[1, i]
-    rates(d, t + 0.5 * h, trial, zero, k[2])
+    rates(m, t + 0.5 * h, trial, zero, k[2])
     for i in range(n):
         trial[i] = y[i] + h * k[2, i]
-    rates(d, t + h, trial, zero, k[3])
+    rates(m, t + h, trial, zero, k[3])
     for i in range(n):
         new[i] = y[i] + h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
 
@@ -100,7 +100,7 @@ def hermite_value(y: Floats, f: Floats, new: Floats, f_new: Floats, h: float, s:
 
 @compiled()
 def dop853_step(
-    d: Floats,
+    m: Model,
     t: float,
     y: Floats,
     h: float,
@@ -124,13 +124,13 @@ def dop853_step(
             for j in range(s):
                 total += _A[s, j] * k[j, i]
             trial[i] = y[i] + h * total
-        rates(d, t + _C[s] * h, trial, zero, k[s])
+        rates(m, t + _C[s] * h, trial, zero, k[s])
     for i in range(n):
         total = 0.0
         for j in range(_N):
             total += _B[j] * k[j, i]
         new[i] = y[i] + h * total
-    rates(d, t + h, new, zero, k[_N])
+    rates(m, t + h, new, zero, k[_N])
     fifth = third = 0.0
     for i in range(n):
         e3 = e5 = 0.0
@@ -146,7 +146,7 @@ def dop853_step(
 
 @compiled()
 def dop853_prepare(
-    d: Floats,
+    m: Model,
     t: float,
     y: Floats,
     h: float,
@@ -164,17 +164,17 @@ def dop853_prepare(
             for j in range(s):
                 total += _A_MORE[s - _N - 1, j] * k[j, i]
             trial[i] = y[i] + h * total
-        rates(d, t + _C_MORE[s - _N - 1] * h, trial, zero, k[s])
+        rates(m, t + _C_MORE[s - _N - 1] * h, trial, zero, k[s])
     for i in range(n):
         rise = new[i] - y[i]
         dense[0, i] = rise
         dense[1, i] = h * k[0, i] - rise
         dense[2, i] = 2.0 * rise - h * (k[_N, i] + k[0, i])
-        for m in range(4):
+        for row in range(4):
             total = 0.0
             for j in range(STAGES):
-                total += _D[m, j] * k[j, i]
-            dense[3 + m, i] = h * total
+                total += _D[row, j] * k[j, i]
+            dense[3 + row, i] = h * total
 
 
 @compiled()
@@ -182,14 +182,14 @@ def dop853_value(y: Floats, dense: Floats, s: float, out: Floats) -> None:
     """State at the part `s` of a step."""
     for i in range(y.size):
         value = 0.0
-        for m in range(6, -1, -1):
-            value = (value + dense[m, i]) * (s if m % 2 == 0 else 1.0 - s)
+        for row in range(6, -1, -1):
+            value = (value + dense[row, i]) * (s if row % 2 == 0 else 1.0 - s)
         out[i] = y[i] + value
 
 
 @compiled()
 def gauss_step(
-    d: Floats,
+    m: Model,
     t: float,
     y: Floats,
     h: float,
@@ -203,7 +203,7 @@ def gauss_step(
 
     Parameters
     ----------
-    d, t, y, h : ndarray, float, ndarray, float
+    m, t, y, h : Model, float, ndarray, float
         The scene, and the step.
     scale : ndarray, shape (n,)
         What an error of 1 means for each state.
@@ -224,7 +224,7 @@ def gauss_step(
     for s in range(_GAUSS_STAGES):
         for i in range(n):
             trial[i] = y[i] + _GC[s] * h * k[0, i]
-        rates(d, t + _GC[s] * h, trial, zero, k[1 + s])
+        rates(m, t + _GC[s] * h, trial, zero, k[1 + s])
     last = math.inf
     improved = k[_GAUSS_STAGES + 1]
     for iteration in range(_GAUSS_ITERATIONS):
@@ -235,7 +235,7 @@ def gauss_step(
                 for j in range(_GAUSS_STAGES):
                     total += _GA[s, j] * k[1 + j, i]
                 trial[i] = y[i] + h * total
-            rates(d, t + _GC[s] * h, trial, zero, improved)
+            rates(m, t + _GC[s] * h, trial, zero, improved)
             for i in range(n):
                 change = max(change, h * abs(improved[i] - k[1 + s, i]) / scale[i])
                 k[1 + s, i] = improved[i]

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate.driver import BLOCK_STEPS
-from gearidae.engine.model import layout as at
-from gearidae.engine.model.problem import Problem, make_problem
+from gearidae.engine.integrate.driver import BLOCK_STEPS, Tally
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.problem import Problem
 from gearidae.errors import SceneError
-from gearidae.records import EventKind, Ledger, Statistics
+from gearidae.records import EventKind, Ledger
 from gearidae.runs.executors import own_executor, stop
 from gearidae.scene import Scene
 from gearidae_bench.random_scenes import SCENES_PER_SURFACE, random_scene
@@ -164,7 +164,7 @@ def run_one(scene: Scene, number: int = 0, budget: int = STEP_BUDGET) -> Outcome
             status = "budget"
         error = math.nan
         complaint = complaint_about(
-            scene, run.rows, run.events, float(run.problem.data[at.FORCE]), rigid=run.rigid
+            scene, run.rows, run.events, float(run.problem.model.scene.force_unit), rigid=run.rigid
         )
         if status == "finished" and run.imbalance > LEDGER_TOLERANCES * scene.run.rtol:
             complaint = complaint or f"the energy ledger leaves {run.imbalance:.1e} unexplained"
@@ -196,7 +196,7 @@ class _Run:
     """What came of a scene within the budget."""
 
     problem: Problem
-    tally: Statistics
+    tally: Tally
     rows: Floats
     events: Floats
     reached: float  # share of the simulated time
@@ -209,12 +209,12 @@ class _Run:
 
 
 def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
-    problem, tally = make_problem(scene), Statistics()
+    problem, tally = make_problem(scene), Tally()
     rows, events, reached, ledger = [], [], 0.0, None
     for spent, block in enumerate(run_blocks(problem, rtol, scene.run.sample_count, "native", tally), 1):
         rows.append(block.rows)
         events.append(block.events)
-        reached = block.time / (problem.end * problem.time_unit)
+        reached = block.time / (float(problem.model.scene.end) * problem.time_unit)
         ledger = block.ledger or ledger
         if spent * BLOCK_STEPS * (1 if _is_rigid(problem) else ELASTIC_SHARE) >= budget:
             break
@@ -270,16 +270,16 @@ def _error(scene: Scene, run: _Run, budget: int) -> float:
 
 def _motion(scene: Scene, run: _Run) -> Floats:
     """Height or transmission error, and speeds, with their rates, in the engine's units; shape (2, samples, 2 or 3)."""
-    sigma, data = scene.surface.roughness, run.problem.data
+    sigma, s = scene.surface.roughness, run.problem.model.scene
     speed = sigma / run.problem.time_unit
     if scene.roller:
         height, rate, force = run.rows.T
         values = [height / sigma, rate / speed]
-        rates = [values[1], data[at.GEAR_SHARE] * force / data[at.FORCE]]
+        rates = [values[1], s.gear_inverse_mass * force / s.force_unit]
     else:
         geometry, rows = scene.geometry, run.rows
         gear, pinion = rows[:, 0] * geometry.base_radius_gear, rows[:, 1] * geometry.base_radius_pinion
-        force = rows[:, 4] / data[at.FORCE]
+        force = rows[:, 4] / s.force_unit
         values = [rows[:, 3] / sigma, gear / speed, pinion / speed]
-        rates = [values[2] - values[1], data[at.GEAR_SHARE] * force, data[at.PINION_SHARE] * force]
+        rates = [values[2] - values[1], s.gear_inverse_mass * force, s.pinion_inverse_mass * force]
     return np.stack([np.column_stack(values), np.column_stack(rates)])

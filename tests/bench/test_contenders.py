@@ -1,27 +1,21 @@
 """Every contender solves the same problem: on a roller's impact with history all agree with the reference."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from gearidae.engine.model.problem import make_problem
+from gearidae.engine.model.build import make_problem
 from gearidae_bench import SCENES
 from gearidae_bench.benchmark import all_contenders
 from gearidae_bench.c_loop import c_contenders
-from gearidae_bench.contender import engine_contenders
+from gearidae_bench.contender import engine_contenders, unused
 from gearidae_bench.error import run_error
 from gearidae_bench.loop import run_dop853, run_gauss, run_rk4
-from gearidae_bench.reference import find_reference
+from gearidae_bench.reference import end_of, find_reference
 from gearidae_bench.roots import FAILED
 
 BENCH = SCENES["roller_slow_bare"]
 PROBLEM = make_problem(BENCH.scene)
-TIMES = np.linspace(0.0, PROBLEM.end, BENCH.scene.run.samples)
-
-
-def fresh(problem=PROBLEM):
-    return replace(problem, data=problem.data.copy(), start=problem.start.copy())
+TIMES = np.linspace(0.0, end_of(PROBLEM), BENCH.scene.run.samples)
 
 
 @pytest.mark.parametrize("contender", all_contenders(), ids=lambda c: c.key)
@@ -29,7 +23,7 @@ def test_contender_agrees_with_the_reference(contender):
     if reason := contender.unavailable():
         pytest.skip(reason)
     tolerance = contender.ladder[5]
-    outcome = contender.run(fresh(), tolerance, TIMES)
+    outcome = contender.run(unused(PROBLEM), tolerance, TIMES)
     reference = find_reference(BENCH)
     error = run_error(reference.speed, reference.position, outcome.speed, outcome.position, reference.length)
     # tolerances are local, per step: some hundred steps and the impact's amplification come on top. What this would
@@ -42,7 +36,7 @@ def test_the_c_loop_takes_the_native_steps():
     native, c_loop = engine_contenders()[0], c_contenders()[0]
     if reason := native.unavailable() or c_loop.unavailable():
         pytest.skip(reason)
-    ours, theirs = native.run(fresh(), 1e-6, TIMES), c_loop.run(fresh(), 1e-6, TIMES)
+    ours, theirs = native.run(unused(PROBLEM), 1e-6, TIMES), c_loop.run(unused(PROBLEM), 1e-6, TIMES)
     assert (ours.steps, ours.evaluations) == (theirs.steps, theirs.evaluations)
     np.testing.assert_allclose(ours.speed, theirs.speed, rtol=1e-12)
 
@@ -59,8 +53,8 @@ def smooth_problem():
 def end_state(run, *arguments):
     problem = smooth_problem()
     counts, y = np.zeros(4, np.int64), problem.start
-    times = np.array([0.0, problem.end])
-    run(problem.data, y, problem.end, times, np.zeros((2, y.size)), *arguments, counts)
+    times = np.array([0.0, end_of(problem)])
+    run(problem.model, y, end_of(problem), times, np.zeros((2, y.size)), *arguments, counts)
     assert counts[FAILED] == 0
     return y
 

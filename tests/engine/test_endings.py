@@ -6,7 +6,7 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.integrate.driver import ending_of_flag
-from gearidae.engine.model import build, build_contact
+from gearidae.engine.model import build
 from gearidae.records import Ending
 
 

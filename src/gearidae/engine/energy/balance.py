@@ -29,6 +29,8 @@ A contact that closes joins asperities all the way to its turning point. Their l
 
 from __future__ import annotations
 
+from typing import Final
+
 from gearidae.compiled import compiled
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.motion import kinetic_energy
@@ -37,8 +39,17 @@ from gearidae.engine.energy.radius import radius_power, sample_radius_power
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import in_flight, static_error
 from gearidae.engine.model.torque import is_constant, torque_force, torque_rate
+from gearidae.engine.sundials.memory import model_at
 
-__all__ = ["accumulate_energy", "carry_balance", "open_balance", "restart_quadrature", "sample_radius_power"]
+__all__ = [
+    "BALANCE",
+    "accumulate_energy",
+    "balance_at",
+    "carry_balance",
+    "open_balance",
+    "restart_quadrature",
+    "sample_radius_power",
+]
 
 
 @compiled
@@ -202,6 +213,31 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
     r.time, r.gear_travel = t, gear
     r.gear_speed, r.gear_acceleration = y[W], yp[W]
     r.mesh_speed, r.mesh_acceleration = y[V], yp[V]
+
+
+BALANCE: Final = 3
+"""Numbers that `balance_at` leaves besides the sums: stored and pending energy, energy of motion."""
+
+
+@compiled
+def balance_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:
+    """Keep the sums up to an accepted time, and say what contacts store and what moves there.
+
+    Parameters
+    ----------
+    place : int
+        Of the model, from `gearidae.engine.sundials.memory.Located`.
+    t : float
+        Time over tau.
+    y, yp : ndarray, shape (n,)
+        State there, and its rate.
+    out : ndarray, shape (BALANCE,)
+        Filled in.
+    """
+    m = model_at(place)
+    accumulate_energy(m, t, y, yp, True)
+    out[0], out[1] = stored_energy(m, y)
+    out[2] = kinetic_energy(m, y)
 
 
 @compiled

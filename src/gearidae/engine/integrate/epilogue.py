@@ -25,9 +25,9 @@ BALANCE_ORDER = 4
 
 
 @compiled
-def has_room(m: Model, events: Floats) -> bool:
+def has_room(count: int, events: Floats) -> bool:
     """Whether all events of one more accepted time find room in the block: else it is handed out first."""
-    return bool(m.work.driver.events <= events.shape[0] - EVENTS_AT_ONCE)
+    return bool(count <= events.shape[0] - EVENTS_AT_ONCE)
 
 
 @compiled(inline=True)

@@ -10,13 +10,13 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate import adams
+from gearidae.engine.integrate.by_address import observe_at
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
     BLOCK_STEPS,
@@ -31,7 +31,7 @@ from gearidae.engine.integrate.driver import (
     sample_time,
 )
 from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
-from gearidae.engine.integrate.root_finding import SHARPNESS, Stepper, next_time, start_search
+from gearidae.engine.integrate.root_finding import SHARPNESS, Arrays, Stepper, next_time, start_search
 from gearidae.engine.integrate.start import first_step, set_rates
 from gearidae.engine.integrate.step_control import configure_ida
 from gearidae.engine.model.observe import observe
@@ -49,14 +49,14 @@ from gearidae.engine.sundials.ida_memory import (
     close_solver,
     open_solver,
 )
-from gearidae.engine.sundials.memory import POINTERS
+from gearidae.engine.sundials.memory import model_at
 
 FIRST_STEPS = 1_000
 """Steps of the first block, before it is known what a step costs."""
 GROWTH_HIGH = 50
 """By how much a block may have more steps than the one before."""
 
-__all__ = ["advance", "make_stepper", "restart", "run", "state_for_sample"]
+__all__ = ["advance", "make_arrays", "restart", "run", "state_for_sample"]
 
 
 @compiled(makes_arrays=True)
@@ -97,7 +97,7 @@ def restart(s: Stepper, stop: float) -> int:
     return flag
 
 
-@compiled
+@compiled(inline=True)
 def state_for_sample(s: Stepper, t: float) -> None:
     """State at a time within the last step, beside that at its end: in ``s.dky``."""
     if s.m.work.adams.order_used > 0:
@@ -106,7 +106,7 @@ def state_for_sample(s: Stepper, t: float) -> None:
         sun.IDAGetDky(s.handles[IDA], t, 0, s.handles[DKY])
 
 
-@compiled
+@compiled(inline=True)
 def _sample(s: Stepper, rows: Floats) -> bool:
     """Write the samples up to the time reached; whether the block has room for them all."""
     m, driver, progress = s.m, s.m.work.driver, s.m.state.progress
@@ -139,7 +139,7 @@ def advance(s: Stepper, out: Output, budget: int) -> None:
         m.work.adams.wanted = m.work.adams.own
         driver.error = restart(s, next_stop(m))
         driver.pending = 0
-    while driver.error == 0 and driver.done == 0 and budget > 0 and has_room(m, out.events):
+    while driver.error == 0 and driver.done == 0 and budget > 0 and has_room(driver.events, out.events):
         if driver.pending == 0:
             flag = next_time(s)
             budget -= 1
@@ -166,19 +166,27 @@ def advance(s: Stepper, out: Output, budget: int) -> None:
         _count(s)
 
 
+@compiled
+def advance_at(place: int, arrays: Arrays, out: Output, budget: int) -> None:
+    """`advance`, told where the model lies."""
+    m = model_at(place)
+    stepper = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
+    advance(stepper, out, budget)
+
+
 def _next_budget(budget: int, seconds: float) -> int:
     """Steps of the next block, for one that took some time: a step may cost a microsecond or a tenth of a second."""
     wanted = budget * BLOCK_SECONDS / max(seconds, 1e-9)
     return int(min(max(wanted, 1.0), GROWTH_HIGH * budget, BLOCK_STEPS))
 
 
-def make_stepper(problem: Problem, m: Model, as_ida: bool) -> Stepper:
+def make_arrays(problem: Problem, m: Model, as_ida: bool) -> Arrays:
     """Make the arrays that a run steps with, at its start."""
     y = problem.start.copy()
     m.work.search.as_ida, m.work.search.sharpness = int(as_ida), SHARPNESS * m.scene.rtol
     m.work.driver.pending = -1
     handles = np.zeros(HANDLES, np.int64)
-    return Stepper(handles, m, y, np.zeros_like(y), np.zeros_like(y), np.zeros_like(y), np.zeros(1))
+    return Arrays(handles, y, np.zeros_like(y), np.zeros_like(y), np.zeros_like(y), np.zeros(1))
 
 
 def run(
@@ -212,19 +220,19 @@ def run(
     Block
     """
     m = problem.prepare(rtol, total)
-    s = make_stepper(problem, m, as_ida)
+    s = make_arrays(problem, m, as_ida)
     out = Output.empty(len(problem.columns))
     if resume is not None:
         s.clock[0] = problem.restore(resume, s.y)
     elif total > 0:
-        observe(m, 0.0, s.y, out.rows[0])
+        observe_at(problem.located.place, 0.0, s.y, out.rows[0])
         m.work.driver.rows = m.state.progress.next_sample = 1
-    pointers: NDArray[np.int64] = np.zeros(POINTERS, np.int64)
+    place = problem.located.place
     elastic = bool(m.scene.nodes > 0)
     functions = callbacks(s.y.size, elastic, as_ida)
     places = Places(sun.places(), sun.newton_places(), sun.vector_places())
     try:
-        if open_solver(s.handles, pointers, functions, places, m, (s.y, s.yp, s.dky)) != 0:
+        if open_solver(s.handles, place, functions, places, (s.y, s.yp, s.dky)) != 0:
             tally.ending = Ending.SOLVER_FAILURE
             return
         yield from _blocks(problem, s, out, tally)
@@ -232,13 +240,14 @@ def run(
         close_solver(s.handles)
 
 
-def _blocks(problem: Problem, s: Stepper, out: Output, tally: Tally) -> Iterator[Block]:
+def _blocks(problem: Problem, s: Arrays, out: Output, tally: Tally) -> Iterator[Block]:
     """Run with an open solver, block by block."""
-    m, driver, elastic = s.m, s.m.work.driver, bool(s.m.scene.nodes > 0)
+    m = problem.model
+    driver, elastic = m.work.driver, bool(m.scene.nodes > 0)
     beyond, budget = False, FIRST_STEPS
     while driver.done == 0 and driver.error == 0 and not beyond:
         started = time.monotonic()
-        advance(s, out, budget)
+        advance_at(problem.located.place, s, out, budget)
         budget = _next_budget(budget, time.monotonic() - started)
         fill_tally(tally, m.state.progress)
         tally.ending = ending_of_flag(int(driver.error), elastic)

@@ -19,10 +19,15 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.energy.balance import restart_quadrature
-from gearidae.engine.events.events import guard
 from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.integrate.by_address import (
+    finish_step_at,
+    guard_at,
+    jacobian_at,
+    observe_at,
+    residual_at,
+)
 from gearidae.engine.integrate.driver import (
-    BLOCK_ROWS,
     BLOCK_SECONDS,
     BOUND_EXCEEDED,
     CHECKPOINT_STEPS,
@@ -35,12 +40,11 @@ from gearidae.engine.integrate.driver import (
     fill_tally,
     sample_time,
 )
-from gearidae.engine.integrate.epilogue import ROOT, STOP, finish_step, has_room, prepare_restart
+from gearidae.engine.integrate.epilogue import ROOT, STOP, has_room, prepare_restart
 from gearidae.engine.integrate.start import first_step, set_rates
-from gearidae.engine.model.observe import observe
 from gearidae.engine.model.problem import Problem
-from gearidae.engine.model.residual import jacobian, residual
 from gearidae.engine.model.state import Floats, Model, Record
+from gearidae.engine.sundials.memory import Located
 from gearidae.errors import SceneError
 
 __all__ = ["run"]
@@ -68,7 +72,7 @@ def run(
     driver.time = 0.0 if resume is None else problem.restore(resume, y)
     solver = _Solver(problem, m, y)
     if resume is None:
-        yield from _samples(m, out, y, solver.trail)
+        yield from _samples(solver, out, y)
     solver.start(y)
     between = (np.zeros_like(y), np.zeros_like(y))
     handed_out, yp = time.monotonic(), np.zeros_like(y)
@@ -77,10 +81,10 @@ def run(
         if driver.error != 0:  # what there is belongs to the last accepted time
             break
         y, yp = reached
-        yield from _samples(m, out, y, solver.trail)
-        if not has_room(m, out.events):
+        yield from _samples(solver, out, y)
+        if not has_room(driver.events, out.events):
             yield out.block(m, driver.time)
-        afresh = finish_step(m, y, yp, between, flag, out.events)
+        afresh = finish_step_at(solver.located.place, y, yp, between, flag, out.events)
         if driver.error == BOUND_EXCEEDED:
             progress.restarts += 1
         checkpoint = driver.since >= CHECKPOINT_STEPS
@@ -113,17 +117,19 @@ def _ready(problem: Problem, m: Model, out: Output, tally: Tally, y: Floats, yp:
     return out.block(m, reached, problem.checkpoint(reached, y), problem.ledger(reached, y, yp))
 
 
-def _samples(m: Model, out: Output, y: Floats, trail: _Trail) -> Iterator[Block]:
+def _samples(solver: _Solver, out: Output, y: Floats) -> Iterator[Block]:
     """Write the samples up to the time reached; hands out full blocks on the way."""
+    m, trail = solver.m, solver.trail
     driver, progress = m.work.driver, m.state.progress
     total, end = int(m.scene.samples), float(m.scene.end)
     while (
         progress.next_sample < total and (due := sample_time(progress.next_sample, total, end)) <= driver.time
     ):
-        observe(m, due, y if due == driver.time else trail.at(due), out.rows[driver.rows])
+        state = y if due == driver.time else trail.at(due)
+        observe_at(solver.located.place, due, state, out.rows[driver.rows])
         progress.next_sample += 1
         driver.rows += 1
-        if driver.rows == BLOCK_ROWS:
+        if driver.rows == out.rows.shape[0]:
             yield out.block(m, due)
 
 
@@ -131,7 +137,7 @@ class _Solver:
     """scikit-sundae's IDA over fresh callbacks, since it keeps the event history on the function it is given."""
 
     def __init__(self, problem: Problem, m: Model, y: Floats) -> None:
-        self._m, self._atol = m, m.scene.rtol * problem.tolerance_scale
+        self.m, self.located, self._atol = m, Located(m), m.scene.rtol * problem.tolerance_scale
         self._driver: Record = m.work.driver
         self._guard_calls = 0
         self._last: Any = None
@@ -140,7 +146,7 @@ class _Solver:
 
     def start(self, y: Floats) -> None:
         """Set consistent rates and the first step, and start a fresh IDA at the time reached."""
-        m, t, yp = self._m, float(self._driver.time), np.zeros_like(y)
+        m, t, yp = self.m, float(self._driver.time), np.zeros_like(y)
         set_rates(m, t, y, yp)
         restart_quadrature(m, t, y, yp)
         stop = next_stop(m)
@@ -151,23 +157,23 @@ class _Solver:
         self.trail = _Trail(t, y, yp)
 
     def _make(self, n: int, step: float) -> None:
-        m = self._m
+        m, place = self.m, self.located.place
         column_major = np.empty(n * n)
         blocks = np.empty(store_size(m) if m.scene.nodes > 0 else 0)
 
         def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
-            residual(m, t, y, yp, out)
+            residual_at(place, t, y, yp, out)
 
         def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
             if blocks.size > 0:
                 dense_jacobian(m, t, cj, y, blocks, out)
                 return
-            jacobian(m, t, cj, y, column_major)
+            jacobian_at(place, t, cj, y, column_major)
             out[:] = column_major.reshape(n, n).T
 
         def falling(t: float, y: Floats, yp: Floats, out: Floats) -> None:
             self._guard_calls += 1
-            out[0] = guard(m, t, y)
+            out[0] = guard_at(place, t, y)
 
         vars(falling)["direction"] = [-1]
         self._history = vars(falling)  # scikit-sundae keeps the events there
@@ -188,7 +194,7 @@ class _Solver:
         driver = self._driver
         driver.since += 1
         try:
-            result = self._ida.step(self._m.scene.end, method="onestep", tstop=self._stop)
+            result = self._ida.step(self.m.scene.end, method="onestep", tstop=self._stop)
         except KeyError as error:  # a status of SUNDIALS that scikit-sundae has no name for
             driver.error = min(int(error.args[0]), -1)
             return int(driver.error), y, y
@@ -199,7 +205,7 @@ class _Solver:
             self.ending = None if flag < 0 else Ending.NOT_FINITE
             return flag, result.y, result.yp
         driver.time = result.t
-        self._m.state.progress.steps += flag != ROOT
+        self.m.state.progress.steps += flag != ROOT
         self.trail.add(result.t, result.y, result.yp)
         if flag == ROOT:
             # drop the history, which would be copied whole at every further step
@@ -209,7 +215,7 @@ class _Solver:
 
     def count(self) -> None:
         """Add this solver's counters."""
-        progress = self._m.state.progress
+        progress = self.m.state.progress
         if self._last is not None:
             progress.residual_evaluations += int(self._last.nfev)
             progress.jacobian_evaluations += int(self._last.njev)

@@ -25,7 +25,7 @@ from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import IDA, YP, Y
 
-__all__ = ["SHARPNESS", "Stepper", "next_time", "start_search", "state_at"]
+__all__ = ["SHARPNESS", "Arrays", "Stepper", "next_time", "start_search", "state_at"]
 
 SHARPNESS: Final = 0.01
 """Of the relative tolerance; a tenth of it changes no number of steps beyond scatter, ten times as much some."""
@@ -34,8 +34,21 @@ TRIES: Final = 3  # by which the interval has to be halved, or is halved
 _ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
 
 
+class Arrays(NamedTuple):
+    """The arrays of a `Stepper`, without its model, as Python hands them over."""
+
+    handles: NDArray[np.int64]
+    y: Floats
+    yp: Floats
+    dky: Floats
+    spare: Floats
+    clock: Floats
+
+
 class Stepper(NamedTuple):
     """What a native run steps with.
+
+    It is some sixty numbers to a compiled function: those that take it at every step are put into their callers.
 
     Attributes
     ----------
@@ -57,7 +70,7 @@ class Stepper(NamedTuple):
     clock: Floats
 
 
-@compiled
+@compiled(inline=True)
 def _look(s: Stepper, t: float) -> float:
     """Look at the guard."""
     s.m.work.search.evaluations += 1
@@ -72,7 +85,7 @@ def start_search(s: Stepper) -> None:
     search.rest = search.stop = 0
 
 
-@compiled
+@compiled(inline=True)
 def state_at(s: Stepper, t: float) -> None:
     """Set state and rates to those at a time within the last step."""
     if s.m.work.adams.order_used > 0:
@@ -140,7 +153,7 @@ def _step(s: Stepper) -> int:
     return flag
 
 
-@compiled
+@compiled(inline=True)
 def _stop(s: Stepper) -> int:
     """Return at a stop, now that all roots before it are through."""
     s.m.work.search.stop = 0
@@ -149,7 +162,7 @@ def _stop(s: Stepper) -> int:
     return sun.IDA_TSTOP_RETURN
 
 
-@compiled
+@compiled(inline=True)
 def _rounding(s: Stepper) -> float:
     """What times of this step may differ by."""
     return _ROUNDING * (abs(s.m.work.search.step_end) + abs(memory.step(s.handles[IDA])))

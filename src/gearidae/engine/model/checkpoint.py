@@ -33,9 +33,8 @@ HEADER: Final = 8
 
 _LAYOUT: Final = int(hashlib.sha256(repr(STATE.descr).encode()).hexdigest()[:8], 16)
 _WORDS: Final = STATE.itemsize // 8
-_SLACK: Final = (
-    1e-6  # roughnesses: joined heights and gaps are known to the tolerance of the run, and no better
-)
+_SLACK: Final = 1e-6  # roughnesses, and
+_SLACK_TOLERANCES: Final = 100.0  # relative tolerances: joined heights and gaps are known no better
 _PHASE_HIGH: Final = 64.0  # pitches; whole ones are taken out of the phase long before
 _PITCHES_HIGH: Final = 2.0**53
 _DEPTHS: Final = 64

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gearidae.engine.energy.balance import accumulate_energy
-from gearidae.engine.energy.contacts import stored_energy
-from gearidae.engine.energy.motion import kinetic_energy
+from gearidae.engine.energy.balance import BALANCE, balance_at
 from gearidae.engine.model import checkpoint as checkpoints
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, Floats, Model, V, assign
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
+from gearidae.engine.sundials.memory import Located
 from gearidae.errors import SceneError
 from gearidae.records import Ledger
 
@@ -49,6 +48,8 @@ class Problem:
         Makes the elastic problem that takes over when the asperity model, chosen automatically, no longer will do.
     deeper : callable, optional
         Makes the same elastic problem with nodes laid out for deeper contacts, if there can be any.
+    located : Located
+        Where the model lies in this process, for compiled functions that are called from Python.
     """
 
     model: Model
@@ -60,6 +61,11 @@ class Problem:
     depth: int = 0
     elastic: Callable[[], Problem] | None = None
     deeper: Callable[[], Problem] | None = None
+    located: Located = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Note where the model lies."""
+        self.located = Located(self.model)
 
     @property
     def time_unit(self) -> float:
@@ -112,19 +118,17 @@ class Problem:
             Scaled state there, and its rate.
         """
         m = self.model
-        energy, quadrature, resistance = m.state.energy, m.work.quadrature, m.work.resistance
+        parts = (m.state.energy, m.work.quadrature, m.work.resistance)
         # steps still to be gathered are not to be split by a look
-        kept = [part.copy() for part in (energy, quadrature, resistance)]
-        accumulate_energy(m, time, state, rates, True)
-        ledger = self._in_joules(time, state)
-        for part, before in zip((energy, quadrature, resistance), kept, strict=True):
+        kept, now = [part.copy() for part in parts], np.empty(BALANCE)
+        balance_at(self.located.place, time, state, rates, now)
+        ledger = self._in_joules(time, *now.tolist())
+        for part, before in zip(parts, kept, strict=True):
             assign(part, before)
         return ledger
 
-    def _in_joules(self, time: float, state: Floats) -> Ledger:
-        m, e = self.model, self.model.state.energy
-        unit = float(m.scene.force_unit * m.scene.length_unit)
-        stored, pending = stored_energy(m, state)
+    def _in_joules(self, time: float, stored: float, pending: float, kinetic: float) -> Ledger:
+        e, unit = self.model.state.energy, float(self.model.scene.force_unit * self.model.scene.length_unit)
         return Ledger(
             time=time * self.time_unit,
             drive_work=unit * float(e.drive_work),
@@ -133,9 +137,9 @@ class Problem:
             drag_loss=unit * float(e.drag_loss),
             dry_loss=unit * float(e.dry_loss),
             damping_loss=unit * float(e.damping_loss),
-            adhesion_loss=unit * float(e.adhesion_loss + pending),
-            stored_change=unit * float(stored - pending - e.start_stored),
-            kinetic_change=unit * float(kinetic_energy(m, state) - e.start_kinetic),
+            adhesion_loss=unit * (float(e.adhesion_loss) + pending),
+            stored_change=unit * (stored - pending - float(e.start_stored)),
+            kinetic_change=unit * (kinetic - float(e.start_kinetic)),
             throughput=unit * float(e.throughput),
         )
 

@@ -56,7 +56,7 @@ class Places(NamedTuple):
 
 @compiled(makes_arrays=True)
 def open_solver(
-    handles: Ints, pointers: Ints, functions: Functions, places: Places, m: Model, vectors: tuple[Floats, ...]
+    handles: Ints, place: int, functions: Functions, places: Places, vectors: tuple[Floats, ...]
 ) -> int:
     """Create IDA with solvers of our own over the caller's arrays; 0 if all went well.
 
@@ -64,20 +64,18 @@ def open_solver(
     ----------
     handles : ndarray of int64, shape (HANDLES,)
         Filled in.
-    pointers : ndarray of int64, shape (POINTERS,)
-        Filled in with where the model lies; must outlive the solver, as the model and the vectors must.
+    place : int
+        Of the model, from `Located`, which must outlive the solver, as the vectors must.
     functions : Functions
     places : Places
-    m : Model
     vectors : tuple of three ndarrays, shape (n,)
         State, rates and work space.
     """
-    y, yp, dky = vectors
+    m, (y, yp, dky) = memory.model_at(place), vectors
     n = y.size
     flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
     if flag != 0:
         return flag
-    memory.note_addresses(m, pointers)
     context = handles[CONTEXT]
     sun.SUNContext_ClearErrHandlers(context)
     handles[Y] = sun.N_VMake_Serial(n, y.ctypes.data, context)
@@ -91,7 +89,7 @@ def open_solver(
     handles[IDA] = solver
     flag |= sun.IDAInit(solver, functions.model[0], m.state.time, handles[Y], handles[YP])
     flag |= sun.IDAWFtolerances(solver, functions.model[2])
-    flag |= sun.IDASetUserData(solver, pointers.ctypes.data)
+    flag |= sun.IDASetUserData(solver, place)
     m.work.adams.own = 1 if functions.newton.size > 0 else 0
     if functions.newton.size > 0:
         handles[NEWTON] = sun.SUNNonlinSolNewEmpty(context)

@@ -20,6 +20,7 @@ __all__ = [
     "POINTERS",
     "STEP",
     "SYSTEM",
+    "Located",
     "model_at",
     "note_addresses",
     "numbers",
@@ -135,13 +136,13 @@ step: Any = intrinsic(_step)
 """Length of the step that IDA tries, or has chosen for the next."""
 
 
-@compiled(makes_arrays=True)
+@compiled(makes_arrays=True, inline=True)
 def words(address: int, count: int) -> Ints:
     """Look at what lies at an address as so many pointers."""
     return carray(_integers_at(address), (count,))
 
 
-@compiled(makes_arrays=True)
+@compiled(makes_arrays=True, inline=True)
 def numbers(vector: int, n: int) -> NDArray[np.float64]:
     """Look at the n numbers of a serial vector, given by its address, without a call."""
     return carray(_reals_at(words(words(vector, 1)[0], 2)[1]), (n,))
@@ -157,6 +158,22 @@ def note_addresses(m: Model, out: Ints) -> None:
     out[0], out[1], out[2] = _address_of(m.scene), _address_of(m.state), _address_of(m.work)
     out[3], out[4] = m.tables.ctypes.data, m.tables.size
     out[5], out[6] = m.rows.ctypes.data, m.rows.size
+
+
+class Located:
+    """Where a model of this process lies; keeps it alive.
+
+    Attributes
+    ----------
+    place : int
+        What `model_at` takes.
+    """
+
+    def __init__(self, m: Model) -> None:
+        self._model = m
+        self._pointers: NDArray[np.int64] = np.zeros(POINTERS, np.int64)
+        note_addresses(m, self._pointers)
+        self.place = int(self._pointers.ctypes.data)
 
 
 OPERATIONS: Final = 64
