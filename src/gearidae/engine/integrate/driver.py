@@ -70,8 +70,9 @@ Tally = Statistics
 
 def fill_tally(tally: Tally, progress: Record) -> None:
     """Take a driver's counters over."""
-    for name in COUNTERS:
-        setattr(tally, name, int(progress[name]))
+    for name, count in zip(PROGRESS.names or (), progress.item(), strict=True):
+        if name in COUNTERS:
+            setattr(tally, name, count)
 
 
 class Output(NamedTuple):
@@ -105,9 +106,10 @@ class Output(NamedTuple):
             See `Block`.
         """
         driver = m.work.driver
+        rows, events = int(driver.rows), int(driver.events)
         block = Block(
-            self.rows[: driver.rows].copy(),
-            self.events[: driver.events].copy(),
+            self.rows[:rows].copy(),
+            self.events[:events].copy(),
             time * float(m.scene.time_unit),
             checkpoint,
             ledger,

@@ -363,8 +363,7 @@ class Model(NamedTuple):
 
 def assign(record: Record, other: Record) -> None:
     """Copy all fields of a record into another of the same kind."""
-    for name in record.dtype.names:
-        record[name] = other[name]
+    record.setfield(other, record.dtype)
 
 
 def blank_model(scene: Record, tables: Floats, rows: int) -> Model:
