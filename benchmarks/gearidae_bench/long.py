@@ -20,8 +20,8 @@ import numpy as np
 from gearidae.engine import follow
 from gearidae.errors import SolverError
 from gearidae.records import GEAR_COLUMNS, Block, EventKind, Flank, Statistics
-from gearidae.scene import Scene, preset
 from gearidae.runs.estimates import steady_speed
+from gearidae.scene import Scene, preset
 
 __all__ = [
     "FEWEST_PASSAGES",

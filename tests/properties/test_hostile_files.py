@@ -191,7 +191,10 @@ class _CutOffError(Exception):
 
 @pytest.fixture(scope="module")
 def partial(tmp_path_factory):
-    """The archive of a run that was cut off behind its first checkpoints, by the driver whose limits are not compiled in."""
+    """The archive of a run that was cut off behind its first checkpoints.
+
+    The portable driver wrote it: its limits are not compiled in, and can be lowered here.
+    """
     file = tmp_path_factory.mktemp("partial") / "partial.nc"
 
     def cut(time, events):

@@ -59,8 +59,10 @@ def correction(h: float, rate0: float, rate1: float) -> float:
 
 
 @compiled
-def integral_of_cube(h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float) -> float:
-    """Integral of the cube of a speed's magnitude.
+def integral_of_cube(
+    h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float
+) -> tuple[float, float]:
+    """Integral of the cube of a speed's magnitude, and how far it may be out.
 
     That of the speed itself is known, the travel: what is left to the quadrature is of second order in the speed's
     deviation from its mean.
@@ -68,14 +70,11 @@ def integral_of_cube(h: float, travel: float, w0: float, rate0: float, w1: float
     mean = travel / h
     if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # it has turned round
         q0, q1 = w0 * abs(w0), w1 * abs(w1)
-        return integral(h, q0 * w0, q1 * w1, 3.0 * q0 * rate0, 3.0 * q1 * rate1)
+        start, end = 3.0 * q0 * rate0, 3.0 * q1 * rate1
+        return integral(h, q0 * w0, q1 * w1, start, end), error_estimate(h, q0 * w0, q1 * w1, start, end)
     a, b = w0 - mean, w1 - mean
     # of the cube of mean and deviation, the deviation itself leaves nothing
-    rest = integral(
-        h,
-        (3.0 * mean + a) * a * a,
-        (3.0 * mean + b) * b * b,
-        3.0 * (2.0 * mean + a) * a * rate0,
-        3.0 * (2.0 * mean + b) * b * rate1,
-    )
-    return abs(mean * mean * travel + rest)
+    first, last = (3.0 * mean + a) * a * a, (3.0 * mean + b) * b * b
+    start, end = 3.0 * (2.0 * mean + a) * a * rate0, 3.0 * (2.0 * mean + b) * b * rate1
+    rest = integral(h, first, last, start, end)
+    return abs(mean * mean * travel + rest), error_estimate(h, first, last, start, end)

@@ -136,6 +136,10 @@ class Problem:
             stored_change=unit * float(stored - pending - e.start_stored),
             kinetic_change=unit * float(kinetic_energy(m, state) - e.start_kinetic),
             throughput=unit * float(e.throughput),
+            quadrature_error=unit * float(e.quadrature_error + e.loss_error),
+            largest=unit * float(e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)),
+            # both shafts' torques are at most the unit of force
+            pitch_work=unit * float(2.0 / m.scene.phase_rate) if m.scene.kind == GEARS else 0.0,
         )
 
     def checkpoint(self, time: float, state: Floats) -> Floats:
