@@ -24,7 +24,7 @@ from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Ledger
 from gearidae.scene import Scene
 from gearidae_bench.extreme_scenes import extreme_scene
 
-__all__ = ["FAULTS", "Followed", "Outcome", "attack_one", "judge", "run_scene", "warm_up"]
+__all__ = ["FAULTS", "Followed", "Outcome", "attack_one", "judge", "limit_memory", "run_scene", "warm_up"]
 
 Floats = NDArray[np.float64]
 
@@ -124,17 +124,24 @@ def warm_up() -> None:
                     gd.simulate(gd.preset(name).replace(short), backend=backend)
 
 
+def limit_memory() -> None:
+    """Let this process take no more than `MEMORY`, where the system can hold it to that."""
+    with contextlib.suppress(ImportError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
 def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: str) -> None:
     """Run one scene and report, in a process of its own."""
     logging.disable(logging.WARNING)
     with Path(trace).open("w") as file:
         faulthandler.enable(file)
-        with contextlib.suppress(ImportError, AttributeError):  # both are Unix's own
-            import resource
+        with contextlib.suppress(AttributeError):  # Unix's own
             import signal
 
             faulthandler.register(signal.SIGUSR1, file)
-            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        limit_memory()
         extreme = extreme_scene(seed, number)
         reports.send("begun")
         outcome = judge(extreme.scene, extreme.backend, budget, lambda: reports.send("alive"))

@@ -32,7 +32,14 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.motion import kinetic_energy
-from gearidae.engine.energy.quadrature import Ends, error_estimate, integral, integral_of_cube, torque_work
+from gearidae.engine.energy.quadrature import (
+    Ends,
+    error_estimate,
+    error_of_square,
+    integral,
+    integral_of_cube,
+    torque_work,
+)
 from gearidae.engine.energy.radius import radius_power, sample_radius_power
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import in_flight, static_error
@@ -193,10 +200,11 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
         e.loss_error += m.scene.drag * error
     if m.scene.damping != 0.0:
         v, was = y[V], r.mesh_speed
-        rate_then, rate_now = 2.0 * was * r.mesh_acceleration, 2.0 * v * yp[V]
-        rub = m.scene.damping * integral(h, was * was, v * v, rate_then, rate_now)
+        rub = m.scene.damping * integral(
+            h, was * was, v * v, 2.0 * was * r.mesh_acceleration, 2.0 * v * yp[V]
+        )
         e.damping_loss += rub
-        e.loss_error += m.scene.damping * error_estimate(h, was * was, v * v, rate_then, rate_now)
+        e.loss_error += m.scene.damping * error_of_square(h, r.mesh_acceleration, yp[V])
         taken += rub
     _note_resistance(m, t, gear, y, yp)
     e.throughput += taken
