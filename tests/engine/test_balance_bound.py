@@ -14,7 +14,7 @@ from gearidae.records import GEAR_BOUND, QUADRATURE_BOUND, ROLLER_BOUND, ROUNDIN
 HIGH, LOW = gd.preset("teodorescu2009"), gd.preset("teodorescu2009_low_speed")
 SCENES = {
     "sticking": LOW.replace({"run.duration": "30 ms", "coating.sam_fraction": 0.45}),
-    "damped": HIGH.replace({"run.duration": "0.3 ms", "mesh.damping": 1e-6}),
+    "damped": HIGH.replace({"run.duration": "0.3 ms", "mesh.damping": 1e-6, "run.rtol": 1e-9}),
     "dry": HIGH.replace({"run.duration": "0.3 ms", "load.torque": 1e-12}),
     "roller": gd.preset("roller_slow"),
 }
