@@ -273,7 +273,8 @@ class Ledger:
 
             (a \max(\mathrm{rtol}, a_t) + a_r)\, E + a_q D + a_p P
 
-        with E the energy that has moved, `throughput` and `largest`; D, `quadrature_error`; and P, `pitch_work`. The
+        with E the energy that has moved: `throughput`, `largest`, `adhesion_loss` and the size of `stored_change`; D,
+        `quadrature_error`; and P, `pitch_work`. The
         first term is what errors of the motion leave: speeds and gaps are held to rtol, step by step, and the tables
         of force and energy agree no better than :math:`a_t`. The others are what the balance itself adds, by its
         quadratures and by rounding.
@@ -292,7 +293,7 @@ class Ledger:
             `QUADRATURE_BOUND` and :math:`a_p` `TRAVEL_BOUND`.
         """
         of_motion = (ROLLER_BOUND if roller else GEAR_BOUND) * max(rtol, TABLE_BOUND) + ROUNDING_BOUND
-        moved = self.throughput + self.largest
+        moved = self.throughput + self.largest + self.adhesion_loss + abs(self.stored_change)
         return of_motion * moved + QUADRATURE_BOUND * self.quadrature_error + TRAVEL_BOUND * self.pitch_work
 
 
