@@ -13,6 +13,7 @@ import random
 import tempfile
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -111,8 +112,7 @@ def forge(file: Path, rng: random.Random, word: int | None = None) -> str:
             state[at] = rng.choice(
                 [0.0, 1.0, -1.0, np.nan, np.inf, 1e300, -1e300, 1e-300, was * (1.0 + 1e-3), -was]
             )
-        point.state = state
-        record = np.frombuffer(point.pack(), "<f8")
+        record = np.frombuffer(replace(point, state=state).pack(), "<f8")
         slots[k, : record.size] = record
         ds["checkpoint"][:] = slots
     return f"word {at}: {was!r} to {state[at]!r}"

@@ -34,7 +34,7 @@ def test_the_angle_solves_its_equation(harmonics, phase):
 
 
 def test_energy_is_kept_on_a_ripple():
-    """Four steps of Newton's method left the slope of the ripple wrong by half, and a thousandth of the energy lost."""
+    """Four steps of Newton's method left the slope of the ripple wrong by 2e-3, and as much of the energy lost."""
     scene = LOW.replace(
         {
             "mesh.static_error": RIPPLE,
