@@ -11,7 +11,7 @@ from cyclopts import App, Parameter
 from gearidae.cli.codes import BAD_INPUT, INTERRUPTED
 from gearidae.errors import GearidaeError, SceneError
 from gearidae_bench.attack import PATIENCE
-from gearidae_bench.attack_command import bench_attack, bench_kills
+from gearidae_bench.attack_command import bench_attack, bench_forge, bench_kills
 from gearidae_bench.commands import bench_accuracy, bench_long, bench_scenes, bench_stress
 
 app = App(
@@ -53,15 +53,25 @@ def bench(
     patience: Annotated[
         float, Parameter(help="Seconds without a report after which a scene of --attack is taken to hang.")
     ] = PATIENCE,
+    forge: Annotated[
+        bool,
+        Parameter(
+            help="Read forged checkpoints and damaged archives instead; every fifth run is a forged one."
+        ),
+    ] = False,
     kills: Annotated[
         bool, Parameter(help="Kill runs and sweeps at random moments instead, resume them and compare.")
     ] = False,
 ) -> int:
     """Measure run time against error on this machine, and hold it against other integrators."""
-    if stress + accuracy + long + attack + kills > 1:
-        raise SceneError("bench", "--stress, --accuracy, --long, --attack, --kills", "say one of them")
+    if stress + accuracy + long + attack + forge + kills > 1:
+        raise SceneError(
+            "bench", "--stress, --accuracy, --long, --attack, --forge, --kills", "say one of them"
+        )
     if attack:
         return bench_attack(runs, seed, jobs, output, patience)
+    if forge:
+        return bench_forge(runs, seed, jobs)
     if kills:
         return bench_kills(runs, seed)
     if long:

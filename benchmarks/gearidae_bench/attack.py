@@ -1,9 +1,9 @@
 """The attack: extreme scenes, each in a process of its own under a watchdog.
 
-A scene may end finished, with a named ending, refused by a `SceneError`, or with its budget of steps used up while blocks of
-output and reports of progress came. A fault is a process killed by a signal, no report for a minute, or any other exception.
-What ended soundly is run again at a hundredth of its tolerance up to its third impact: does the motion agree, and does the
-energy balance warn of it?
+A scene may end finished, with a named ending, refused by a `SceneError`, or with its budget of steps used up while
+blocks of output and reports of progress came. A fault is a process killed by a signal, no report for a minute, or any
+other exception. Scenes without a fault are run again at a hundredth of their tolerance, up to the third impact: does
+the motion agree, and does the energy balance warn of it?
 """
 
 from __future__ import annotations
@@ -166,9 +166,7 @@ def _ask_where(one: _Running) -> None:
 
 def _where(trace: Path) -> str:
     """Innermost places of the package in what faulthandler has written."""
-    lines = trace.read_text().splitlines() if trace.exists() else []
-    found = re.findall(
-        r'File ".*?([^/\\]+)", line (\d+) in (.*)', trace.read_text() if trace.exists() else ""
-    )
+    text = trace.read_text() if trace.exists() else ""
+    found = re.findall(r'File ".*?([^/\\]+)", line (\d+) in (.*)', text)
     places = [f"{name}:{line} {function}" for name, line, function in found]
     return " < ".join(places[:6]) or "an unknown place"

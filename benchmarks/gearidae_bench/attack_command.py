@@ -1,4 +1,4 @@
-"""What ``python -m gearidae_bench`` does with ``--attack`` and ``--kills``."""
+"""What ``python -m gearidae_bench`` does with ``--attack``, ``--forge`` and ``--kills``."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae_bench.attack import Outcome, run_attack
 from gearidae_bench.attack_report import balance_rows, ending_rows, page
+from gearidae_bench.forge import is_forged, run_forge
 from gearidae_bench.kills import run_kills
 
-__all__ = ["ATTACK_BUDGET", "bench_attack", "bench_kills"]
+__all__ = ["ATTACK_BUDGET", "bench_attack", "bench_forge", "bench_kills"]
 
 ATTACK_BUDGET = 20_000
 """Steps after which a scene of the attack is left alone."""
@@ -43,8 +44,7 @@ def bench_attack(runs: int, seed: int, jobs: int | None, output: Path | None, pa
     int
         Exit code: `UNFINISHED` if there is a fault.
     """
-    if runs < 1 or seed < 0:
-        raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
+    _check_runs(runs, seed)
     if not patience > 0.0:
         raise SceneError("--patience", patience, "must be above 0 s")
     outcomes: list[Outcome] = []
@@ -77,6 +77,50 @@ def bench_attack(runs: int, seed: int, jobs: int | None, output: Path | None, pa
     return UNFINISHED if faults else DONE
 
 
+def bench_forge(runs: int, seed: int, jobs: int | None) -> int:
+    """Forge checkpoints and damage archives, let commands read them, and print what did not end in one line.
+
+    Parameters
+    ----------
+    runs, seed : int
+        How many files (every fifth a forged checkpoint), and which changes.
+    jobs : int or None
+        Processes to share them; by default one per core.
+
+    Returns
+    -------
+    int
+        Exit code: `UNFINISHED` if there is a fault.
+    """
+    _check_runs(runs, seed)
+    done: list[Outcome] = []
+    interrupted = False
+    with Console(stderr=True).status("") as status:
+
+        def note(outcome: Outcome) -> None:
+            done.append(outcome)
+            status.update(f"{len(done)} of {runs}, {sum(not one.sound for one in done)} faults ...")
+
+        try:
+            run_forge(runs, seed, check_jobs(jobs), note)
+        except KeyboardInterrupt:
+            interrupted = True
+    faults = sorted((one for one in done if not one.sound), key=lambda one: one.number)
+    for kind, forged in (("forged checkpoints", True), ("damaged archives", False)):
+        count, bad = (sum(is_forged(one.number) is forged for one in some) for some in (done, faults))
+        show_rows([(kind, f"{count}", f"{bad} faults")])
+    for one in faults:
+        say(f"file {one.number}: {one.status} {one.message}")
+    if interrupted:
+        raise KeyboardInterrupt(f"{len(done)} of {runs} files done")
+    return UNFINISHED if faults else DONE
+
+
+def _check_runs(runs: int, seed: int) -> None:
+    if runs < 1 or seed < 0:
+        raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
+
+
 def bench_kills(kills: int, seed: int) -> int:
     """Kill runs and sweeps at random moments, resume them, and compare with undisturbed ones.
 
@@ -90,8 +134,7 @@ def bench_kills(kills: int, seed: int) -> int:
     int
         Exit code: `UNFINISHED` if anything differs.
     """
-    if kills < 1 or seed < 0:
-        raise SceneError("--runs, --seed", f"{kills}, {seed}", "must be at least 1, and at least 0")
+    _check_runs(kills, seed)
     with Console(stderr=True).status("") as status:
         done = run_kills(kills, seed, lambda number: status.update(f"{number} of {kills} kills ..."))
     show_rows(

@@ -24,16 +24,16 @@ _MEANINGS = {ending.status: ending.message for ending in Ending} | {
     "raised": "**a fault**: an exception that is not for users",
 }
 _SCENES = (
-    "Each key of a scene is free with a probability that is drawn for the scene, from 1 in 20 to always. A free key is drawn"
-    " log-uniformly over its allowed range, and is a corner value (a limit, the number next to it, zero) with a probability of 0.2;"
-    " the others stay within half a decade of a preset's. Schedules with jumps and with 20,000 knots, up to eight harmonics, static"
-    " errors, rollers, all asperity laws and contact models, both drivers, tolerances from 1e-12 to 0.1. Each scene has a process"
-    " of its own and 8 GiB of memory."
+    "Each key of a scene is free with a probability that is drawn for the scene, from 1 in 20 to always. A free key is"
+    " drawn log-uniformly over its allowed range, and is a corner value (a limit, the number next to it, zero) with a"
+    " probability of 0.2; the others stay within half a decade of a preset's. There are schedules with jumps and with"
+    " 20,000 knots, up to eight harmonics, static errors, rollers, all asperity laws and contact models, both drivers,"
+    " and tolerances from 1e-12 to 0.1. Each scene has a process of its own and 8 GiB of memory."
 )
 _BALANCE = (
-    "Scenes that ended soundly are run again up to their third turning point (or stick or slip), at their tolerance and at a"
-    " hundredth of it. Where both motions agree to ten tolerances, the residual of the energy balance at that instant, over its"
-    " bound, is:"
+    "Scenes that ended without a fault are run again up to their third turning point (or stick or slip), at their"
+    " tolerance and at a hundredth of it. Where both motions agree to ten tolerances, the residual of the energy"
+    " balance at that instant, over its bound, is:"
 )
 _SHARES = (0.5, 0.9, 0.97, 0.99, 1.0)
 _LISTED = 40
@@ -46,7 +46,7 @@ def ending_rows(outcomes: Sequence[Outcome]) -> list[tuple[str, int, str]]:
 
 
 def balance_rows(outcomes: Sequence[Outcome]) -> list[tuple[str, str]]:
-    """Quantiles of residual over bound where the motion agrees with a hundredth of the tolerance, and the share warned of."""
+    """Quantiles of residual over bound where the motion agrees with the finer one, and the share warned of."""
     agreeing = [o for o in outcomes if o.agrees and not math.isnan(o.balance)]
     if not agreeing:
         return []

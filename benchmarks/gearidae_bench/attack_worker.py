@@ -1,4 +1,4 @@
-"""One scene of the attack, in a process of its own: what it reports, and how its motion and its energy balance are judged."""
+"""One scene of the attack, in a process of its own: its reports, and the check of its motion and energy balance."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Ledger
 from gearidae.scene import Scene
 from gearidae_bench.extreme_scenes import extreme_scene
 
-__all__ = ["FAULTS", "Followed", "Outcome", "attack_one", "judge", "run_scene", "warm_up"]
+__all__ = ["FAULTS", "Followed", "Outcome", "attack_one", "judge", "limit_memory", "run_scene", "warm_up"]
 
 Floats = NDArray[np.float64]
 
@@ -56,8 +57,8 @@ class Outcome:
         The reason in words; of a fault, where.
     backend : str
     rtol, error : float
-        Tolerance; difference from a hundredth of it up to the third impact, over what the motion covers there, a shift in
-        time over the time; NaN where there was nothing to compare.
+        Tolerance; difference from the motion at a hundredth of it up to the third impact, over what the motion covers
+        there, a shift in time over the time; NaN where there was nothing to compare.
     balance : float
         Residual of the energy balance at that instant over its bound: above 1 the run is warned of.
     steps : int
@@ -123,17 +124,24 @@ def warm_up() -> None:
                     gd.simulate(gd.preset(name).replace(short), backend=backend)
 
 
+def limit_memory() -> None:
+    """Let this process take no more than `MEMORY`, where the system can hold it to that."""
+    with contextlib.suppress(ImportError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
 def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: str) -> None:
     """Run one scene and report, in a process of its own."""
     logging.disable(logging.WARNING)
-    with open(trace, "w") as file:
+    with Path(trace).open("w") as file:
         faulthandler.enable(file)
-        with contextlib.suppress(ImportError, AttributeError):  # both are Unix's own
-            import resource
+        with contextlib.suppress(AttributeError):  # Unix's own
             import signal
 
             faulthandler.register(signal.SIGUSR1, file)
-            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        limit_memory()
         extreme = extreme_scene(seed, number)
         reports.send("begun")
         outcome = judge(extreme.scene, extreme.backend, budget, lambda: reports.send("alive"))
@@ -227,7 +235,7 @@ def run_scene(
 def _compared(
     scene: Scene, run: Followed, backend: str, budget: int, alive: Callable[[], None]
 ) -> tuple[float, float]:
-    """Error up to the third impact, and residual of the energy balance there over its bound; NaN where neither is had."""
+    """Error up to the third impact, and the energy balance's residual there over its bound; NaN if unknown."""
     kinds = (EventKind.TURNING_POINT, EventKind.STICK, EventKind.SLIP)
     impacts = run.events[np.isin(run.events[:, 1], kinds), 0]
     horizon = float(impacts[_HORIZON_EVENTS - 1]) if len(impacts) >= _HORIZON_EVENTS else run.reached

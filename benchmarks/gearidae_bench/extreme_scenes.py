@@ -1,8 +1,8 @@
 """Extreme but valid scenes: log-uniform over what each key allows, corner values, both drivers.
 
-The stress run's scenes (`random_scenes`) are of gears that somebody might build. These are not: they ask whether anything that the
-scene models admit can kill a process, or keep it silent. Limits are read from the models themselves, so that a limit that is
-narrowed there is narrowed here.
+The stress run's scenes (`random_scenes`) are of gears that somebody might build. These are not: they ask whether
+anything that the scene models admit can kill a process, or keep it silent. Limits are read from the models themselves,
+so that a limit that is narrowed there is narrowed here.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ CORNER = 0.2
 """Probability of a corner value where a key is free: a limit of its range, the number next to it, or zero."""
 
 FREE = (0.05, 0.2, 0.5, 1.0)
-"""Shares of keys that are free, one of them for each scene: the others stay within half a decade of a preset's values, without
-which hardly any scene would reach its second step."""
+"""Shares of keys that are free, one of them for each scene. The other keys stay within half a decade of a preset's
+values: otherwise hardly any scene would reach its second step."""
 
 _DECADES = 12.0  # over which a key is drawn to a side where its range has no end, or ends at zero
 _LEAST, _MOST = 1e-300, 1e300
@@ -105,7 +105,7 @@ class _Draw:
         return self.often(self._free)
 
     def value(self, model: type[Group], name: str, usual: float) -> float:
-        """Draw a key of a table: over the range that the table's model states if it is free, else about its usual value.
+        """Draw a key of a table: if it is free, over the range that its model states, else about its usual value.
 
         Parameters
         ----------

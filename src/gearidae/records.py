@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
 from enum import Enum, IntEnum
 from typing import Any
@@ -13,8 +14,12 @@ from numpy.typing import NDArray
 __all__ = [
     "GEAR_BOUND",
     "GEAR_COLUMNS",
+    "QUADRATURE_BOUND",
     "ROLLER_BOUND",
     "ROLLER_COLUMNS",
+    "ROUNDING_BOUND",
+    "TABLE_BOUND",
+    "TRAVEL_BOUND",
     "Block",
     "Ending",
     "EventKind",
@@ -44,9 +49,20 @@ ROLLER_COLUMNS = ("height", "speed", "force")
 
 
 GEAR_BOUND = 10.0
-"""Residual of a gear pair's energy ledger over rtol and throughput, at most; the largest of the tests' cases is 0.5."""
+"""Tolerances by which a gear pair's motion may put its energies out, over the energy that has moved: errors of single
+steps are a fraction of the tolerance, and add up from step to step as the energies do that they are compared with."""
 ROLLER_BOUND = 100.0
-"""The same of a roller, all of whose energy goes through one impact; the largest is 30."""
+"""The same of a roller, all of whose energy goes through the many steps of one impact; the largest measured is 30."""
+QUADRATURE_BOUND = 3.0
+"""Largest error of the quadratures over their estimate, which is a mean over where an interval lies."""
+TABLE_BOUND = 1e-10
+"""Tolerance below which the balance gets no better: the stored energy is tabulated, and summed over the nodes of an
+elastic contact, apart from the force. Over an impact of a roller they differ by 14 times this with nodes, by less than
+0.1 without."""
+ROUNDING_BOUND = 1e3 * sys.float_info.epsilon
+"""Rounding errors in sums over the steps of a run, over the sum of their sizes."""
+TRAVEL_BOUND = 10.0 * sys.float_info.epsilon
+"""Rounding errors of a travel over the pitches that it is counted within."""
 
 
 class EventKind(IntEnum):
@@ -210,8 +226,17 @@ class Ledger:
     stored_change, kinetic_change : float
         Energy stored in contacts and energy of motion at the end, less those at the start.
     throughput : float
-        What the residual is measured by: the kinetic energy at the start, and all works, losses and changes of the
-        kinetic energy, step by step and without regard to sign.
+        The kinetic energy at the start, and all works, losses and changes of the kinetic energy, step by step and
+        without regard to sign.
+    quadrature_error : float
+        Estimated errors of all quadratures, added up without regard to sign: those of the works and losses, interval
+        by interval, from the size of the correction that the rule makes there.
+    largest : float
+        Energy that is held to a tolerance of its own even where little is exchanged: the largest kinetic energy there
+        was, and the sizes of the energy stored at the start and of `model_change`.
+    pitch_work : float
+        Work of the reference load on both gears over one base pitch. Travels are counted within a pitch, so that their
+        rounding errors cost this work times that of a double, however small the energies are; 0 of a roller.
     """
 
     time: float
@@ -225,6 +250,9 @@ class Ledger:
     stored_change: float
     kinetic_change: float
     throughput: float
+    quadrature_error: float = 0.0
+    largest: float = 0.0
+    pitch_work: float = 0.0
 
     @property
     def residual(self) -> float:
@@ -239,7 +267,17 @@ class Ledger:
         return abs(self.residual) / self.throughput if self.throughput > 0.0 else 0.0
 
     def bound(self, rtol: float, *, roller: bool) -> float:
-        """What the residual stays below in a sound run [J].
+        r"""What the residual stays below in a sound run [J].
+
+        .. math::
+
+            (a \max(\mathrm{rtol}, a_t) + a_r)\, E + a_q D + a_p P
+
+        with E the energy that has moved: `throughput`, `largest`, `adhesion_loss` and the size of `stored_change`; D,
+        `quadrature_error`; and P, `pitch_work`. The
+        first term is what errors of the motion leave: speeds and gaps are held to rtol, step by step, and the tables
+        of force and energy agree no better than :math:`a_t`. The others are what the balance itself adds, by its
+        quadratures and by rounding.
 
         Parameters
         ----------
@@ -251,9 +289,12 @@ class Ledger:
         Returns
         -------
         float
-            `ROLLER_BOUND` or `GEAR_BOUND`, times rtol, times the throughput.
+            With a `ROLLER_BOUND` or `GEAR_BOUND`, :math:`a_t` `TABLE_BOUND`, :math:`a_r` `ROUNDING_BOUND`, :math:`a_q`
+            `QUADRATURE_BOUND` and :math:`a_p` `TRAVEL_BOUND`.
         """
-        return (ROLLER_BOUND if roller else GEAR_BOUND) * rtol * self.throughput
+        of_motion = (ROLLER_BOUND if roller else GEAR_BOUND) * max(rtol, TABLE_BOUND) + ROUNDING_BOUND
+        moved = self.throughput + self.largest + self.adhesion_loss + abs(self.stored_change)
+        return of_motion * moved + QUADRATURE_BOUND * self.quadrature_error + TRAVEL_BOUND * self.pitch_work
 
 
 @dataclass(slots=True)

@@ -1,6 +1,6 @@
-"""Scenes that the engine does not survive, each with the root of it, in a process of its own: finished, named, or progress within time.
+"""Scenes that an engine did not survive, each in a process of its own: finished, a named ending, or progress in time.
 
-Found by the attack (`python -m gearidae_bench --attack`). `FAILING` fail with the engine as it is.
+Found by the attack (`python -m gearidae_bench --attack`).
 """
 
 import multiprocessing
@@ -32,7 +32,7 @@ def overrun():
 
 
 def close_knots():
-    """Knots of drive and load next to each other, a rounding apart: SUNDIALS tells a stop behind the time it is at (-22)."""
+    """Knots of drive and load a rounding apart: SUNDIALS finds the next stop behind the time it is at (-22)."""
     return HIGH.replace(
         {
             "drive.schedule": [[1e-5, 1e-12], [2e-5, 0.0]],

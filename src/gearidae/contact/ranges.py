@@ -1,4 +1,7 @@
-"""Ranges in gap and stretch that the tabulated force law is made for, without what compiles it."""
+"""Ranges in gap and stretch of the tabulated force law.
+
+They stand apart from the code that compiles the law, so that a scene can be checked without it.
+"""
 
 from __future__ import annotations
 

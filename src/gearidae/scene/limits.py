@@ -43,9 +43,9 @@ def check_stretch(scene: Scene) -> None:
 def pairs_within_reach(scene: Scene, cutoff: float) -> float:
     """Tooth pairs of one flank that can be in touch at a time, by their tip relief.
 
-    A pair at a distance of d base pitches from the path of contact has its gap opened by ``d^2 pb^2 / (2 rho)``. Where the flanks
-    overlap by as much as is tabulated, it touches as long as that is less than the cut-off and the overlap together:
-    ``d = sqrt(2 (cutoff - gap_low) rho sigma) / pb``, on either side of the path.
+    A pair at a distance of d base pitches from the path of contact has its gap opened by ``d^2 pb^2 / (2 rho)``. Where
+    the flanks overlap by as much as is tabulated, the pair touches as long as that is less than the cut-off and the
+    overlap together: ``d = sqrt(2 (cutoff - gap_low) rho sigma) / pb``, on either side of the path.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ def check_reach(scene: Scene, cutoff: float = 0.0) -> None:
     scene : Scene
         Of gears.
     cutoff : float, optional
-        Gap from which there is no force, in roughnesses; only the tables of the force law tell it. Contacts that cannot carry a
-        reference load without overlapping have a smaller one than the default.
+        Gap from which there is no force, in roughnesses. Only the tables of the force law tell it; a scene is checked
+        with 0 first, before they are made, and with the true one where the engine makes them.
 
     Raises
     ------

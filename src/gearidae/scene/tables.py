@@ -17,8 +17,8 @@ MOST_TABLES: Final = 1_000
 MOST_KNOTS: Final = 100_000
 """Knots of one schedule: the solver starts anew at each."""
 CLOSEST_KNOTS: Final = 1e-12
-"""Least distance of two knots over the time of the later: SUNDIALS tells times apart to 100 roundings, 2e-14, and takes steps
-between the two."""
+"""Least distance of two knots over the time of the later: SUNDIALS tells times apart to 100 roundings, 2e-14, and
+takes steps between the two."""
 
 
 def one_or_more(keys: str) -> BeforeValidator:

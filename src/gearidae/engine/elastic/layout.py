@@ -192,7 +192,12 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
                 pressure += scale * q[0]
                 slope += scale * q[1]
             matrix = np.eye(n) - middle * slope
-            step = np.linalg.solve(matrix, deflection - middle @ pressure)
+            try:
+                step = np.linalg.solve(matrix, deflection - middle @ pressure)
+            except (
+                np.linalg.LinAlgError
+            ):  # stiffness of bodies and adhesion just cancel: that is where it folds
+                return float(gap) + _STEP
             deflection = deflection - step
             change = float(np.max(np.abs(step)))
             if change < _SETTLED:

@@ -34,7 +34,14 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.motion import kinetic_energy
-from gearidae.engine.energy.quadrature import Ends, error_estimate, integral, integral_of_cube, torque_work
+from gearidae.engine.energy.quadrature import (
+    Ends,
+    error_estimate,
+    error_of_square,
+    integral,
+    integral_of_cube,
+    torque_work,
+)
 from gearidae.engine.energy.radius import radius_power, sample_radius_power
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import in_flight, static_error
@@ -57,7 +64,7 @@ def open_balance(m: Model, y: Floats) -> None:
     """Note with what a run begins; speeds are held to tolerances of their own, however little they change."""
     e = m.state.energy
     e.start_stored = stored_energy(m, y)[0]
-    e.start_kinetic = e.throughput = kinetic_energy(m, y)
+    e.start_kinetic = e.throughput = e.peak_kinetic = kinetic_energy(m, y)
 
 
 @compiled
@@ -108,9 +115,7 @@ def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> N
     q.steps = 0
     q.time = t
     if m.scene.kind == ROLLER:
-        kinetic = kinetic_energy(m, y)
-        m.state.energy.throughput += abs(kinetic - q.kinetic)
-        q.kinetic = kinetic
+        _book_kinetic(m, kinetic_energy(m, y), 0.0)
         return
     w, w_rate = y[W], yp[W]
     gear = y[PHASE] / m.scene.phase_rate
@@ -128,7 +133,15 @@ def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> N
     q.radius_power, q.radius_power_rate = power, rate
     e.radius_work += radius
     kinetic = 0.5 * speed * speed / m.scene.pinion_inverse_mass + 0.5 * w * w / m.scene.gear_inverse_mass
-    e.throughput += exchange + abs(radius) + abs(kinetic - q.kinetic)
+    _book_kinetic(m, kinetic, exchange + abs(radius))
+
+
+@compiled(inline=True)
+def _book_kinetic(m: Model, kinetic: float, exchanged: float) -> None:
+    """Note the kinetic energy at the end of an interval, and what has been exchanged in it besides its change."""
+    e, q = m.state.energy, m.work.quadrature
+    e.throughput += exchanged + abs(kinetic - q.kinetic)
+    e.peak_kinetic = max(e.peak_kinetic, kinetic)
     q.kinetic = kinetic
 
 
@@ -190,20 +203,22 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
         return
     gear, w, w_rate = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     taken = 0.0
+    e = m.state.energy
     if m.scene.drag != 0.0:
-        taken = m.scene.drag * integral_of_cube(
-            h, gear - r.gear_travel, r.gear_speed, r.gear_acceleration, w, w_rate
-        )
-        m.state.energy.drag_loss += taken
+        cube, error = integral_of_cube(h, gear - r.gear_travel, r.gear_speed, r.gear_acceleration, w, w_rate)
+        taken = m.scene.drag * cube
+        e.drag_loss += taken
+        e.loss_error += m.scene.drag * error
     if m.scene.damping != 0.0:
         v, was = y[V], r.mesh_speed
         rub = m.scene.damping * integral(
             h, was * was, v * v, 2.0 * was * r.mesh_acceleration, 2.0 * v * yp[V]
         )
-        m.state.energy.damping_loss += rub
+        e.damping_loss += rub
+        e.loss_error += m.scene.damping * error_of_square(h, r.mesh_acceleration, yp[V])
         taken += rub
     _note_resistance(m, t, gear, y, yp)
-    m.state.energy.throughput += taken
+    e.throughput += taken
 
 
 @compiled(inline=True)

@@ -6,7 +6,15 @@ from typing import NamedTuple
 
 from gearidae.compiled import compiled
 
-__all__ = ["Ends", "correction", "error_estimate", "integral", "integral_of_cube", "torque_work"]
+__all__ = [
+    "Ends",
+    "correction",
+    "error_estimate",
+    "error_of_square",
+    "integral",
+    "integral_of_cube",
+    "torque_work",
+]
 
 
 class Ends(NamedTuple):
@@ -59,8 +67,10 @@ def correction(h: float, rate0: float, rate1: float) -> float:
 
 
 @compiled
-def integral_of_cube(h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float) -> float:
-    """Integral of the cube of a speed's magnitude.
+def integral_of_cube(
+    h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float
+) -> tuple[float, float]:
+    """Integral of the cube of a speed's magnitude, and how far it may be out.
 
     That of the speed itself is known, the travel: what is left to the quadrature is of second order in the speed's
     deviation from its mean.
@@ -68,7 +78,8 @@ def integral_of_cube(h: float, travel: float, w0: float, rate0: float, w1: float
     mean = travel / h
     if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # it has turned round
         q0, q1 = w0 * abs(w0), w1 * abs(w1)
-        return integral(h, q0 * w0, q1 * w1, 3.0 * q0 * rate0, 3.0 * q1 * rate1)
+        start, end = 3.0 * q0 * rate0, 3.0 * q1 * rate1
+        return integral(h, q0 * w0, q1 * w1, start, end), error_estimate(h, q0 * w0, q1 * w1, start, end)
     a, b = w0 - mean, w1 - mean
     # of the cube of mean and deviation, the deviation itself leaves nothing
     rest = integral(
@@ -78,4 +89,17 @@ def integral_of_cube(h: float, travel: float, w0: float, rate0: float, w1: float
         3.0 * (2.0 * mean + a) * a * rate0,
         3.0 * (2.0 * mean + b) * b * rate1,
     )
-    return abs(mean * mean * travel + rest)
+    share = 3.0 * abs(mean) + max(abs(a), abs(b))
+    return abs(mean * mean * travel + rest), share * error_of_square(h, rate0, rate1)
+
+
+@compiled
+def error_of_square(h: float, rate0: float, rate1: float) -> float:
+    r"""By how much the corrected trapezoidal rule may be out for the square of a quantity x that vibrates.
+
+    Its error is :math:`h^5/720` times the fourth derivative, :math:`6 \ddot x^2 + 8 \dot x \dddot x + 2 x x^{(4)}`.
+    Over a vibration each of these products is as large as :math:`\ddot x^2` on average, which the rates at both ends
+    tell.
+    """
+    change = rate1 - rate0
+    return h * h * h * change * change / 45.0

@@ -22,7 +22,6 @@ from gearidae.engine.model.state import (
     LOAD,
     ROLLER,
     SCENE,
-    SLOTS_HIGH,
     Floats,
     Model,
     Record,
@@ -32,10 +31,10 @@ from gearidae.engine.model.tables import Tables
 from gearidae.engine.model.tooth_pairs import contact_length
 from gearidae.engine.model.torques.harmonic import pack_harmonics
 from gearidae.engine.model.torques.schedule import pack_schedule
-from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
 from gearidae.scene import Drive, Load, Scene
+from gearidae.scene.limits import check_reach, pairs_within_reach
 
 __all__ = ["make_problem"]
 
@@ -101,7 +100,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
     add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
-    _set_slots(s)
+    _set_slots(s, scene)
     _add_torques(s, tables, scene)
     _add_static_error(s, tables, scene)
     add_nodes(s, tables, grid)
@@ -195,17 +194,10 @@ def _gear_bounds(s: Record, scene: Scene) -> ContactBounds:
     return ContactBounds(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force, nearest)
 
 
-def _set_slots(s: Record) -> None:
+def _set_slots(s: Record, scene: Scene) -> None:
     """Set how many histories each flank keeps: at least as many as pairs can be within reach."""
-    within = float(s.contact_ratio + 2.0 * s.reach)
-    slots = 2 ** math.ceil(math.log2(within))
-    if slots > SLOTS_HIGH:
-        raise SceneError(
-            "mesh.tip_relief_radius",
-            f"(a reach of {float(s.reach):.3g} pitches)",
-            f"with these teeth {within:.0f} pairs a flank are within reach at once, more than {SLOTS_HIGH}: "
-            "use a smaller radius, a smaller roughness or fewer teeth",
-        )
+    check_reach(scene, float(s.cutoff))
+    slots = 2 ** math.ceil(math.log2(pairs_within_reach(scene, float(s.cutoff))))
     s.slots, s.histories = slots, 2 * slots
 
 

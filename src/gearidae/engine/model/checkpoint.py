@@ -162,7 +162,8 @@ def _check_run(m: Model, s: Record) -> None:
     _require(set(s.near.tolist()) <= _FLAGS, "near", "0 or 1")
     _require(s.last_flank in (-1, 0, 1), "last_flank", "a flank")
     _require(0 <= s.roots <= scene.root_limit and s.last_root <= s.time, "roots", "before the time")
-    _require(s.energy.throughput >= 0.0 and s.energy.quadrature_error >= 0.0, "energy", "positive sums")
+    sums = ("throughput", "quadrature_error", "loss_error", "peak_kinetic")
+    _require(all(s.energy[name] >= 0.0 for name in sums), "energy", "positive sums")
     p = s.progress
     _require(all(p[name] >= 0 for name in p.dtype.names), "counters", "positive")
     _require(p.next_sample <= scene.samples, "next_sample", "of the run")

@@ -130,7 +130,8 @@ class Problem:
     def _in_joules(self, time: float, stored: float, pending: float, kinetic: float) -> Ledger:
         # one look at all sums: a record's fields cost microseconds each outside compiled code
         e = dict(zip(ENERGY.names or (), self.model.state.energy.item(), strict=True))
-        unit = float(self.model.scene.force_unit * self.model.scene.length_unit)
+        scene = self.model.scene
+        unit = float(scene.force_unit * scene.length_unit)
         return Ledger(
             time=time * self.time_unit,
             drive_work=unit * e["drive_work"],
@@ -143,6 +144,10 @@ class Problem:
             stored_change=unit * (stored - pending - e["start_stored"]),
             kinetic_change=unit * (kinetic - e["start_kinetic"]),
             throughput=unit * e["throughput"],
+            quadrature_error=unit * (e["quadrature_error"] + e["loss_error"]),
+            largest=unit * (e["peak_kinetic"] + abs(e["start_stored"]) + abs(e["model_change"])),
+            # both shafts' torques are at most the unit of force
+            pitch_work=unit * float(2.0 / scene.phase_rate) if scene.kind == GEARS else 0.0,
         )
 
     def checkpoint(self, time: float, state: Floats) -> Floats:

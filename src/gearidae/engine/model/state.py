@@ -14,6 +14,8 @@ from typing import Any, Final, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.scene.limits import MOST_PAIRS
+
 __all__ = [
     "ADAMS",
     "COAST",
@@ -63,7 +65,7 @@ LOAD: Final = 1
 MATERIALS: Final = 2
 """Materials that share the surface: bare first, then coated."""
 
-SLOTS_HIGH: Final = 32
+SLOTS_HIGH: Final = MOST_PAIRS
 """Tooth pairs per flank whose history can be kept, a power of two."""
 
 EMPTY: Final = -(2**62)
@@ -212,7 +214,9 @@ ENERGY: Final = _record(  # sums over the run, in the unit of force times sigma
     ("throughput", _REAL),
     ("start_stored", _REAL),
     ("start_kinetic", _REAL),
-    ("quadrature_error", _REAL),  # about how far the quadratures may be out
+    ("quadrature_error", _REAL),  # about how far the quadratures over gathered steps may be out,
+    ("loss_error", _REAL),  # and those of drag and damping, which do not decide how many are gathered
+    ("peak_kinetic", _REAL),  # largest kinetic energy
 )
 
 PROGRESS: Final = _record(  # of a driver

@@ -52,6 +52,12 @@ __all__ = [
     "static_error",
 ]
 
+ANGLE_PHASE = 1e-9
+"""Error of the pinion's angle, as a phase of the static error's highest harmonic [rad], below which it is settled; far
+above what rounding leaves of an order of 1e5."""
+ANGLE_STEPS = 60
+"""Steps of Newton's method for it, at most."""
+
 
 # -- the walk over the pairs -----------------------------------------------------------------------------------------
 
@@ -257,7 +263,8 @@ def energy_branch(m: Model, k: int, material: int) -> int:
 def static_error(m: Model, u: float, phase: float) -> tuple[float, float, float, float]:
     """Pinion's angle, static transmission error e, and its first two derivatives over R1 and R1^2, scaled.
 
-    ``R1 phi1 - e(phi1) = u + R2 phi2`` is solved by Newton's method: e is small against R1.
+    ``R1 phi1 - e(phi1) = u + R2 phi2`` is solved by Newton's method: e is small against R1. Four steps are enough where
+    e is smooth over its own size; a ripple of high order may take more.
 
     Returns
     -------
@@ -271,10 +278,13 @@ def static_error(m: Model, u: float, phase: float) -> tuple[float, float, float,
     angle = rigid
     e = e1 = e2 = 0.0
     count, first = s.error_count, s.error_at
-    for _ in range(4 if count else 0):
-        e = e1 = e2 = 0.0
+    steps, phase_step = 0, math.inf
+    while count and (steps < 4 or (phase_step > ANGLE_PHASE and steps < ANGLE_STEPS)):
+        steps += 1
+        e = e1 = e2 = highest = 0.0
         for k in range(count):
             order, amplitude = m.tables[first + 3 * k], m.tables[first + 3 * k + 1]
+            highest = max(highest, order)
             shift = m.tables[first + 3 * k + 2]
             c = amplitude * math.cos(order * angle + shift)
             sine = amplitude * math.sin(order * angle + shift)
@@ -283,4 +293,5 @@ def static_error(m: Model, u: float, phase: float) -> tuple[float, float, float,
             e2 -= order * order * c / (radius * radius)
         step = (angle - rigid - e / radius) / (1.0 - e1)
         angle -= step
+        phase_step = highest * abs(step)  # e and its derivatives are those before the step
     return angle, e, e1, e2

@@ -1,0 +1,132 @@
+"""The bound of the energy balance's residual: what it is made of, and what it notices."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.engine import solve
+from gearidae.engine.energy.quadrature import error_of_square, integral, integral_of_cube
+from gearidae.records import GEAR_BOUND, QUADRATURE_BOUND, ROLLER_BOUND, ROUNDING_BOUND, TABLE_BOUND, Ledger
+
+HIGH, LOW = gd.preset("teodorescu2009"), gd.preset("teodorescu2009_low_speed")
+SCENES = {
+    "sticking": LOW.replace({"run.duration": "30 ms", "coating.sam_fraction": 0.45}),
+    "damped": HIGH.replace({"run.duration": "0.3 ms", "mesh.damping": 1e-6, "run.rtol": 1e-9}),
+    "dry": HIGH.replace({"run.duration": "0.3 ms", "load.torque": 1e-12}),
+    "roller": gd.preset("roller_slow"),
+}
+
+
+def bound(scene, ledger):
+    return ledger.bound(scene.run.rtol, roller=scene.roller is not None)
+
+
+@pytest.fixture(scope="module")
+def ledgers():
+    return {name: solve(scene.replace({"run.samples": "off"})).ledger for name, scene in SCENES.items()}
+
+
+# -- what it notices -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_sound_run_is_not_warned_of(ledgers, name):
+    assert 0.0 < abs(ledgers[name].residual) <= bound(SCENES[name], ledgers[name])
+
+
+@pytest.mark.parametrize(
+    ("name", "booking"),
+    [
+        ("sticking", "adhesion_loss"),
+        ("sticking", "drive_work"),
+        ("sticking", "radius_work"),
+        ("damped", "damping_loss"),
+        ("damped", "drag_loss"),
+        ("damped", "radius_work"),
+        ("dry", "dry_loss"),
+        ("roller", "adhesion_loss"),
+    ],
+)
+def test_a_booking_that_is_a_hundredth_out_is_warned_of(ledgers, name, booking):
+    ledger = ledgers[name]
+    for factor in (0.99, 1.01, 2.0):
+        wrong = replace(ledger, **{booking: factor * getattr(ledger, booking)})
+        assert abs(wrong.residual) > bound(SCENES[name], wrong)
+
+
+# -- what it is made of ----------------------------------------------------------------------------------------------
+
+NOTHING = dict.fromkeys(Ledger.__slots__, 0.0)
+
+
+def test_the_bound_is_the_sum_of_its_parts():
+    moved = Ledger(**{**NOTHING, "throughput": 3.0, "largest": 2.0})
+    assert moved.bound(1e-6, roller=False) == pytest.approx(
+        5.0 * (GEAR_BOUND * 1e-6 + ROUNDING_BOUND), rel=1e-12
+    )
+    assert moved.bound(1e-6, roller=True) == pytest.approx(
+        5.0 * (ROLLER_BOUND * 1e-6 + ROUNDING_BOUND), rel=1e-12
+    )
+    assert replace(moved, quadrature_error=7.0).bound(1e-6, roller=False) - moved.bound(
+        1e-6, roller=False
+    ) == pytest.approx(7.0 * QUADRATURE_BOUND, rel=1e-12)
+    # no tolerance makes the tables any better
+    assert moved.bound(1e-12, roller=False) == moved.bound(TABLE_BOUND, roller=False)
+
+
+def test_a_travel_that_is_rounded_is_not_warned_of():
+    """A gear held at rest by a torque: a rounding of a pitch, times the torque, is all that moves."""
+    at_rest = Ledger(**{**NOTHING, "pitch_work": 1e-17, "drive_work": 1e-17 * np.finfo(float).eps})
+    assert abs(at_rest.residual) <= at_rest.bound(1e-6, roller=False) < 1e-17 * 1e-13
+
+
+def test_the_largest_energies_are_those_of_the_motion(ledgers):
+    """A roller's kinetic energy is largest at its start or as it is pulled in; nothing is stored before."""
+    scene = SCENES["roller"]
+    run = solve(scene)
+    fastest = 0.5 * scene.roller.mass * np.abs(run.samples["speed"]).max() ** 2
+    # the peak is known at steps, the samples' at samples
+    assert run.ledger.largest == pytest.approx(fastest, rel=1e-2, abs=0)
+
+
+# -- estimates of the quadratures' errors ----------------------------------------------------------------------------
+
+STARTS = np.linspace(0.0, 2.0 * math.pi, 17)[:-1]
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+
+
+def mean_square(values):
+    return math.sqrt(np.mean(np.square(values)))
+
+
+@pytest.mark.parametrize("h", [0.05, 0.2, 0.8])
+def test_the_error_of_a_square_is_as_estimated(h):
+    """Of a vibration, over where in it the interval lies: to a factor of two, at any length of the interval."""
+    errors, estimates = [], []
+    for start in STARTS:
+        a, b = start, start + h
+        exact = 0.5 * h * WEIGHTS @ np.cos(start + 0.5 * h * (1.0 + NODES)) ** 2
+        ends = math.cos(a), math.cos(b), -math.sin(a), -math.sin(b)
+        rule = integral(h, ends[0] ** 2, ends[1] ** 2, 2 * ends[0] * ends[2], 2 * ends[1] * ends[3])
+        errors.append(rule - exact)
+        estimates.append(error_of_square(h, ends[2], ends[3]))
+    assert 1.0 < mean_square(estimates) / mean_square(errors) < QUADRATURE_BOUND
+
+
+@pytest.mark.parametrize(("mean", "deviation"), [(3.0, 0.3), (3.0, 0.03), (1.0, 0.9), (0.3, 1.0)])
+@pytest.mark.parametrize("h", [0.1, 0.4, 1.6])
+def test_the_error_of_drag_is_as_estimated(mean, deviation, h):
+    """The last speed turns round; the rule for that has a coarser estimate."""
+    errors, estimates = [], []
+    for start in STARTS:
+        ends = np.array([start, start + h])
+        speeds, rates = mean + deviation * np.cos(ends), -deviation * np.sin(ends)
+        travel = mean * h + deviation * np.diff(np.sin(ends))[0]
+        inside = np.abs(mean + deviation * np.cos(start + 0.5 * h * (1.0 + NODES))) ** 3
+        value, estimate = integral_of_cube(h, travel, speeds[0], rates[0], speeds[1], rates[1])
+        errors.append(value - 0.5 * h * WEIGHTS @ inside)
+        estimates.append(estimate)
+    assert 1.0 < mean_square(estimates) / mean_square(errors) < 10.0
