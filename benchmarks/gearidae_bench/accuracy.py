@@ -1,4 +1,4 @@
-"""Accuracy asked for and accuracy had: every shipped case at many tolerances, against references of another method.
+"""Requested and achieved accuracy: every shipped case at many tolerances, against references of another method.
 
 The cases that need seconds of simulated time are shortened: the low speed to 20 ms, the high speed to 0.5 ms, and
 run-up, braking and alternation to a hundredth of their time, torque schedules included. References are those of the

@@ -3,7 +3,7 @@
 A scene may end finished, with the step budget used up, or with a named status. What it may not do is hang, raise
 anything but `SceneError`, hand up a number that is not finite, an event out of order, or a sample that no state of the
 contact could produce: see `stress_checks`. The motion up to its first few impacts is then solved again at a tenth of
-the tolerance, which shows the error against the tolerance asked for.
+the tolerance, which shows the error against the requested tolerance.
 """
 
 from __future__ import annotations
