@@ -1,4 +1,4 @@
-"""The benchmark: run time against error, held against independent references and other integrators.
+"""The benchmark: run time against error, compared with independent references and other integrators.
 
 Sits above the engine and is imported by the command line only when asked for.
 """

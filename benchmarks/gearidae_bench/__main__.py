@@ -16,7 +16,7 @@ from gearidae_bench.commands import bench_accuracy, bench_long, bench_scenes, be
 
 app = App(
     name="gearidae_bench",
-    help="Run time against error, and the runs that look for faults.",
+    help="Measure run time against error, or search for faults.",
     suppress_keyboard_interrupt=False,
 )
 
@@ -33,25 +33,26 @@ def bench(
     ] = None,
     quick: Annotated[bool, Parameter(help="Fewer scenes, tolerances and rounds.")] = False,
     stress: Annotated[
-        bool, Parameter(help="Run random scenes over wide ranges instead, and account for every ending.")
+        bool, Parameter(help="Run random scenes over wide ranges instead, and name the ending of each.")
     ] = False,
     runs: Annotated[int, Parameter(help="Random scenes to run, or kills.")] = 2000,
-    seed: Annotated[int, Parameter(help="Which random scenes.")] = 1,
+    seed: Annotated[int, Parameter(help="Seed of the random scenes.")] = 1,
     accuracy: Annotated[
-        bool, Parameter(help="Hold the error of every shipped case against the tolerance asked for instead.")
+        bool, Parameter(help="Compare the error of every shipped case with the requested tolerance instead.")
     ] = False,
     jobs: Annotated[
         int | None, Parameter(help="Scenes at a time, with --stress or --accuracy; by default one per core.")
     ] = None,
     long: Annotated[
-        bool, Parameter(help="Let very many teeth pass instead, and see whether anything drifts or grows.")
+        bool, Parameter(help="Run very many tooth passages instead, and check for drift and memory growth.")
     ] = False,
     passages: Annotated[int, Parameter(help="Tooth passages of the long run.")] = 1_000_000,
     attack: Annotated[
-        bool, Parameter(help="Run extreme but valid scenes instead, each in a process that is watched.")
+        bool, Parameter(help="Run extreme but valid scenes instead, each in a monitored process.")
     ] = False,
     patience: Annotated[
-        float, Parameter(help="Seconds without a report after which a scene of --attack is taken to hang.")
+        float,
+        Parameter(help="Time without progress after which a scene of --attack counts as hung, in seconds."),
     ] = PATIENCE,
     forge: Annotated[
         bool,
@@ -63,7 +64,7 @@ def bench(
         bool, Parameter(help="Kill runs and sweeps at random moments instead, resume them and compare.")
     ] = False,
 ) -> int:
-    """Measure run time against error on this machine, and hold it against other integrators."""
+    """Measure run time against error on this machine, and compare it with other integrators."""
     if stress + accuracy + long + attack + forge + kills > 1:
         raise SceneError(
             "bench", "--stress, --accuracy, --long, --attack, --forge, --kills", "say one of them"

@@ -1,9 +1,9 @@
-"""Accuracy asked for and accuracy had: every shipped case at many tolerances, against references of another method.
+"""Requested and achieved accuracy: every shipped case at many tolerances, against references of another method.
 
 The cases that need seconds of simulated time are shortened: the low speed to 20 ms, the high speed to 0.5 ms, and
 run-up, braking and alternation to a hundredth of their time, torque schedules included. References are those of the
 benchmark, Gauss-Legendre collocation with a step's end at every event, which also follows stick, slip and schedule
-knots. Where bodies give way the equations are algebraic in part, which that method does not solve: there the
+knots. With elastic bodies the equations are algebraic in part, which that method does not solve: there the
 reference is a run of the engine's own at the tightest tolerance.
 """
 
@@ -34,7 +34,7 @@ COATINGS: Final = {"whole": 1.0, "worn": 0.6, "bare": 0.0}
 SHORTENED: Final = 0.01
 """What is left of the time of run-up, braking and alternation."""
 OWN_TOLERANCES: Final = 1e-12, 1e-11
-"""Of the reference where bodies give way, and of its check."""
+"""Tolerances of the reference with elastic bodies, and of its check."""
 
 _HIGH_TORQUE = 2.43e-11  # [N m], that of the high-speed case
 _STEP = 1.63e-11  # [N m], between the two levels of the alternation
@@ -53,7 +53,7 @@ class Achieved:
     own_error : float
         Of the reference: its difference from a second one.
     turning_points : int
-        Times that a pair of teeth was turned round.
+        Turning points of the gaps.
     errors : tuple of float
         At each of `RTOLS`, as `gearidae_bench.error.run_error` measures them; infinite where the run ended early.
     """

@@ -1,4 +1,4 @@
-"""What the accuracy measurement found, as a page in Markdown and a picture."""
+"""Results of the accuracy measurement, as a page in Markdown and a picture."""
 
 from __future__ import annotations
 
@@ -21,37 +21,37 @@ PICTURE: Final = "accuracy.png"
 SHARES: Final = (0.1, 0.5, 0.9, 1.0)
 
 _INTRODUCTION = """\
-How accurate is a run whose tolerance is `run.rtol`? Every shipped case, in three states of the coating (whole
-monolayer, 60 % of it, bare silicon), is run at seven tolerances and held against a reference.
+After this page you can choose `run.rtol` for the error that you need. Every shipped case is run in three states of the
+coating (full coverage, 60 % coverage, bare silicon) at seven tolerances, and compared with a reference solution.
 
-The tolerance bounds the error of a single step: relative to the roughness for lengths, and to the roughness per time
-unit for speeds. What is shown is the error of the whole run: the largest error of the gear's (or roller's) speed over
-its peak-to-peak fluctuation, or of the transmission error (or height) over the roughness, whichever is larger. Steps
-add up, and every impact multiplies what it meets.
+The tolerance bounds the local error of a single step: relative to the roughness for lengths, and to the roughness per
+time unit for speeds. The tables show the global error of the run, which is the larger of two numbers: the largest
+error of the speed of the gear (or roller) over its peak-to-peak fluctuation, and the largest error of the transmission
+error (or height) over the roughness. Local errors add up, and every impact amplifies the accumulated error.
 
-**References.** Gauss-Legendre collocation of order twelve at a tolerance of 1e-12, with a step's end at every event,
-every kink of the force, every schedule knot and every sample: another method, another error control, another way to
-find events. Its own error, in the table, is its difference from a run at a tenth of the tolerance. Where bodies give
-way, the equations are algebraic in part, and the reference is a run of the engine's own at 1e-12 held against one at
-1e-11; that shows how errors fall with the tolerance, not that the limit is right, which the tests of the elastic
-contact do.
+**References.** The reference is Gauss-Legendre collocation of order twelve at a tolerance of 1e-12, with a step
+boundary at every event, every kink of the force, every schedule knot and every sample. Method, error control and event
+detection are independent of the engine. Its own error, given in the table, is its difference from a run at a tenth of
+the tolerance. With elastic bodies the equations are partly algebraic, and the reference is a run of the engine itself
+at 1e-12, compared with one at 1e-11. This shows how the error falls with the tolerance, but not that the limit is
+correct; the tests of the elastic contact check the limit.
 
-**Cases.** The low speed is run for 20 ms, the high speed for 0.5 ms, and run-up, braking and alternation for a
-hundredth of their time, with torque schedules as much faster: they break away, stop and change levels all the same.
-Rollers are run with both contact models.
+**Cases.** The low-speed case is run for 20 ms and the high-speed case for 0.5 ms. Run-up, braking and alternating
+torque are run for a hundredth of their duration, with torque schedules faster by the same factor, so that the gears
+still break away, stop and change their speed. Rollers are run with both contact models. In the names of the cases,
+"whole" means full coverage, "worn" 60 % coverage and "bare" no coverage.
 """
 _ADVICE = """\
-## What to ask for
+## Which tolerance to choose
 
-The error of a run is some tens of tolerances in the middle and some hundreds with elastic bodies, and falls with the
-tolerance: the default of 1e-6 is good to 1e-4 of the fluctuation in most of these runs. Each decade of the tolerance
-takes a decade off the error.
+The median error of a run is some tens of tolerances, and some hundreds with elastic bodies. It falls in proportion to
+the tolerance. With the default of 1e-6, the error of most of these runs is below 1e-4 of the fluctuation.
 
-Two kinds of run need more, and do not bear a tolerance of 1e-3. Gears that have been braked to a stop go on bouncing
-between each other's teeth with next to nothing to damp them, and every bounce multiplies the error of the one before.
-Bare silicon at low speed falls into its adhesive well and rings there, a hundred thousand times in these 20 ms; the
-phase of that ringing is lost first. Such a run says how large the ringing is, not where it stands at a given time: ask
-for 1e-9 if that matters, and compare two tolerances.
+Two kinds of run need a smaller tolerance; 1e-3 is not sufficient for them. Gears braked to a stop continue to bounce
+between their teeth with hardly any damping, and every bounce amplifies the error of the one before. Bare silicon at
+low speed falls into its adhesive potential well and vibrates there, with about a hundred thousand turning points in
+these 20 ms; the phase of this vibration is lost first. The amplitude of the vibration is reliable in such a run, but
+its phase at a given time is not. If the phase matters, use 1e-9 and compare two tolerances.
 """
 
 
@@ -64,7 +64,7 @@ def quantiles(results: Sequence[Achieved]) -> dict[str, tuple[float, ...]]:
 
 
 def _quantile(ratios: Sequence[float], share: float) -> float:
-    """Least of the numbers that so large a share of them do not exceed; some may be infinite."""
+    """Smallest number that this share of the numbers does not exceed; some may be infinite."""
     return sorted(ratios)[max(math.ceil(share * len(ratios)) - 1, 0)]
 
 
@@ -85,12 +85,12 @@ def page(results: Sequence[Achieved], day: date) -> str:
     tolerances = " | ".join(f"{rtol:.0e}" for rtol in RTOLS)
     shares = " | ".join(f"{100 * share:g} %" for share in SHARES)
     lines = [
-        "# Accuracy asked for and accuracy had",
+        "# Requested and achieved accuracy",
         "",
         f"`python -m gearidae_bench --accuracy` on {day.isoformat()}, gearidae {gearidae.__version__}.",
         "",
         _INTRODUCTION,
-        f"![Error of the run against the tolerance, and the distribution of their ratio](images/{PICTURE})",
+        f"![Error of the run against the tolerance, and distribution of their ratio](images/{PICTURE})",
         "",
         "## Error over tolerance",
         "",
@@ -101,7 +101,7 @@ def page(results: Sequence[Achieved], day: date) -> str:
         _ADVICE,
         "## Error of each run",
         "",
-        f"| case | turning points | reference | its error | {tolerances} |",
+        f"| case | turning points | reference | error of the reference | {tolerances} |",
         "|---|---|---|---|" + "---|" * len(RTOLS),
         *(
             f"| {r.title} | {r.turning_points} | {r.reference} | {r.own_error:.0e} | {_numbers(r.errors)} |"
@@ -117,7 +117,7 @@ def _numbers(values: Sequence[float]) -> str:
 
 
 def draw_accuracy(results: Sequence[Achieved], path: Path) -> None:
-    """Draw errors against tolerances, and how their ratio is distributed.
+    """Draw errors against tolerances, and the distribution of their ratio.
 
     Parameters
     ----------
@@ -162,8 +162,8 @@ def _draw_errors(axes: Axes, results: Sequence[Achieved]) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.invert_xaxis()
-    axes.set_xlabel("tolerance asked for, run.rtol")
-    axes.set_ylabel("largest error of the run, of scale")
+    axes.set_xlabel("requested tolerance, run.rtol")
+    axes.set_ylabel("largest error of the run, relative")
     axes.legend(frameon=False, fontsize="small")
 
 

@@ -68,7 +68,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
     day : date
         When they were run.
     runs : int, optional
-        How many were asked for, where not all of them were done.
+        Number of scenes requested, if fewer were done.
 
     Returns
     -------

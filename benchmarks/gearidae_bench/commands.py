@@ -1,4 +1,4 @@
-"""What ``python -m gearidae_bench`` does: benchmark, stress run, accuracy run and long run, with their pages."""
+"""Commands of ``python -m gearidae_bench``: benchmark, stress run, accuracy run and long run, with their pages."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _QUICK = Settings(rounds=3, longest=1.0, share=1.0, every=2)
 
 
 def bench_scenes(scenes: Sequence[str], output: Path | None, *, quick: bool) -> int:
-    """Measure, print a table for each scene, and write everything to a folder if asked.
+    """Measure, print a table for each scene, and write everything to a folder if requested.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def bench_scenes(scenes: Sequence[str], output: Path | None, *, quick: bool) -> 
 
 
 def bench_long(passages: int, output: Path | None) -> int:
-    """Let very many teeth pass, print what changed from part to part, and write the page about it if asked.
+    """Run very many tooth passages, print the changes from part to part, and write the page if requested.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def bench_long(passages: int, output: Path | None) -> int:
 
 
 def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) -> int:
-    """Run random scenes, print how they ended, and write the page about them if asked.
+    """Run random scenes, print their endings, and write the page if requested.
 
     What is done when Ctrl-C comes is printed and written all the same.
 
@@ -153,7 +153,7 @@ def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) ->
 
 
 def bench_accuracy(jobs: int | None, output: Path | None) -> int:
-    """Run the shipped cases at many tolerances, print how the error compares, and write the page if asked.
+    """Run the shipped cases at many tolerances, compare the error with the tolerance, and write the page if requested.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How far a run is from its reference, and how fast a method is at a given error."""
+"""Error of a run against its reference, and run time of a method at a given error."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def run_error(
     Returns
     -------
     float
-        The larger of ``max |speed error| / (max speed - min speed)`` and ``max |position error| / sigma``. Speeds
-        are held against their fluctuation, not their mean: that is the harder measure. Infinite for a run that broke
-        off or is not finite.
+        The larger of ``max |speed error| / (max speed - min speed)`` and ``max |position error| / sigma``. The
+        speed error is divided by the fluctuation, not by the mean: the stricter measure. Infinite for a run that
+        stopped early or is not finite.
     """
     if other_speed.shape != speed.shape or other_position.shape != position.shape:
         return float("inf")

@@ -1,4 +1,4 @@
-"""What a user feels beside the time of one run: growth, memory, elastic bodies, two cores, the first second."""
+"""Other costs than the time of one run: growth with length, memory, elastic bodies, two cores, start-up."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A very long run: a million tooth passages, and whether anything drifts, is miscounted or grows.
+"""A very long run: a million tooth passages, checked for drift, counting errors and memory growth.
 
-Quiet running at full speed with the whole monolayer: a constant drive and a critically damped mesh, so that each
+Smooth running at full speed with full coverage: a constant drive and a critically damped mesh, so that each
 passage takes few steps and is like the one before. Whatever changes from the first tenth of the run to the last is an
 error that adds up.
 """
@@ -78,7 +78,7 @@ class Part:
     scatter : float
         Standard deviation of the time from one passage to the next [s].
     imbalance : float
-        Residual of the energy ledger over its throughput, from the start of the run to this part's end.
+        Residual of the energy balance over its throughput, from the start of the run to this part's end.
     miscounted : int
         Passages that are not of the pair that follows the one before.
     """
@@ -223,17 +223,17 @@ class _Watch:
 
 
 def sound(parts: Sequence[Part]) -> bool:
-    """Whether every passage was counted once, in its turn, and the angle agrees with the count at every sample."""
+    """Whether every passage was counted once, in sequence, and the angle agrees with the count at every sample."""
     within = max(part.high for part in parts) - min(part.low for part in parts) < 1.0
     return within and not any(part.miscounted for part in parts)
 
 
 def long_rows(parts: Sequence[Part]) -> Iterator[tuple[str, ...]]:
-    """Heading and rows of the table of parts; drifts are against the second part, as the first holds the start."""
+    """Heading and rows of the table of parts; drifts are relative to part 2, because part 1 contains the start."""
     yield (
-        "passages", "simulated (s)", "steps a passage", "time a passage (us)", "memory grown (MB)",
-        "mean u less that of the second part (m)", "speed over that of the second part, less 1",
-        "scatter of a passage's time (s)",
+        "passages", "simulated (s)", "steps per passage", "time per passage (us)", "memory growth (MB)",
+        "mean u minus that of part 2 (m)", "speed over that of part 2, minus 1",
+        "scatter of the passage time (s)",
     )  # fmt: skip
     base = parts[min(1, len(parts) - 1)]
     passed = 0
@@ -252,7 +252,7 @@ def long_rows(parts: Sequence[Part]) -> Iterator[tuple[str, ...]]:
 
 
 def long_page(parts: Sequence[Part]) -> str:
-    """Write the table in Markdown, with what holds for the whole run."""
+    """Write the table in Markdown, with the results for the whole run."""
     heading, *rows = long_rows(parts)
     first, last = parts[0], parts[-1]
     scene = long_scene(last.passages)
@@ -265,18 +265,18 @@ def long_page(parts: Sequence[Part]) -> str:
     return (
         f"{last.passages} passages in {sum(part.steps for part in parts)} steps and "
         f"{sum(part.cpu_time for part in parts):.0f} s of one core, relative tolerance {_RTOL:g}.\n\n{table}\n"
-        f"- Pairs out of turn: {sum(part.miscounted for part in parts)}.\n"
-        f"- The gear's angle in pitches, less the passages counted, spans 1 less {1.0 - high + low:.1e} over all "
-        f"{last.samples} samples. Were a single one lost, it would span more than 1.\n"
+        f"- Pairs out of sequence: {sum(part.miscounted for part in parts)}.\n"
+        f"- The gear's angle in pitches minus the counted passages has a range of 1 - {1.0 - high + low:.1e} over all "
+        f"{last.samples} samples. A single lost passage would make the range larger than 1.\n"
         f"- From the second part on, the integral of the sampled speed differs from the angle by {missing:.1e} "
         f"pitches in {(last.angle - first.angle) / pitch:.0f}.\n"
-        f"- The energy ledger is out of balance by {last.imbalance:.1e} of all that has moved.\n"
+        f"- The imbalance of the energy balance is {last.imbalance:.1e} of the energy exchanged.\n"
         f"- The mean speed is {last.speed:.6f} rad/s; the balance of drive, drag and dry resistance alone gives "
         f"{steady_speed(scene):.6f} rad/s.\n"
     )
 
 
 def _memory() -> float:
-    """Most memory that the process has taken [bytes]."""
+    """Largest memory of the process so far [bytes]."""
     unit = 1 if sys.platform == "darwin" else 1024
     return float(unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)

@@ -1,7 +1,7 @@
 """Compiled loops of the explicit and collocation methods, with the engine's own history and event handling.
 
-What happens at an event is the engine's `handle`; what the loops add is to find it. Where a contact turns round or is
-stretched in full the force has a kink, and a one-step method keeps its order only if a step ends there.
+Events are handled by the engine's `handle`; the loops add the root search. At a turning point of a gap and at full
+stretch the force has a kink, and a one-step method keeps its order only if a step ends there.
 """
 
 from __future__ import annotations

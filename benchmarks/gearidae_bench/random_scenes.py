@@ -17,7 +17,7 @@ SCENES_PER_SURFACE = 4
 """Scenes that share a surface, whose force law takes longer to tabulate than most of the runs."""
 
 ELASTIC_EVERY, ELASTIC_AT = 5, 3
-"""Of so many scenes in a row this one has bodies that give way."""
+"""One scene of this many has elastic bodies."""
 
 _ROLLERS = 0.15
 _SILICON = 2330.0  # [kg/m^3], of which the random gears are solid discs
@@ -30,7 +30,7 @@ def random_scene(seed: int, number: int) -> Scene:
     Roughness 1..30 nm, tip radius 20 nm..5 um, 1e12..1e15 asperities per square metre, surface energy 0..3 J/m^2,
     modulus 50..400 GPa, SAM fraction 0..1, torque over twelve decades or none, 12..120 teeth, backlash 0..1 um, speed
     up to 1e4 rad/s either way, tolerance 1e-3..1e-10; special values (nothing, all, a start exactly on a guard) more
-    often than chance would have them. Each fifth scene has bodies that give way, of 2..400 GPa.
+    often than chance would have them. Every fifth scene has elastic bodies, of 2..400 GPa.
 
     Parameters
     ----------

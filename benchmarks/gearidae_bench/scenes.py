@@ -46,14 +46,14 @@ _LOW, _HIGH = "teodorescu2009_low_speed", "teodorescu2009"
 SCENES: Final[Mapping[str, BenchScene]] = {
     s.name: s
     for s in (
-        _scene("low_sam", "low speed, whole SAM, 50 ms", _LOW, {"run.duration": 0.05}),
+        _scene("low_sam", "low speed, full coverage, 50 ms", _LOW, {"run.duration": 0.05}),
         _scene(
             "low_worn",
-            "low speed, 60 % SAM, 50 ms",
+            "low speed, 60 % coverage, 50 ms",
             _LOW,
             {"run.duration": 0.05, "coating.sam_fraction": 0.6},
         ),
-        _scene("high_sam", "high speed, whole SAM, 0.5 ms", _HIGH, {"run.duration": 0.5e-3}),
+        _scene("high_sam", "high speed, full coverage, 0.5 ms", _HIGH, {"run.duration": 0.5e-3}),
         _scene(
             "high_bare",
             "high speed, bare silicon, 0.5 ms",
@@ -61,11 +61,17 @@ SCENES: Final[Mapping[str, BenchScene]] = {
             {"run.duration": 0.5e-3, "coating.sam_fraction": 0.0},
         ),
         _scene(
-            "roller_slow_sam", "roller at 0.01 m/s, whole SAM", "roller_slow", {"coating.sam_fraction": 1.0}
+            "roller_slow_sam",
+            "roller at 0.01 m/s, full coverage",
+            "roller_slow",
+            {"coating.sam_fraction": 1.0},
         ),
         _scene("roller_slow_bare", "roller at 0.01 m/s, bare silicon", "roller_slow", {}),
         _scene(
-            "roller_fast_sam", "roller at 0.1 m/s, whole SAM", "roller_fast", {"coating.sam_fraction": 1.0}
+            "roller_fast_sam",
+            "roller at 0.1 m/s, full coverage",
+            "roller_fast",
+            {"coating.sam_fraction": 1.0},
         ),
         _scene("roller_fast_bare", "roller at 0.1 m/s, bare silicon", "roller_fast", {}),
     )

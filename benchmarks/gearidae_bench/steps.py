@@ -1,4 +1,4 @@
-"""Single steps of the explicit and collocation methods that gearidae's own integrator is held against.
+"""Single steps of the explicit and collocation methods that gearidae's own integrator is compared with.
 
 Each takes the scaled state over one step and knows nothing of events. All read the same right-hand side as the
 engine, so that what differs is the integrator alone.

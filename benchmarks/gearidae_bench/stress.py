@@ -1,9 +1,9 @@
-"""The stress run: random scenes through the engine, every ending accounted for, every sample held against the physics.
+"""The stress run: random scenes, with a named ending for each and every sample compared with the physics.
 
 A scene may end finished, with the step budget used up, or with a named status. What it may not do is hang, raise
 anything but `SceneError`, hand up a number that is not finite, an event out of order, or a sample that no state of the
 contact could produce: see `stress_checks`. The motion up to its first few impacts is then solved again at a tenth of
-the tolerance, which shows the error against the tolerance asked for.
+the tolerance, which shows the error against the requested tolerance.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ Floats = NDArray[np.float64]
 STEP_BUDGET = 5 * BLOCK_STEPS
 """Steps after which a scene is left alone, or as many blocks of output full of samples or events."""
 ELASTIC_SHARE = 5
-"""Where bodies give way, steps take longer: the budget is divided by this."""
+"""With elastic bodies, steps take longer: the budget is divided by this."""
 
 LEDGER_TOLERANCES = 1e4
-"""What the energy ledger of a finished run may leave unexplained, in tolerances."""
+"""Largest imbalance of the energy balance of a finished run, in tolerances."""
 
 _PATIENCE = 600.0  # [s]; no four scenes take a tenth of that
 _HORIZON_EVENTS = 3  # turning points, sticks or slips up to which two tolerances are compared
@@ -64,7 +64,7 @@ class Outcome:
         Tolerance, and error up to the first few impacts over what the motion covers there (at least a roughness, or a
         roughness per time unit), a shift in time over the time; NaN where there was nothing to compare.
     imbalance : float
-        What the energy ledger leaves unexplained, over the energy that has moved and the largest of motion there was.
+        Imbalance of the energy balance, over the sum of the energy exchanged and the largest kinetic energy.
     steps, wall_time, reached : int, float, float
         Steps, wall time [s], and share of the simulated time that was reached.
     """
@@ -167,7 +167,7 @@ def run_one(scene: Scene, number: int = 0, budget: int = STEP_BUDGET) -> Outcome
             scene, run.rows, run.events, float(run.problem.model.scene.force_unit), rigid=run.rigid
         )
         if status == "finished" and run.imbalance > LEDGER_TOLERANCES * scene.run.rtol:
-            complaint = complaint or f"the energy ledger leaves {run.imbalance:.1e} unexplained"
+            complaint = complaint or f"the energy balance has an imbalance of {run.imbalance:.1e}"
         if len(run.rows) > 1 and not complaint:
             error = _error(scene, run, budget)
     except SceneError as refusal:
@@ -200,7 +200,7 @@ class _Run:
     rows: Floats
     events: Floats
     reached: float  # share of the simulated time
-    imbalance: float  # of the energy ledger
+    imbalance: float  # of the energy balance
 
     @property
     def rigid(self) -> bool:
@@ -225,7 +225,7 @@ def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
 
 
 def _imbalance(scene: Scene, ledger: Ledger | None, rows: Floats) -> float:
-    """Residual of a ledger over what moved; speeds err by the tolerance even where no energy is meant to move."""
+    """Residual over the energy exchanged; speeds have errors of a tolerance even if no energy is exchanged."""
     if ledger is None:
         return math.nan
     if scene.roller:

@@ -1,4 +1,4 @@
-"""What came out of a stress run, as a page in Markdown."""
+"""Results of a stress run, as a page in Markdown."""
 
 from __future__ import annotations
 
@@ -16,41 +16,46 @@ from gearidae_bench.stress import ELASTIC_SHARE, LEDGER_TOLERANCES, STEP_BUDGET,
 __all__ = ["counts", "ledger_quantiles", "page", "quantiles", "worst"]
 
 _MEANINGS = {ending.status: ending.message for ending in Ending} | {
-    "finished": "reached the end",
+    "finished": "reached the end of the run",
     "budget": f"stopped after {STEP_BUDGET:,} steps"
-    f" ({STEP_BUDGET // ELASTIC_SHARE:,} with elastic bodies), all in order until then",
-    "refused": "a SceneError before the run",
-    "raised": "**a defect**: an error that is not for users",
-    "hung": "**a defect**: never came back",
+    f" ({STEP_BUDGET // ELASTIC_SHARE:,} with elastic bodies), correct until then",
+    "refused": "rejected by a SceneError before the run",
+    "raised": "**a defect**: an exception other than those for users",
+    "hung": "**a defect**: did not return",
 }
+_PURPOSE = (
+    "After this page you know over which range of scenes the engine was tested, how the runs ended, and how large their"
+    " errors were. The scenes are random; each is run three times, and its samples are compared with the physics."
+)
 _RANGES = (
-    "Roughness 1 to 30 nm, tip radius 20 nm to 5 um, 1e12 to 1e15 asperities per square metre, surface energy 0 to"
-    " 3 J/m2, modulus 50 to 400 GPa, SAM fraction 0 to 1, all three asperity laws, torques over twelve decades or none,"
-    " 12 to 120 teeth, backlash 0 to 1 um, speeds up to 1e4 rad/s either way, tolerances 1e-3 to 1e-10, dry resistance,"
-    " drag, mesh damping, harmonics, schedules and static error in some, rollers in one of seven. Bodies give way in"
-    " each fifth scene, with moduli from 2 GPa on; the others are by the asperity model."
+    "**Ranges.** Roughness 1 to 30 nm, tip radius 20 nm to 5 um, 1e12 to 1e15 asperities per square metre, surface"
+    " energy 0 to 3 J/m2, modulus 50 to 400 GPa, SAM fraction 0 to 1, JKR, DMT or Hertz asperities; torques over twelve"
+    " decades or none, 12 to 120 teeth, backlash 0 to 1 um, speeds up to 1e4 rad/s in either direction; tolerances 1e-3"
+    " to 1e-10. Some scenes have dry resistance, drag, mesh damping, harmonics, schedules and static transmission"
+    " error. One scene in seven is a roller. One scene in five has elastic bodies, with moduli from 2 GPa; the others"
+    " use the asperity model."
 )
 _CHECKS = (
-    "Of each, 24 samples are checked: gaps as the geometry has them; forces, where bodies do not give way, between"
-    " those of a contact just made and of one stretched to its limit, both by quadrature. All numbers must be finite"
-    " and all events in order, and the energy ledger of a finished run must close to"
+    "**Checks.** 24 samples of each run are checked. Gaps must agree with the geometry. Without elastic bodies, forces"
+    " must lie between those of a contact that has just formed and of one stretched to its limit, both from quadrature."
+    " All numbers must be finite and all events in order of time. The energy balance of a finished run must close to"
     f" {LEDGER_TOLERANCES:,.0f} tolerances."
 )
 _ERRORS = (
-    "The motion up to its third turning point (or stick or slip) at the scene's tolerance against that at a tenth of"
-    " it, over what the motion covers; an error in time counts by its share of the time."
+    "The motion up to its third turning point (or stick or slip) is compared with that at a tenth of the tolerance. The"
+    " difference is divided by the range of the motion; an error of an event time is divided by the elapsed time."
 )
 _REASON = (
-    "Large ratios belong to scenes whose adhesion is 1e8 and more times the load: the contact falls into a well that"
-    " deep and comes out by a small difference of large energies, which multiplies every error."
+    "Large ratios belong to scenes whose adhesion is at least 1e8 times the load. The contact falls into a deep"
+    " potential well and leaves it by a small difference of large energies, which amplifies every error."
 )
 _LEDGER = (
-    "The energy ledger of a run books every work, loss and store. What it leaves unexplained at the end of finished"
-    " runs, over the energy that has moved and the largest energy of motion there was, in tolerances:"
+    "The energy balance of a run sums all works, losses and stored energies. The table gives its imbalance at the end"
+    " of finished runs, divided by the sum of the energy exchanged and the largest kinetic energy, in tolerances:"
 )
 _FURTHER = (
-    "What errors the shipped cases have is on [a page of its own](accuracy.md), and so is which faults put into the"
-    " code [the tests catch](mutants.md)."
+    "The errors of the shipped cases are on [another page](accuracy.md), and so are the"
+    " [faults that the tests catch](mutants.md)."
 )
 _SHARES = (0.1, 0.5, 0.9, 0.97, 0.99, 1.0)
 _LISTED = 10
@@ -59,12 +64,12 @@ _NAMED = 7
 
 
 def counts(outcomes: Sequence[Outcome]) -> dict[str, int]:
-    """How many ended in which way, the most frequent first."""
+    """Number of scenes per ending, the most frequent first."""
     return dict(Counter(outcome.status for outcome in outcomes).most_common())
 
 
 def _scenes(outcomes: Sequence[Outcome], status: str, count: int) -> str:
-    """How many scenes ended so; which, if they are few."""
+    """Number of scenes with this ending, and their numbers if they are few."""
     if count > _NAMED:
         return str(count)
     return f"{count}: " + ", ".join(str(o.number) for o in outcomes if o.status == status)
@@ -76,7 +81,7 @@ def quantiles(outcomes: Sequence[Outcome]) -> dict[float, float]:
 
 
 def ledger_quantiles(outcomes: Sequence[Outcome]) -> dict[float, float]:
-    """Quantiles of the ledger's imbalance over tolerance, of finished runs; empty if there are none."""
+    """Quantiles of the energy balance's imbalance over tolerance, of finished runs; empty if there are none."""
     return _quantiles([o.imbalance / o.rtol for o in outcomes if o.status == "finished"])
 
 
@@ -86,7 +91,7 @@ def _quantiles(values: Sequence[float]) -> dict[float, float]:
 
 
 def worst(outcomes: Sequence[Outcome]) -> list[Outcome]:
-    """Unsound outcomes first, then those of the largest error over tolerance."""
+    """Outcomes that failed a check first, then those of the largest error over tolerance."""
     known = [o for o in outcomes if not o.sound or math.isfinite(o.ratio)]
     return sorted(known, key=lambda o: (o.sound, -o.ratio if math.isfinite(o.ratio) else 0.0))[:_LISTED]
 
@@ -101,7 +106,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
     day : date
         When they were run.
     runs : int, optional
-        How many were asked for, where not all of them were done.
+        Number of scenes requested, if fewer were done.
 
     Returns
     -------
@@ -109,7 +114,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         Markdown.
     """
     unsound = [outcome for outcome in outcomes if not outcome.sound]
-    times = [outcome.wall_time for outcome in outcomes]
+    longest = max((outcome.wall_time for outcome in outcomes), default=0.0)
     command = f"python -m gearidae_bench --stress --runs {runs or len(outcomes)} --seed {seed}"
     done = f"; interrupted after {len(outcomes)} scenes" if runs and runs > len(outcomes) else ""
     lines = [
@@ -117,11 +122,13 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "",
         f"`{command}` on {day.isoformat()}, gearidae {gearidae.__version__}{done}.",
         "",
+        _PURPOSE,
+        "",
         _RANGES,
         "",
         _CHECKS,
         "",
-        f"**Unsound: {len(unsound)}.** Longest wall time {max(times, default=0.0):.1f} s, three runs each.",
+        f"**Failed checks: {len(unsound)}.** Longest wall time of a scene (three runs): {longest:.1f} s.",
         "",
         "| ending | scenes | meaning |",
         "|---|---|---|",
@@ -134,7 +141,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "",
         _ERRORS,
         "",
-        "| share of scenes | error below so many tolerances |",
+        "| share of scenes | error below, in tolerances |",
         "|---|---|",
         *(f"| {100 * share:g} % | {ratio:.2g} |" for share, ratio in quantiles(outcomes).items()),
         "",
@@ -142,19 +149,19 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "",
         _LEDGER,
         "",
-        "| share of finished scenes | imbalance below so many tolerances |",
+        "| share of finished scenes | imbalance below, in tolerances |",
         "|---|---|",
         *(f"| {100 * share:g} % | {ratio:.2g} |" for share, ratio in ledger_quantiles(outcomes).items()),
         "",
-        "## The worst",
+        "## Largest ratios",
         "",
         _REASON,
         "",
-        "| scene | ending | tolerance | error | imbalance | complaint |",
+        "| scene | ending | tolerance | error | imbalance | message |",
         "|---|---|---|---|---|---|",
         *map(_row, worst(outcomes)),
         "",
-        f"`gearidae_bench.random_scenes.random_scene({seed}, scene)` makes any of them again.",
+        f"`gearidae_bench.random_scenes.random_scene({seed}, scene)` generates any of these scenes again.",
         "",
         _FURTHER,
         "",

@@ -1,4 +1,4 @@
-"""The result in words and numbers: run times at equal error, as rows for a terminal, Markdown or CSV."""
+"""Tables of the result: run times at equal error, as rows for a terminal, Markdown or CSV."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from gearidae_bench.measure import Point
 __all__ = ["ERRORS", "beyond_rows", "equal_error_rows", "markdown", "ratio_range", "write_points"]
 
 ERRORS: Final = tuple(10.0**-k for k in range(3, 9))
-"""Errors of scale at which contenders are compared."""
+"""Relative errors at which contenders are compared."""
 BASE: Final = "native"
 RIVALS: Final = {
     "the same loop in C": ("c_loop",),
@@ -81,7 +81,7 @@ def ratio_range(result: Result, scene: str, rivals: Sequence[str]) -> tuple[floa
 
 
 def beyond_rows(result: Result) -> Iterator[tuple[str, str]]:
-    """What was measured beside time against error."""
+    """Measurements other than run time against error."""
     if result.growth:
         first = result.growth[0]
         for g in result.growth:
@@ -120,14 +120,14 @@ def markdown(result: Result) -> str:
     lines = [
         f"Measured {result.date[:10]} on {result.machine};",
         ", ".join(f"{name} {number}" for name, number in result.versions.items()) + ".",
-        f"Medians of up to {result.settings['rounds']:g} interleaved rounds, of fewer where a run takes long;",
-        f"one that takes longer than {result.settings['longest']:g} s ends its contender's row.",
+        f"Medians of up to {result.settings['rounds']:g} interleaved rounds, fewer for long runs;",
+        f"a run longer than {result.settings['longest']:g} s ends the row of its contender.",
     ]
     lines += [""] if result.skipped else []
     lines += [f"- {result.labels[key]}: not measured ({reason})" for key, reason in result.skipped.items()]
     lines += [
         "",
-        "Run time over that of the native driver at equal error, least to greatest:",
+        "Run time relative to the native driver at equal error, smallest to largest:",
         "",
     ]
     lines += [f"| | {' | '.join(RIVALS)} |", "|---|" + "---:|" * len(RIVALS)]
@@ -141,10 +141,10 @@ def markdown(result: Result) -> str:
             "",
             f"### {title[0].upper()}{title[1:]}",
             "",
-            "Run time in ms at the error that heads the column, and in brackets over that of the native driver.",
-            f"The reference's own error is {reference.own_error:.0e}.",
+            "Run time in ms at the error in the column heading; in brackets: relative to the native driver.",
+            f"Error of the reference: {reference.own_error:.0e}.",
             "",
-            f"| error of scale | {heading} |",
+            f"| relative error | {heading} |",
             "|---|" + "---:|" * len(ERRORS),
         ]
         for label, times, ratios in equal_error_rows(result, scene):

@@ -53,4 +53,4 @@ def test_the_page_has_a_row_for_each_part(parts):
     assert all(len(row) == len(heading) for row in rows)
     page = long_page(parts)
     assert page.count("\n| ") == len(parts) + 2
-    assert "Pairs out of turn: 0." in page
+    assert "Pairs out of sequence: 0." in page

@@ -29,14 +29,14 @@ def test_check_says_that_the_input_is_valid_and_how_far_the_model_holds(capfd):
         "within a factor of about three",
     ):
         assert expected in out
-    assert "Doubtful" not in out
+    assert "Warning:" not in out
 
 
 def test_check_doubts_a_roughness_of_ten_micrometres(capfd):
     assert main(["check", CASE, "--set", "surface.roughness=10 um"]) == 0
     out = words(capfd)
-    assert "Doubtful: surface.roughness = 10 um is larger than mesh.backlash = 200 nm" in out
-    assert "Doubtful: this run is expected to take" in out
+    assert "Warning: surface.roughness = 10 um is larger than mesh.backlash = 200 nm" in out
+    assert "Warning: this run is expected to take" in out
     assert "days" in out
 
 

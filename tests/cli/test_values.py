@@ -39,9 +39,9 @@ def test_pairs_that_are_none(pair):
 
 
 def test_no_key_twice():
-    with pytest.raises(SceneError, match="stands twice"):
+    with pytest.raises(SceneError, match="is given twice"):
         assignments(["a=1", "a=2"])
-    with pytest.raises(SceneError, match="stands twice"):
+    with pytest.raises(SceneError, match="is given twice"):
         sweep_values(["a=1,2", "a=3"])
 
 

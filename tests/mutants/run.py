@@ -19,9 +19,11 @@ from mutants.catalogue import MUTANTS, Mutant
 
 ROOT = Path(__file__).parents[2]
 _INTRODUCTION = """\
-Each row is one small fault put into a copy of the package: a wrong constant, a lost update of the history, a sign. The
-tests that the catalogue (`tests/mutants/catalogue.py`) names are run against it, and the first that fails is shown. A
-fault that none of them noticed would be listed as not caught. Three of them are tried in every run of the tests."""
+After this page you know which small faults in the code the tests detect, and which test detects each of them.
+Each row is one fault put into a copy of the package, such as a wrong constant, a missing update of the history or a
+wrong sign. The tests named in the catalogue (`tests/mutants/catalogue.py`) are run on this copy, and the table gives
+the first test that fails. A fault that no test detects would be listed as not caught. Three of the faults are tried in
+every run of the test suite."""
 TESTS_FAILED = 1  # pytest's exit code; others mean that the tests could not be run
 
 

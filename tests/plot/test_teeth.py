@@ -293,9 +293,9 @@ def test_command(archive, tmp_path, monkeypatch, capfd):
         ([*worn[:-1], "sam_fraction=0.7"], "must be one of 1, 0.5"),
         ([*worn[:-1], "torque=1"], "must be one of sam_fraction"),
         ([*worn, "--time", "soon"], "--time = soon: must be"),
-        ([*worn, "--time", "1 ms", "--to", "2 ms"], "takes --from and --to"),
-        ([*worn[:2], "--time", "1 ms"], "--time = 1 ms: goes with --picture teeth"),
-        ([*worn[:2], "-o", "x.gif"], "goes with --picture teeth"),
+        ([*worn, "--time", "1 ms", "--to", "2 ms"], "a moving picture needs --from and --to"),
+        ([*worn[:2], "--time", "1 ms"], "--time = 1 ms: needs --picture teeth"),
+        ([*worn[:2], "-o", "x.gif"], "needs --picture teeth"),
     ]
     capfd.readouterr()
     for command, words in refused:

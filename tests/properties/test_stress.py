@@ -108,7 +108,9 @@ def test_processes_share_the_scenes_and_one_that_does_not_come_back_is_a_defect(
 
 def test_an_unbalanced_ledger_is_a_complaint(monkeypatch):
     monkeypatch.setattr(stress, "LEDGER_TOLERANCES", 0.0)
-    assert "ledger" in run_one(gd.preset("roller_slow").replace({"contact.model": "asperity"})).complaint
+    assert (
+        "energy balance" in run_one(gd.preset("roller_slow").replace({"contact.model": "asperity"})).complaint
+    )
 
 
 def test_a_defect_is_listed_and_does_not_end_the_run(monkeypatch):
@@ -134,7 +136,7 @@ def test_the_page_counts_and_lists():
     assert ledger_quantiles(outcomes)[1.0] == pytest.approx(3.0)
     assert [o.number for o in worst(outcomes)] == [2, 1, 0]
     text = page(outcomes, 7, date(2026, 1, 2))
-    assert "Unsound: 1" in text
+    assert "Failed checks: 1" in text
     assert "2026-01-02" in text
     assert "force is off" in text
     assert "| refused | 1: 3 |" in text

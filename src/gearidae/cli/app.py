@@ -1,4 +1,4 @@
-"""The commands and their options; what they do is in the modules beside."""
+"""The commands and their options; each command is implemented in a module of this package."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ __all__ = ["app"]
 
 app = App(
     name="gearidae",
-    help="Dynamics of rough, adhesive, monolayer-protected MEMS gears: start, run, brake or stick.",
+    help="Simulate the dynamics of rough, adhesive MEMS gears with a protective monolayer.",
     version=f"gearidae {gearidae.__version__}",
     default_parameter=Parameter(negative=()),
-    suppress_keyboard_interrupt=False,  # `main` says what is kept
+    suppress_keyboard_interrupt=False,  # `main` reports what is kept
 )
 app.meta.suppress_keyboard_interrupt = False
 
 Case = Annotated[Path, Parameter(help="Case file (TOML), or the name of a preset.")]
 Output = Annotated[
-    Path | None, Parameter(name=["--output", "-o"], help="File to write; by default named after the input.")
+    Path | None, Parameter(name=["--output", "-o"], help="File to write. Default: named after the input.")
 ]
 Overwrite = Annotated[bool, Parameter(help="Replace the output if it exists.")]
 Settings = Annotated[
     list[str] | None,
     Parameter(
         name="--set",
-        help="Change keys of the scene: key=value, repeatable or several.",
+        help="Change keys of the scene: one or more key=value; repeatable.",
         consume_multiple=False,
     ),
 ]
@@ -44,11 +44,9 @@ def run(
     settings: Settings = None,
     rtol: Rtol = None,
     overwrite: Overwrite = False,
-    resume: Annotated[
-        bool, Parameter(help="Go on with the run that the output holds, if it is not at its end.")
-    ] = False,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished run in the output file.")] = False,
 ) -> int:
-    """Run one scene and keep it as a netCDF archive, which can be opened while the run goes on."""
+    """Run one scene and write a netCDF archive, which can be opened during the run."""
     from gearidae.cli.simulation import run_case
 
     return run_case(str(case), output, settings or [], rtol, overwrite=overwrite, resume=resume)
@@ -69,20 +67,23 @@ def sweep(
     settings: Settings = None,
     rtol: Rtol = None,
     zipped: Annotated[
-        bool, Parameter(help="Walk the values of all keys together instead of in all combinations.")
+        bool,
+        Parameter(
+            help="Combine the first values of all keys, then the second, and so on, instead of all combinations."
+        ),
     ] = False,
-    jobs: Annotated[int | None, Parameter(help="Runs at a time; by default one per core.")] = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
     dask: Annotated[
-        str | None, Parameter(help="Address of a Dask scheduler whose cluster computes the runs.")
+        str | None, Parameter(help="Address of a Dask scheduler; its cluster computes the runs.")
     ] = None,
     resume: Annotated[
-        bool, Parameter(help="Go on with a sweep that was cut off: its finished runs are taken as they are.")
+        bool, Parameter(help="Resume an interrupted sweep; its finished runs are reused.")
     ] = False,
     overwrite: Overwrite = False,
 ) -> int:
     """Run a scene for several values of one or more keys, into one archive.
 
-    Until the archive is written, finished runs are kept beside it, in OUT.nc.runs.
+    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
     """
     from gearidae.cli.simulation import sweep_case
 
@@ -106,29 +107,30 @@ def plot(
     *,
     picture: Annotated[
         str | None,
-        Parameter(help="One picture, such as power_spectrum or teeth; by default an overview."),
+        Parameter(help="Name of a picture, such as power_spectrum or teeth. Default: an overview."),
     ] = None,
     select: Annotated[
         list[str] | None,
-        Parameter(
-            help="One run of a sweep: sam_fraction=0.5; repeatable or several.", consume_multiple=False
-        ),
+        Parameter(help="Select one run of a sweep: sam_fraction=0.5; repeatable.", consume_multiple=False),
     ] = None,
     time: Annotated[
-        str | None, Parameter(help="When to draw the teeth (12.5 ms); by default at the last sample.")
+        str | None,
+        Parameter(help="Time at which to draw the teeth, such as 12.5 ms. Default: the last sample."),
     ] = None,
     start: Annotated[
-        str | None, Parameter(name="--from", help="Draw the teeth as a moving picture from this time on.")
+        str | None, Parameter(name="--from", help="Draw a moving picture of the teeth, from this time.")
     ] = None,
-    stop: Annotated[str | None, Parameter(name="--to", help="Up to this time.")] = None,
-    frames: Annotated[int | None, Parameter(help="Pictures of a moving one; by default 100.")] = None,
+    stop: Annotated[str | None, Parameter(name="--to", help="End time of the moving picture.")] = None,
+    frames: Annotated[
+        int | None, Parameter(help="Number of frames of the moving picture. Default: 100.")
+    ] = None,
     output: Output = None,
     overwrite: Overwrite = False,
 ) -> int:
     """Draw an archive: speed and contact torque of gears, force and gap of a roller, or any other picture.
 
-    The picture teeth shows the teeth in mesh at one time or, into a file that ends in .gif, .webp or .mp4, as they
-    move.
+    The picture teeth shows the teeth in mesh at one time. If the output ends in .gif, .webp or .mp4, it is a moving
+    picture.
     """
     from gearidae.cli.pictures import draw
 
@@ -164,13 +166,13 @@ def coating_map(
     over: Annotated[
         list[str] | None,
         Parameter(
-            help="Fractions, coating.sam_fraction=1:0.5:-0.01, and further keys for several lines; repeatable.",
+            help="SAM fractions, coating.sam_fraction=1:0.5:-0.01, and other keys for several lines; repeatable.",
             consume_multiple=False,
         ),
     ] = None,
     output: Output = None,
     settings: Settings = None,
-    jobs: Annotated[int | None, Parameter(help="Runs at a time; by default one per core.")] = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
     overwrite: Overwrite = False,
 ) -> int:
     """Map the frequency of the impact response against the SAM fraction."""
@@ -187,10 +189,11 @@ def assess(
     *,
     map: Annotated[Path, Parameter(help="Coating map of the same gears at the same torque.")],  # noqa: A002
     history: Annotated[
-        str, Parameter(help="Whether the record begins with the map's start: auto, start or unknown.")
+        str,
+        Parameter(help="Whether the signal begins at the start of the map's runs: auto, start or unknown."),
     ] = "auto",
 ) -> int:
-    """Tell from a speed signal how much of the coating is left."""
+    """Estimate from a speed signal how much of the coating is left."""
     from gearidae.cli.coating import assess_signal
 
     return assess_signal(signal, map, history)
@@ -198,7 +201,7 @@ def assess(
 
 @app.command
 def check(case: Case, *, settings: Settings = None) -> int:
-    """Check a case file and print what follows from it, without running it."""
+    """Check a case file; print estimates and limits of the model without running it."""
     from gearidae.cli.checking import check_case
 
     return check_case(str(case), settings or [])
@@ -218,7 +221,7 @@ def init(
 
 @app.command
 def info(archive: Annotated[Path, Parameter(help="Archive to describe.")]) -> int:
-    """Print what is in an archive, where it comes from and how its runs ended."""
+    """Print the content, origin and outcome of an archive."""
     from gearidae.cli.files import describe
 
     return describe(archive)

@@ -1,4 +1,4 @@
-"""``gearidae check``: what follows from a scene before anything is run."""
+"""``gearidae check``: estimates and limits of the model for a scene, without a run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Rows = Iterator[tuple[str, str, str]]
 
 
 def check_case(case: str, settings: Sequence[str]) -> int:
-    """Check a case and print geometry, contact, estimates, how far the model holds, and doubts.
+    """Check a case and print geometry, contact, estimates, limits of the model, and warnings.
 
     Parameters
     ----------
@@ -47,14 +47,14 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     show_rows(_rows(scene))
     show_validity(validity_rows(scene), about=_subject(scene))
     for doubt in doubts(scene):
-        say(f"Doubtful: {doubt}")
+        say(f"Warning: {doubt}")
     return DONE
 
 
 def _subject(scene: Scene) -> str:
-    """What contact the numbers of validity are about."""
+    """Contact that the limits of the model are computed for."""
     if scene.roller is not None:
-        return "of the roller at its closest approach, with bodies that do not give way"
+        return "of the roller at its closest approach, with rigid bodies"
     return "of one pair at the pitch point, at rest under the mean torque"
 
 
@@ -85,12 +85,12 @@ def _estimates(scene: Scene) -> Rows:
     from gearidae.studies.equilibrium import natural_frequency
 
     assert scene.gears is not None
-    yield "Estimates", "", "from the constant torques, if nothing sticks"
+    yield "Estimates", "", "from the constant torques, without sticking"
     speed = steady_speed(scene)
     if speed == 0.0:
         yield "gear speed", "0 rad/s", "the drive torque does not overcome the dry resistance"
     elif math.isinf(speed):
-        yield "gear speed", "unbounded", "nothing limits it: load.drag is 0"
+        yield "gear speed", "unbounded", "no limit: load.drag is 0"
     else:
         yield "gear speed", f"{speed:.5g} rad/s", f"{speed * 30 / math.pi:.4g} rpm"
         yield "mesh frequency", f"{speed * scene.gears.gear_teeth / (2 * math.pi):.5g} Hz", "teeth per second"
@@ -99,8 +99,16 @@ def _estimates(scene: Scene) -> Rows:
     gap = resting_gap(scene)
     if not math.isnan(gap):
         relative = gap / scene.surface.roughness
-        yield "resting gap", f"{gap * 1e9:.4g} nm", f"{relative:.3g} roughnesses, one pair at the pitch point"
-        yield "natural frequency", f"{natural_frequency(scene):.4g} Hz", "of small oscillations about it"
+        yield (
+            "equilibrium gap",
+            f"{gap * 1e9:.4g} nm",
+            f"{relative:.3g} roughnesses, one pair at the pitch point",
+        )
+        yield (
+            "natural frequency",
+            f"{natural_frequency(scene):.4g} Hz",
+            "of small oscillations about the equilibrium gap",
+        )
 
 
 def _roller(scene: Scene) -> Rows:

@@ -8,6 +8,6 @@ DONE = 0
 BAD_INPUT = 2
 """The command line, a case file or an archive is wrong; nothing was written."""
 UNFINISHED = 3
-"""The solver could not go on; what it reached is kept."""
+"""The solver failed; the results up to then are kept."""
 INTERRUPTED = 130
-"""Ctrl-C; what was reached is kept."""
+"""Ctrl-C; the results up to then are kept."""

@@ -48,7 +48,7 @@ def write_case(name: str, preset: str) -> int:
         with path.open("x", encoding="utf-8") as file:
             file.write(f"# {path.name}: run it with: gearidae run {path.name}\n")
             file.write(
-                "# Quantities are SI numbers or texts with a unit; keys that are left out take a default.\n\n"
+                "# Quantities are SI numbers or texts with a unit; a missing key takes its default.\n\n"
             )
             file.write(text)
     except FileExistsError:
@@ -60,7 +60,7 @@ def write_case(name: str, preset: str) -> int:
 
 
 def describe(archive: Path) -> int:
-    """Print what an archive holds.
+    """Print the content of an archive.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
         yield f"swept: {dim}", _values(ds[dim]), str(ds[dim].attrs["units"])
     samples = ds.sizes["time"]
     span = f"{samples} samples, 0 to {float(ds['time'][-1]):g} s" if samples else "no samples"
-    yield "time", span, f"asked for {attributes['t_end']:g} s at rtol {attributes['rtol']:g}"
+    yield "time", span, f"requested {attributes['t_end']:g} s at rtol {attributes['rtol']:g}"
     yield "events", str(ds.sizes["event"]), ""
     for name in ("steps", "residual_evaluations", "jacobian_evaluations", "restarts"):
         yield name.replace("_", " "), str(attributes[name]), ""
@@ -108,7 +108,7 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
     yield "variables", "", ""
     for quantity, variable in ds.data_vars.items():
         if "time" not in variable.dims and "event" not in variable.dims:
-            continue  # the runs' statistics: their totals stand above
+            continue  # solver statistics of the runs; their totals are printed above
         yield str(quantity), f"({', '.join(map(str, variable.dims))})", str(variable.attrs.get("units", ""))
     yield "scene", "", ""
     for table, content in scene_of(ds).items():

@@ -1,4 +1,4 @@
-"""Entry point: runs a command and turns what can go wrong into one line and an exit code."""
+"""Entry point: runs a command and turns each error into one line and an exit code."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        What follows the program's name; by default the process's own.
+        Arguments after the program's name; by default those of the process.
 
     Returns
     -------
     int
-        0 done, 2 bad input, 3 the solver could not go on, 130 interrupted.
+        0 done, 2 bad input, 3 solver failure, 130 interrupted.
     """
     tokens = spread(sys.argv[1:] if arguments is None else arguments)
     try:
@@ -41,8 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt as interrupt:
         return _complain(f"interrupted{''.join(f'; {note}' for note in interrupt.args)}", INTERRUPTED)
     except BrokenPipeError:
-        # Whoever read the output has gone (a pager, head); without this, Python complains once more on
-        # leaving.
+        # The reader of the output has closed (a pager, head); without this, Python prints an error at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     return code if isinstance(code, int) else DONE

@@ -1,4 +1,4 @@
-"""Where the program's words go: results to standard output, complaints to standard error."""
+"""Output of the program: results to standard output, errors to standard error."""
 
 from __future__ import annotations
 

@@ -77,13 +77,15 @@ def draw(
     asked["--output"] = output if output is not None and _is_moving(output) else None
     given = {option: str(value) for option, value in asked.items() if value is not None}
     if given and picture != "teeth":
-        raise SceneError(*next(iter(given.items())), "goes with --picture teeth")
+        raise SceneError(*next(iter(given.items())), "needs --picture teeth")
     moves = bool(given.keys() - {"--time"})
     ds, usual = _open(archive)
     ds = _selected(ds, select)
     if moves:
         if time is not None:
-            raise SceneError("--time", time, "is for one picture; a moving one takes --from and --to")
+            raise SceneError(
+                "--time", time, "is for a single picture; a moving picture needs --from and --to"
+            )
         start, stop = span
         target = gd.plot.animate_teeth(
             ds,
@@ -109,7 +111,7 @@ def _is_moving(path: Path) -> bool:
 
 
 def _open(archive: Path) -> tuple[xr.Dataset, str]:
-    """Dataset of a file, and the picture that says most about it."""
+    """Dataset of a file, and its default picture."""
     try:
         return gd.open_archive(archive), "overview"
     except SceneError:

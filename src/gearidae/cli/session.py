@@ -1,4 +1,4 @@
-"""What holds for every command: how much is said, and the log file."""
+"""Options of every command: verbosity and log file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from gearidae.errors import GearidaeError, SceneError
 __all__ = ["app", "session"]
 
 _WRITERS = ("coating-map", "init", "plot", "report", "run", "sweep")
-"""Commands that write a file; what the others print is what they are asked for, and stays."""
+"""Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
 log = logging.getLogger("gearidae")
 
@@ -35,13 +35,13 @@ for _name, _lines in EXAMPLES.items():
 def session(
     *tokens: Annotated[str, Parameter(show=False, allow_leading_hyphen=True)],
     quiet: Annotated[
-        bool, Parameter(name=["--quiet", "-q"], help="Print no summary and no progress, only complaints.")
+        bool, Parameter(name=["--quiet", "-q"], help="Print errors only, no summary and no progress.")
     ] = False,
     verbose: Annotated[
-        bool, Parameter(name=["--verbose", "-v"], help="Tell on standard error what is being done.")
+        bool, Parameter(name=["--verbose", "-v"], help="Log each step to standard error.")
     ] = False,
     log_file: Annotated[
-        Path | None, Parameter(name="--log", help="Also append everything, with times, to this file.")
+        Path | None, Parameter(name="--log", help="Append the full log, with times, to this file.")
     ] = None,
 ) -> object:
     """Run one command under these options.
@@ -51,7 +51,7 @@ def session(
     *tokens : str
         The command and its own arguments.
     quiet, verbose : bool
-        How much to say.
+        Verbosity.
     log_file : Path, optional
         File to append the log to.
 
@@ -66,7 +66,7 @@ def session(
         If both `quiet` and `verbose` are asked for, or the log cannot be written.
     """
     if quiet and verbose:
-        raise SceneError("--quiet", "--verbose", "say one of the two")
+        raise SceneError("--quiet", "--verbose", "choose one of the two")
     level = logging.ERROR if quiet else logging.INFO if verbose else logging.WARNING
     with _logging(level, log_file), hushed(quiet and bool(tokens) and tokens[0] in _WRITERS):
         return _run(tokens)

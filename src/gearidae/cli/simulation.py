@@ -29,7 +29,7 @@ def run_case(
     overwrite: bool,
     resume: bool,
 ) -> int:
-    """Run one scene, keep its archive, say what it did.
+    """Run one scene, write its archive, print its outcome.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def run_case(
     overwrite : bool
         Whether the archive may replace a file.
     resume : bool
-        Whether to go on with the run in the archive.
+        Whether to resume the run in the archive.
 
     Returns
     -------
@@ -63,13 +63,13 @@ def run_case(
         if error.dataset is not None:
             show_outcomes(error.dataset)
             show_account(error.dataset)
-            say(f"Archive of the run up to there: {target}")
+            say(f"Archive of the run up to the failure: {target}")
         complain(str(error))
         return UNFINISHED
     show_outcomes(ds)
     show_account(ds)
     if was_finished:
-        say("The run in this archive had been finished before: nothing was left to do.")
+        say("The run in this archive was already finished; nothing was computed.")
     say(f"Archive: {target}")
     return DONE
 
@@ -87,7 +87,7 @@ def sweep_case(
     resume: bool,
     overwrite: bool,
 ) -> int:
-    """Run a sweep, keep its archive, say what each run did.
+    """Run a sweep, write its archive, print the outcome of each run.
 
     Parameters
     ----------
@@ -96,13 +96,13 @@ def sweep_case(
     over : sequence of str
         ``key=values`` pairs.
     jobs : int or None
-        Runs at a time; None for one per core.
+        Number of simultaneous runs; None for one per core.
     dask : str or None
         Address of the scheduler of a Dask cluster that computes the runs; None for this machine.
     zipped : bool
-        Whether the values of all keys are walked together.
+        Whether the values of all keys are combined in pairs instead of in all combinations.
     resume : bool
-        Whether to go on with a sweep that was cut off.
+        Whether to resume an interrupted sweep.
 
     Returns
     -------
@@ -114,12 +114,14 @@ def sweep_case(
     _check_resume(resume=resume, overwrite=overwrite)
     if dask is not None and jobs is not None:
         raise SceneError(
-            "--jobs", jobs, "does not go with --dask: the cluster decides how many runs at a time"
+            "--jobs",
+            jobs,
+            "cannot be combined with --dask: the cluster decides the number of simultaneous runs",
         )
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
     with ExitStack() as stack:
-        # what a sweep warns of, such as a damaged run, is for the user to read and not to look up in the code
+        # a warning of a sweep, such as a damaged run, is a message to the user: print it without a line of code
         stack.enter_context(warnings.catch_warnings(action="always", category=UserWarning))
         warnings.showwarning = lambda message, *_: complain(str(message))
         ds = gd.sweep(
@@ -144,4 +146,6 @@ def sweep_case(
 
 def _check_resume(*, resume: bool, overwrite: bool) -> None:
     if overwrite and resume:
-        raise SceneError("--resume", "(given)", "keeps what there is, and --overwrite does not: choose one")
+        raise SceneError(
+            "--resume", "(given)", "keeps the present file and --overwrite replaces it: choose one"
+        )

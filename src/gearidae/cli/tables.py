@@ -1,4 +1,4 @@
-"""Tables that the commands print."""
+"""Tables printed by the commands."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ _ROLLER_HEADINGS = ("what it did", "peak uN", "pull-off uN", "restitution", "imp
 
 
 _LEDGER_ROWS = (
-    ("drive_work", "comes in"),
-    ("radius_work", "comes in as the radii of curvature change along the path of contact"),
-    ("model_change", "came in as the elastic contact model took over"),
-    ("drag_loss", "is lost"),
-    ("dry_loss", "is lost"),
-    ("damping_loss", "is lost"),
-    ("adhesion_loss", "is lost"),
-    ("stored_change", "is stored in contacts"),
-    ("kinetic_change", "is stored in motion"),
+    ("drive_work", "input"),
+    ("radius_work", "input, from the change of the radii of curvature along the path of contact"),
+    ("model_change", "input, from the change to the elastic contact model"),
+    ("drag_loss", "lost"),
+    ("dry_loss", "lost"),
+    ("damping_loss", "lost"),
+    ("adhesion_loss", "lost"),
+    ("stored_change", "stored in contacts"),
+    ("kinetic_change", "stored in motion"),
 )
 
 
 def show_outcomes(ds: xr.Dataset) -> None:
-    """Print what each run of a dataset did.
+    """Print the outcome of each run of a dataset.
 
     Parameters
     ----------
@@ -56,12 +56,12 @@ def show_outcomes(ds: xr.Dataset) -> None:
 
 
 def show_account(ds: xr.Dataset) -> None:
-    """Print the account that a dataset carries: times, forces, and where the energy went.
+    """Print the run summary and the energy balance of a dataset.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run; of a roller, only where the energy went. Nothing is printed of a sweep.
+        A single run; of a roller, only the energy balance is printed. Nothing is printed for a sweep.
     """
     if "account" in ds.attrs:
         show_rows(_account_rows(json.loads(ds.attrs["account"])))
@@ -70,7 +70,7 @@ def show_account(ds: xr.Dataset) -> None:
 
 
 def _ledger_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
-    yield "Energy ledger", "", ""
+    yield "Energy balance", "", ""
     for name, remark in _LEDGER_ROWS:
         if kept[name] != 0.0:
             yield name.replace("_", " "), f"{kept[name]:.5g} J", remark
@@ -81,12 +81,16 @@ def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
     def number(name: str, scale: float = 1.0) -> str:
         return "-" if told[name] is None else f"{told[name] * scale:.4g}"
 
-    yield "Account of the run", "", ""
-    yield "up to speed", f"{number('time_to_speed', 1e3)} ms", f"95 % of {number('top_speed')} rad/s"
+    yield "Run summary", "", ""
+    yield "time to speed", f"{number('time_to_speed', 1e3)} ms", f"95 % of {number('top_speed')} rad/s"
     held = f"held by {told['held_by']} at the end" if told["held_by"] else ""
     times = "once" if told["sticks"] == 1 else f"{told['sticks']} times"
-    yield "held by dry resistance", f"{number('time_at_rest', 1e3)} ms", f"stuck {times}; {held}".rstrip("; ")
-    yield "held by adhesion", f"{number('time_adhering', 1e3)} ms", "turned back within half a pitch"
+    yield (
+        "time at rest",
+        f"{number('time_at_rest', 1e3)} ms",
+        f"held by dry resistance, stuck {times}; {held}".rstrip("; "),
+    )
+    yield "time trapped by adhesion", f"{number('time_adhering', 1e3)} ms", "rocking within half a pitch"
     if told["largest_force"] is not None:
         when = f"at {number('largest_force_time', 1e3)} ms"
         yield "largest force", f"{number('largest_force', 1e6)} uN", when

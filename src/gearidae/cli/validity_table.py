@@ -1,4 +1,4 @@
-"""The table that says how far the model holds for a scene."""
+"""Table of the limits of the model for a scene."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ __all__ = ["show_validity"]
 
 
 def show_validity(rows: Sequence[ValidityRow], *, about: str = "") -> None:
-    """Print rows of validity; those whose limit is not kept carry an exclamation mark.
+    """Print the limits of the model; an exclamation mark marks a limit that is exceeded.
 
     Parameters
     ----------
     rows : sequence of ValidityRow
     about : str, optional
-        Which contact they are about, for the heading.
+        Contact that they are computed for, for the caption.
     """
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for heading in ("How far the model holds", "value", "", "limit", "what follows"):
@@ -33,5 +33,5 @@ def show_validity(rows: Sequence[ValidityRow], *, about: str = "") -> None:
         mark = "" if row.holds else "!"
         table.add_row(*(Text(cell) for cell in (row.quantity, row.value, mark, row.limit, row.verdict)))
     if about:
-        table.caption, table.caption_justify = f"Contact {about}. ! marks a limit that is not kept.", "left"
+        table.caption, table.caption_justify = f"Contact {about}. ! marks a limit that is exceeded.", "left"
     show(table)

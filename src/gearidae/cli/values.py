@@ -68,7 +68,7 @@ def assignments(
     for pair in pairs:
         key, text = _split(pair, option, example)
         if key in values:
-            raise SceneError(option, key, "stands twice")
+            raise SceneError(option, key, "is given twice")
         values[key] = _literal(text)
     return values
 
@@ -96,7 +96,7 @@ def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
     for pair in pairs:
         key, text = _split(pair, "--over", "coating.sam_fraction=1:0.4:-0.05")
         if key in values:
-            raise SceneError("--over", key, "stands twice")
+            raise SceneError("--over", key, "is given twice")
         if ":" in text:
             values[key] = _range(key, text)
         elif text.startswith("["):

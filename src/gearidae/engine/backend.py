@@ -101,7 +101,7 @@ def run_blocks(
     tally: Tally,
     resume: NDArray[np.float64] | None = None,
 ) -> Iterator[Block]:
-    """Run a problem and hand out its output block by block; `tally` is filled in on the way.
+    """Run a problem and yield its output block by block; `tally` is filled in on the way.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def run_blocks(
         From `choose_backend`.
     tally : Tally
     resume : ndarray, optional
-        Checkpoint of an earlier run of the same problem with the same settings and backend, to go on from.
+        Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
     """
     driver = ready_driver(backend, problem)
     problem.prepare(rtol, samples)  # by which checkpoints are judged
@@ -136,7 +136,7 @@ def run_blocks(
     problem.skipped["elastic_deflection"] = 0
     if rigid and resume is not None:
         log.info(
-            "the bodies give way more than the asperity model allows for: going on with the elastic model"
+            "the deflection of the bodies exceeds the asperity model's limit: continuing with the elastic model"
         )
         resume = change_over(problem, bodies, resume)
     yield from _run_bodies(bodies, rtol, samples, driver, tally, resume)
@@ -204,7 +204,7 @@ class Ended:
     reached : float
         Simulated time reached [s].
     ledger : Ledger, optional
-        The newest energy ledger; None if the run did not begin.
+        The latest energy balance; None if the run did not begin.
     """
 
     statistics: Statistics
@@ -233,7 +233,7 @@ def follow(
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
     begin : Start, optional
-        Where to go on from, in place of the beginning.
+        Checkpoint to resume from; by default the run starts at time 0.
 
     Returns
     -------
@@ -375,7 +375,7 @@ def outlook(
 
 
 def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Ledger:
-    """Return the energy ledger at a checkpoint of a run.
+    """Return the energy balance at a checkpoint of a run.
 
     Parameters
     ----------

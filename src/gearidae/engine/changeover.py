@@ -17,7 +17,7 @@ _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is
 
 
 def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
-    """Checkpoint from which the elastic problem goes on where the asperity problem stopped.
+    """Checkpoint from which the elastic problem continues where the asperity problem stopped.
 
     The whole state is kept: motion, mesh, dry resistance, sums and what every pair remembers. The deflections are those
     that the pressures cause (some hundredths of the roughness, which is when this happens), and every node is stretched

@@ -1,4 +1,4 @@
-r"""What an elastic contact stores, and what its length has to do with it.
+r"""Stored energy of an elastic contact, and its derivative in the contact length.
 
 A contact of length l stores the energy of its asperities and that of its bodies,
 
@@ -77,7 +77,7 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
 
 @compiled(makes_arrays=True)
 def nodes_joining_loss(m: Model, k: int, y: Floats, gap: float) -> float:
-    """What the asperities that a closing contact has joined since its last turning point have lost, per length."""
+    """Adhesion loss per length of the asperities that came into contact since the last turning point."""
     finer, gaps = point_weights(m), np.empty(m.scene.points)
     point_gaps(m, k, y, gap, gaps)
     loss = 0.0

@@ -21,7 +21,7 @@ from gearidae.engine.model.state import MATERIALS, Floats, Model
 
 __all__ = ["book_points", "follow_nodes", "init_nodes", "join_nodes"]
 
-_MOVED = 1e-5  # roughnesses; over less than this the share of a node in the motion cannot be told
+_MOVED = 1e-5  # roughnesses; over less than this the share of a node in the motion is undefined
 _LARGEST_SHARE = 4.0
 
 

@@ -1,6 +1,6 @@
 """Which contact model a scene takes, and the nodes of an elastic one.
 
-Both decisions rest on the static contact: how far the bodies would give way under the asperities' own pressure, and
+Both decisions rest on the static contact: how far the bodies would deflect under the asperities' own pressure, and
 how deep an impact of a given energy can go.
 """
 
@@ -38,7 +38,7 @@ NODES = 12
 """Nodes on one side of a contact, the middle included.
 
 As shares of the largest force, on the rollers of Figs. 2 and 3 against 48 nodes: 12 hold the force to 4e-8 while teeth
-close and to 4e-6 while asperities let go, 16 to 2e-8 and 2e-6.
+close and to 4e-6 during detachment, 16 to 2e-8 and 2e-6.
 """
 NODES_BY_DEPTH = ((-4.0, 12), (-13.0, 16), (-math.inf, 24))
 """Nodes of a contact that is pressed to a gap, in roughnesses: the deeper, the sharper its edge."""
@@ -47,7 +47,7 @@ DEPTH_HIGH = -GAP_LOW - 1.0
 TAIL = 5.5
 """Roughnesses of gap at the outermost node, beyond the reach of stretched asperities, in a contact pressed to zero."""
 ORDERS = 6
-"""Powers of the footprint's length that stand for the influence coefficients."""
+"""Powers of the contact length in the fit of the influence coefficients."""
 RIGID_DEFLECTION = 0.02
 """Deflection in the middle, in roughnesses, below which the asperity model is taken to be enough: the asperities'
 force at the same gap is then at most about 5 % too large."""
@@ -244,7 +244,7 @@ def _loading(table: Floats, gaps: Floats) -> Floats:
 
 
 def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
-    """Gap down to which the bodies hardly give way, and whether that will do.
+    """Gap down to which the deflection of the bodies is negligible, and whether that suffices.
 
     Returns
     -------

@@ -11,7 +11,7 @@ that of the rigid profiles and the deflection of both bodies under all the press
 lengths in roughnesses, :math:`\ell` the contact length, which changes along the path of contact with the
 radius R. The deflections d are unknowns of the integration beside the motion.
 
-The pressure of a closing contact is smooth. What stretched asperities add to it has a kink where they let go, a place
+The pressure of a closing contact is smooth. The part of stretched asperities has a kink at their detachment, a place
 that travels across the nodes and between them. Deflections stay smooth, so this part is taken at finer points, between
 the nodes by interpolation of the deflections, :math:`h_m = g + s_m^2 + \sum_i A_{mi} d_i`, and carried to the nodes
 by the same matrix, :math:`w_i p_i = \sum_m A_{mi} w_m t_m`: work and force stay as they are, and there is no

@@ -1,4 +1,4 @@
-"""The energy that asperities lose by joining, booked at the turning point of a closing contact."""
+"""Adhesion loss of asperities at contact onset, added at the turning point of a closing contact."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["book_joining"]
 
 @compiled
 def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
-    """Book what a pair's asperities have lost by joining, before a closing contact's turning point is noted."""
+    """Add the adhesion loss of a pair's asperities, before the turning point of a closing contact is noted."""
     length = 1.0
     if m.scene.kind == GEARS:
         length = contact_length(m, pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[3])
@@ -29,7 +29,7 @@ def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float)
 
 @compiled
 def _book_before(m: Model, coast: int, pair: int, loss: float, length: float) -> None:
-    """Let the power of the changing radius go on without a step where a loss per length has been booked.
+    """Keep the power of the changing radius continuous where an adhesion loss per length has been added.
 
     From then on it lacks the loss times the rate of the length. It is taken out where the quadrature began, too, and
     what that leaves out until now is the loss times what the length has changed by.

@@ -1,10 +1,10 @@
 r"""The energy balance of a run, kept at every accepted step without evaluating a force.
 
-The works of drive, drag, dry resistance and mesh damping need torques and speeds only. A torque that is constant
-does exactly torque times angle, and the drag of a mean speed likewise; the rest is integrated with the powers and their
+The works of drive, drag, dry resistance and mesh damping need torques and speeds only. The work of a constant torque is
+exactly torque times angle, and so is that of the drag at a mean speed; the rest is integrated with the powers and their
 rates at both ends (corrected trapezoidal rule, an error of fifth order in the length). Drag and damping vary most and
-cost least to look at, so they are integrated step by step. The others are over several steps at once, and a pair that
-turns round in between is no corner to them.
+cost least to evaluate, so they are integrated over every step. The others are integrated over several steps at once; a
+turning point in between is no kink of their powers.
 
 What the contacts store is a function of the gaps and of the joined heights (`gearidae.contact.kernels.energy`). A
 pair on a
@@ -23,7 +23,7 @@ work of the changing radius, and integrated like the others. So
 
 but for the errors of integration, which is what the balance's residual measures.
 
-A contact that closes joins asperities all the way to its turning point. Their loss is booked there, in closed form,
+In a closing contact, asperities come into contact until its turning point. Their loss is added there, in closed form,
 :math:`\ell\,|E(0)|\,(\Psi(g) - \Psi(\zeta))` for each material; until then it counts as stored.
 """
 
@@ -61,7 +61,7 @@ __all__ = [
 
 @compiled
 def open_balance(m: Model, y: Floats) -> None:
-    """Note with what a run begins; speeds are held to tolerances of their own, however little they change."""
+    """Note the energies at the start; the kinetic energy counts as exchanged, as speeds have absolute tolerances."""
     e = m.state.energy
     e.start_stored = stored_energy(m, y)[0]
     e.start_kinetic = e.throughput = e.peak_kinetic = kinetic_energy(m, y)
@@ -69,7 +69,7 @@ def open_balance(m: Model, y: Floats) -> None:
 
 @compiled
 def carry_balance(old: Model, old_y: Floats, m: Model, y: Floats) -> None:
-    """Book what another model of the same scene, whose sums have been taken over, stores more than the old one."""
+    """Add the stored energy of another model of the same scene minus that of the old one to ``model_change``."""
     m.state.energy.model_change += stored_energy(m, y)[0] - stored_energy(old, old_y)[0]
 
 
@@ -93,7 +93,7 @@ def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
 
 @compiled(inline=True)
 def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
-    """Book what has been done up to an accepted time; histories and mesh marks must still be those before it.
+    """Add all works and losses up to an accepted time; histories and mesh marks must still be those before it.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> N
     y, yp : ndarray
         State there and its rate.
     now : bool
-        Whether it cannot wait until enough steps have gathered, see ``balance_steps``.
+        Whether to close the quadrature interval now, instead of after ``balance_steps`` steps.
     """
     q = m.work.quadrature
     if m.scene.kind == GEARS:
@@ -147,7 +147,7 @@ def _book_kinetic(m: Model, kinetic: float, exchanged: float) -> None:
 
 @compiled(inline=True)
 def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[float, float, float]:
-    """Book the work of the drive; the pinion's speed, the work's magnitude and how far it may be out."""
+    """Add the work of the drive; return the pinion's speed, the work's magnitude and its error estimate."""
     q = m.work.quadrature
     pinion, speed, acceleration = _pinion(m, y, yp)
     force, rate = _torque(m, DRIVE, t)
@@ -165,7 +165,7 @@ def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[fl
 
 @compiled(inline=True)
 def _book_dry(m: Model, h: float, t: float, travel: float, w: float, w_rate: float) -> tuple[float, float]:
-    """Book what dry resistance takes; its magnitude, and how far it may be out."""
+    """Add the loss by dry resistance; return its magnitude and its error estimate."""
     q = m.work.quadrature
     force, rate = _torque(m, LOAD, t)
     if min(force, q.load) < 0.0:  # a dry resistance never pushes: what is left of a straight line
@@ -196,7 +196,7 @@ def _closes_interval(m: Model, h: float) -> bool:
 
 @compiled(inline=True)
 def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Book what drag and damping have taken: they cost next to nothing to look at, so that no step need be gathered."""
+    """Add the losses by drag and mesh damping; both are cheap to evaluate and are integrated over every step."""
     r = m.work.resistance
     h = t - r.time
     if h == 0.0:

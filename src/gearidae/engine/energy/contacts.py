@@ -1,4 +1,4 @@
-"""What contacts store, and what their asperities lose by joining."""
+"""Stored energy of contacts, and adhesion loss of their asperities."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["joined_energy", "joining_loss", "stored_energy"]
 
 @compiled
 def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
-    """What joined asperities of a pair store beyond the loading branch per length, and its slope in the gap."""
+    """Energy of a pair's stretched asperities beyond the loading branch, per length, and its slope in the gap."""
     energy = slope = 0.0
     for material in range(MATERIALS):
         limit = m.scene.material[material].stretch_limit
@@ -48,7 +48,7 @@ def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
 
 @compiled
 def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
-    """What all contacts store, and the part of it that asperities joined since the last turning point have lost.
+    """Stored energy of all contacts, and the part lost by asperities in contact since the last turning point.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
 
 @compiled
 def joining_loss(m: Model, k: int, gap: float) -> float:
-    """What the asperities that a closing contact has joined since its last turning point have lost, per length."""
+    """Adhesion loss per length of the asperities that came into contact since the last turning point."""
     loss, h = 0.0, m.state.history[k]
     for material in range(MATERIALS):
         own = m.scene.material[material]

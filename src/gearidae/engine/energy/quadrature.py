@@ -76,7 +76,7 @@ def integral_of_cube(
     deviation from its mean.
     """
     mean = travel / h
-    if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # it has turned round
+    if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # the speed has changed sign
         q0, q1 = w0 * abs(w0), w1 * abs(w1)
         start, end = 3.0 * q0 * rate0, 3.0 * q1 * rate1
         return integral(h, q0 * w0, q1 * w1, start, end), error_estimate(h, q0 * w0, q1 * w1, start, end)

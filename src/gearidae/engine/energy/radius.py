@@ -22,7 +22,7 @@ __all__ = ["length_and_rates", "pairs_on_path", "radius_power", "sample_radius_p
 def sample_radius_power(m: Model, t: float, y: Floats) -> None:
     """Look again at the power of the changing radius, which jumps at a mesh mark.
 
-    Of an elastic contact it jumps where a joining loss is booked, too.
+    For an elastic contact it also jumps where an adhesion loss is added.
     """
     q = m.work.quadrature
     q.radius_power, q.radius_power_rate = radius_power(m, t, y, q.gear_acceleration)

@@ -23,7 +23,7 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
     """Slip speed, or what is left of the dry resistance of a gear held at rest."""
     if m.state.slip == 0.0:
         return _hold_guard(m, t, y)
-    # a slip too slow to be told from rest may turn back a little before it is called one
+    # a slip slower than `rest_speed` may reverse a little before it counts as one
     return y[W] * m.state.slip + (0.0 if m.state.slipping != 0 else 2.0 * m.scene.rest_speed)
 
 
@@ -42,14 +42,14 @@ def _push(m: Model, t: float, y: Floats) -> float:
 
 @compiled(inline=True)
 def note_slip(m: Model, y: Floats) -> None:
-    """Note at an accepted time that a slip has become faster than the speed told from rest."""
+    """Note at an accepted time that a slip has become faster than `rest_speed`."""
     if m.scene.dry != 0 and y[W] * m.state.slip > m.scene.rest_speed:
         m.state.slipping = 1
 
 
 @compiled
 def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> int:
-    """Set-valued dry resistance: it holds the gear as long as it can, and gives way as the load pushes."""
+    """Set-valued dry resistance: it holds the gear up to its limit, and slips in the direction of the load."""
     before = kinetic_energy(m, y)
     y[W] = 0.0
     m.state.slipping = 0

@@ -1,8 +1,8 @@
-"""The guard that the solver watches, and what is done when it falls.
+"""The guard function monitored by the solver, and the handling of its roots.
 
 `guard` is the root function; `handle` deals with what the root found there stands for: it records events, takes the
 joined heights at turning points and tells the driver whether the equations have jumped, which is the only reason to
-start the integration afresh. Between events `gearidae.engine.events.histories` follows the pairs.
+restart the integration. Between events `gearidae.engine.events.histories` follows the pairs.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _TINY: Final = 1e-300
 
 @compiled(inline=True)
 def guard(m: Model, t: float, y: Floats) -> float:
-    """Root function: falls through zero when the first of all that may happen next does.
+    """Root function: falls through zero at the first of all possible events.
 
     Every single guard (a pair's onset or separation, its turning point, full stretch of a material, a mark of the
     mesh, the dry resistance, a flank coming near) is positive while it waits, so that the least of them waits for
@@ -109,7 +109,7 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
 
 @compiled
 def _crowded(m: Model, t: float) -> bool:
-    """Count a root, and tell whether roots follow each other without the time going on."""
+    """Count a root, and return whether roots recur without progress in time."""
     s = m.state
     if t - s.last_root > m.scene.root_spacing * (1.0 + t):
         s.roots = 0
@@ -120,7 +120,7 @@ def _crowded(m: Model, t: float) -> bool:
 
 @compiled
 def balance_can_wait(m: Model, t: float, y: Floats) -> bool:
-    """Whether the energy balance has no need to look at a root, before `handle` is there.
+    """Whether the energy balance needs no sample at a root, before `handle` is called.
 
     That is so where gears' pairs touch, part or turn round and nothing else happens: up to their third derivative the
     powers know nothing of it.

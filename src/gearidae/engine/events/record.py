@@ -1,4 +1,4 @@
-"""The record of an event in the block that a driver hands out."""
+"""The record of an event in a driver's block of output."""
 
 from __future__ import annotations
 

@@ -18,8 +18,8 @@ has order k + 1. Solved for the new rates it reads :math:`y'_n = c_j\,(y_n - y^*
 and y* and y'* the integral and the value of the polynomial through the known rates, which also are where Newton's
 iteration begins. P also is the state between the steps: samples and roots are as accurate as the steps.
 
-Order and step length are for `gearidae.engine.integrate.step_control`. All state lives in one record, ``ADAMS`` of
-`gearidae.engine.model.state`; order k below means a formula with k former rates.
+Order and step length are chosen in `gearidae.engine.integrate.step_control`. All state lives in one record, ``ADAMS``
+of `gearidae.engine.model.state`; order k below means a formula with k former rates.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _W0, _W1, _W2, _W3, _W4 = (0.5 * float(w) for w in _weights)
 
 @compiled
 def begin(a: Record, t: float, y: Floats, yp: Floats) -> None:
-    """Begin at a time where only the rates there are known, and nothing of Newton's iteration."""
+    """Initialise the history at a time where only the rates there are known."""
     a.contraction_rate, a.omega_sq = 1.0, 0.0
     a.used, a.attempts, a.limited_steps = a.wanted, 0, 0
     a.next_order, a.n_history, a.order_used, a.amplitude_sq = 1, 1, 0, np.inf
@@ -79,7 +79,7 @@ def keep(a: Record, t: float, yp: Floats) -> None:
 
 @compiled(inline=True)
 def _last_row(a: Record) -> int:
-    """Return the order of the last difference that a step has a use for: its formula's, and one to compare it with."""
+    """Return the order of the highest difference that a step needs: one above the order of its formula, if known."""
     return min(a.n_history, a.order_used + 1, MOST_ORDERS)
 
 
@@ -115,7 +115,7 @@ def _sums(a: Record, factors: Floats, count: int) -> tuple[float, float, float, 
 
 @compiled(inline=True)
 def rates_at_end(n: int, a: Record, h: float, order: int, predicted: Floats, correction: Floats) -> float:
-    """Write the rates that the formula wants at IDA's prediction, and how far this is from its own.
+    """Write the formula's rates at IDA's prediction, and the difference between both predictions.
 
     Parameters
     ----------
@@ -129,12 +129,12 @@ def rates_at_end(n: int, a: Record, h: float, order: int, predicted: Floats, cor
         Former rates to use, if so many are known.
     predicted : ndarray, shape (n,)
     correction : ndarray, shape (n,)
-        Set to what leads from IDA's prediction to that by the known rates.
+        Set to the prediction from the known rates minus IDA's prediction.
 
     Returns
     -------
     float
-        What the rates change by, with the state.
+        Derivative of the rates in the state.
     """
     count = min(a.n_history, order)
     a.order_used = count

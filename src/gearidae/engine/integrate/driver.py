@@ -40,7 +40,7 @@ BLOCK_STEPS = 50_000
 BLOCK_SECONDS = 0.2
 """Wall time after which it should: progress is shown and Ctrl-C is heeded between blocks."""
 CHECKPOINT_STEPS = 200_000
-"""Steps between checkpoints. Every run starts IDA afresh there, so that a resumed run is the same run."""
+"""Steps between checkpoints. Every run restarts IDA there, so that a resumed run is equal to an uninterrupted one."""
 
 
 CONVERGENCE_FAILURES_HIGH = 40

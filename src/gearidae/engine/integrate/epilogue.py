@@ -1,4 +1,4 @@
-"""What both drivers do at an accepted time, and before they start afresh."""
+"""Common work of both drivers at an accepted time and before a restart."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def finish_step(
     Returns
     -------
     bool
-        Whether the integration has to start afresh from here.
+        Whether the integration must restart from here.
     """
     driver, t = m.work.driver, m.work.driver.time
     accept(m, t, y)
@@ -79,10 +79,10 @@ def finish_step(
 
 @compiled(inline=True)
 def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int) -> None:
-    """Keep the energy balance up to an accepted time, and what its flag says of it, before that is handled.
+    """Update the energy balance up to an accepted time, before the event there is handled.
 
-    Where a pair turns round nothing has to be kept. In flight, where torques and drag are all that is left to
-    integrate, formulas of high order take steps that are too long for the quadrature: these are divided.
+    A turning point needs no sample. In free flight, where only torques and drag are integrated, formulas of high
+    order take steps that are too long for the quadrature; these steps are divided.
     """
     if flag == ROOT and balance_can_wait(m, t, y):
         return

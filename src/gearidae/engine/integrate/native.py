@@ -202,7 +202,7 @@ def run(
     Parameters
     ----------
     problem : Problem
-        Its model changes as the run goes on.
+        Its model changes during the run.
     rtol : float
         Relative tolerance.
     total : int
@@ -210,7 +210,7 @@ def run(
     tally : Tally
         Filled in; complete once the last block is out.
     resume : ndarray, optional
-        Checkpoint of an earlier run of the same problem, tolerance and sampling, to go on from.
+        Checkpoint of an earlier run of the same problem, tolerance and sampling, to resume from.
     as_ida : bool
         Whether formulas, iteration and the state at a step's end are IDA's own: slower, less accurate, and equal to the
         portable driver to the last bit.
@@ -253,7 +253,7 @@ def _blocks(problem: Problem, s: Arrays, out: Output, tally: Tally) -> Iterator[
         tally.ending = ending_of_flag(int(driver.error), elastic)
         if driver.error < 0 and elastic:
             tally.note_fold(fold_gap(m, m.state.time) * m.scene.length_unit)
-        if driver.error == BOUND_EXCEEDED:  # whoever goes on from here starts afresh
+        if driver.error == BOUND_EXCEEDED:  # the run that continues from here restarts
             driver.error, driver.pending = 0, -1
             m.state.progress.restarts += 1
             beyond = True

@@ -3,12 +3,13 @@
 SUNDIALS iterates with an old Jacobian, through a dozen vector operations a correction. A motion's forces come with
 their slopes at no great cost, and its equations are solved in a few operations
 (`gearidae.engine.integrate.correction`), so that
-every correction here is made with the Jacobian of where it is: what it leaves is of second order, and one is mostly
-enough.
+every correction here uses the Jacobian at the current iterate: the remaining error is of second order, and one
+correction is mostly enough.
 
-How much is left is known from the last time that a second correction was made. The estimate grows with every step
-until it says that another one is needed, and so is renewed. The iteration is carried further than IDA's own third of a
-tolerance: what it leaves is no smooth function of time, and steps and orders are chosen by differences that show it.
+The remaining error is estimated from the last second correction. The estimate grows with every step until another
+second correction is needed, which renews it. The iteration stops at a smaller error than IDA's own third of a
+tolerance: the remaining error is no smooth function of time, and it disturbs the differences that choose step and
+order.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class Attempt(NamedTuple):
     delta : ndarray, shape (n,)
         Work space.
     weights : ndarray, shape (n,)
-        Of the norm; set to those by which IDA is to judge the step, see `gearidae.engine.integrate.step_control`.
+        Of the norm; replaced by those with which IDA tests the step, see `gearidae.engine.integrate.step_control`.
     """
 
     t: float
@@ -81,7 +82,7 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
     Returns
     -------
     int
-        0, or what SUNDIALS has to be told.
+        0, or a return code for SUNDIALS.
     """
     a, cj, correction, predicted = m.work.adams, attempt.cj, attempt.correction, attempt.predicted
     by_adams = a.used != 0

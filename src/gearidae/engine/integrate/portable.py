@@ -51,7 +51,7 @@ __all__ = ["run"]
 
 STATES_HIGH = 600
 """States at most: the Jacobian is a full matrix here."""
-_POINTS = 6  # returns that an interpolation looks back over
+_POINTS = 6  # number of former returns used by an interpolation
 _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third point
 
 

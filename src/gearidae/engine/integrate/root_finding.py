@@ -1,13 +1,13 @@
 """From one accepted time to the next: a step of IDA, and the first root of the guard in it.
 
-IDA finds roots by itself, and asks for the state twice and for the guard at both ends of each step to do so. Here the
-guard is looked at once, at the state that the step has left; only where it has fallen is the root searched, between
-the ends of the step. The state between the ends is that of the formula that the step was made with.
+IDA's own root finding evaluates the state twice and the guard at both ends of each step. Here the guard is evaluated
+once, at the state at the end of the step; only if it has fallen below zero is the root searched, between the ends of
+the step. The state between the ends is that of the formula used in the step.
 
-A root is found by inverse interpolation, and no more sharply than the states are known: `SHARPNESS` times the
-relative tolerance of a step. Most take two looks at the guard. Where IDA iterates by itself and ``as_ida`` is set, the
-search is IDA's (regula falsi after Illinois down to rounding, Hiebert and Shampine, SAND80-0180), the state at a
-step's end is its interpolant, and roots and states are those that IDA finds by itself to the last bit.
+A root is found by inverse interpolation, to the accuracy with which the states are known: `SHARPNESS` times the
+relative tolerance of a step. Most need two evaluations of the guard. Where IDA iterates by itself and ``as_ida`` is
+set, the search is IDA's (regula falsi after Illinois down to rounding, Hiebert and Shampine, SAND80-0180), the state at
+a step's end is its interpolant, and roots and states are those that IDA finds by itself to the last bit.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Stepper(NamedTuple):
 
 @compiled(inline=True)
 def _look(s: Stepper, t: float) -> float:
-    """Look at the guard."""
+    """Evaluate the guard and count the evaluation."""
     s.m.work.search.evaluations += 1
     return guard(s.m, t, s.y)
 
@@ -155,7 +155,7 @@ def _step(s: Stepper) -> int:
 
 @compiled(inline=True)
 def _stop(s: Stepper) -> int:
-    """Return at a stop, now that all roots before it are through."""
+    """Return at a stop, after all roots before it have been handled."""
     s.m.work.search.stop = 0
     s.clock[0] = s.m.work.search.stop_time
     state_at(s, s.clock[0])
@@ -164,7 +164,7 @@ def _stop(s: Stepper) -> int:
 
 @compiled(inline=True)
 def _rounding(s: Stepper) -> float:
-    """What times of this step may differ by."""
+    """Rounding error of times in this step."""
     return _ROUNDING * (abs(s.m.work.search.step_end) + abs(memory.step(s.handles[IDA])))
 
 
@@ -186,7 +186,7 @@ def _find(s: Stepper, high: float) -> None:
     tolerance = max(_rounding(s), search.sharpness * (b - a))
     c, left, here = a, low, b  # what was an end before, the guard there, and where the state is taken
     tries, wide = 0, b - a
-    # near the root the chord shows how far it is: there is no need to close in on it from both sides
+    # the secant estimate is accepted without bracketing from the far side
     while b - a > tolerance and (b - a) * high < tolerance * (high - low):
         here = b - (b - a) * high / (high - low)
         if left != low and left != high:
@@ -212,7 +212,7 @@ def _find(s: Stepper, high: float) -> None:
 
 @compiled
 def _find_as_ida(s: Stepper, high: float) -> None:
-    """Find the same as IDA does."""
+    """Find the same by IDA's rule."""
     tolerance = _rounding(s)
     search = s.m.work.search
     a, b, low = search.low_time, s.clock[0], search.low

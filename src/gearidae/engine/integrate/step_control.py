@@ -1,10 +1,10 @@
 r"""Order and step length of Adams' formulas, and when IDA's own are better.
 
-IDA compares the difference to its own prediction with the tolerance. While the formulas are Adams', that says nothing
-of their error, so IDA is kept at order one and the weights of its norm tell it what to make of it. The formula of order
-k differs from that of order k - 1 by e_k, which is the error of the latter (Shampine and Gordon, Computer Solution of
-Ordinary Differential Equations, 1975). With E some times e_k over the tolerance, the weights are scaled so that IDA
-rejects the step where E > 1, and finds the next step longer by :math:`(2 E)^{-1/(k+1)}` where it does not.
+IDA compares the difference from its own prediction with the tolerance. This is not the error of an Adams formula, so
+IDA is kept at order one and the weights of its norm are scaled. The formula of order k differs from that of order k - 1
+by e_k, which is the error of the latter (Shampine and Gordon, Computer Solution of Ordinary Differential Equations,
+1975). With E some times e_k over the tolerance, the weights are scaled so that IDA rejects the step where E > 1, and
+finds the next step longer by :math:`(2 E)^{-1/(k+1)}` where it does not.
 
 The order follows the least e_k: one less if that does better, one more if that would, and after a rejected step,
 where the force may have had a kink, whichever of the lower orders does best.
@@ -16,10 +16,10 @@ the latter.
 No step is longer than its excitation allows, about a sixth of a period of torques and mesh: seen at steps as long as
 periods, an excitation looks like none, and the estimate of the error does not notice.
 
-Three things none of the formulas can do, and there IDA's take over: steps that are long against the fastest vibration,
-for which they are not stable; tolerances so close to rounding that the difference of two states, which IDA's do not
-take, shows it; and the end of a vibration that is down to the tolerance, whose every swing turns its histories, for
-ever, where IDA's formulas damp it away. Either kind begins afresh.
+IDA's own formulas are used in three cases: steps that are long against the fastest vibration, for which the Adams
+formulas are unstable; tolerances close to rounding, which affects the difference of two states that IDA's formulas do
+not contain; and vibrations with an amplitude near the tolerance, which would change the histories without end and are
+damped by IDA's formulas. Each change of formulas is a restart.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ STABLE: Final = 0.64
 STABLE_7: Final = 0.3
 STABLE_8: Final = 0.1
 MAX_DAMPED_ORDER: Final = 5
-HIGH_AMPLITUDE: Final = 1e3  # over the tolerance: from which on any order will do
-LOW_AMPLITUDE: Final = 10.0  # over the tolerance: below which there is nothing to follow
+HIGH_AMPLITUDE: Final = 1e3  # over the tolerance: above it every order is allowed
+LOW_AMPLITUDE: Final = 10.0  # over the tolerance: below it IDA's own formulas are used
 HIGHEST_RESOLUTION: Final = 0.2 / float(np.finfo(float).eps)  # a state over its tolerance
 STABILITY_LIMIT_RATIO: Final = (
     4.0  # how much longer a step could be, for its error, that stability limits too much
@@ -66,7 +66,7 @@ EASED: Final = tuple(LEAST_CUT ** (-2.0 * (order + 1.0)) for order in range(MOST
 
 @compiled
 def configure_ida(solver: int, a: Record) -> int:
-    """Tell IDA what its order and steps may do by the formulas now used; 0 if all went well."""
+    """Set IDA's limits of order and step growth for the formulas in use; return 0 on success."""
     by_adams = a.used != 0
     flag = sun.IDASetMaxOrd(solver, 1 if by_adams else IDA_ORDER)
     flag |= sun.IDASetEtaFixedStepBounds(solver, 1.0, GROW if by_adams else GROW_IDA)
@@ -76,7 +76,7 @@ def configure_ida(solver: int, a: Record) -> int:
 
 @compiled(inline=True)
 def max_stable_order(a: Record, h: float) -> int:
-    """Order of a step of length h."""
+    """Highest stable order for a step of length h, at most the order wanted."""
     if a.amplitude_sq < HIGH_AMPLITUDE**2:
         return min(a.next_order, MAX_DAMPED_ORDER)
     turned = h * h * a.omega_sq
@@ -86,7 +86,7 @@ def max_stable_order(a: Record, h: float) -> int:
 
 @compiled(inline=True)
 def below_gap_bound(m: Model, a: Record) -> bool:
-    """Whether a step would end far below the lowest gap that the model holds for, where forces are extrapolated."""
+    """Whether a step would end far below the lowest gap of the model's range, where forces are extrapolated."""
     lowest = min(nearest_gap(m, DRIVE, a.new_state), nearest_gap(m, COAST, a.new_state))
     return bool(lowest < m.scene.lowest_gap - OVERSHOOT)
 

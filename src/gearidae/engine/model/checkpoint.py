@@ -1,8 +1,8 @@
-"""Checkpoints: the state of a run as one vector of words, and what is checked before a run goes on from one.
+"""Checkpoints: the state of a run as one vector of words, and the checks before a run resumes from one.
 
 A checkpoint holds state only: a header (layout, scene, contact model, sizes), the record ``STATE``, the state vector
 and, of an elastic contact, the rows of its nodes. Constants, offsets and addresses are made from the scene by the
-process that goes on, never read. Every number is compared with what the scene allows before anything runs.
+process that resumes, never read. Every number is compared with what the scene allows before anything runs.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ class Problem:
     depth : int
         0 for the asperity model, 1 and more for the layouts of the elastic model.
     elastic : callable, optional
-        Makes the elastic problem that takes over when the asperity model, chosen automatically, no longer will do.
+        Makes the elastic problem for the time when the automatically chosen asperity model is no longer sufficient.
     deeper : callable, optional
         Makes the same elastic problem with nodes laid out for deeper contacts, if there can be any.
     located : Located

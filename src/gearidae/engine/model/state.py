@@ -94,7 +94,7 @@ def _record(*fields: tuple[Any, ...]) -> np.dtype[Any]:
 MATERIAL: Final = _record(
     ("force_scale", _REAL),  # per sqrt(radius / pitch), with the material's share of the surface
     ("stretch_limit", _REAL),  # over sigma; 0 where there is no hysteresis worth following
-    ("joining_energy", _REAL),  # what an asperity loses when it joins, in the unit of `force_scale`
+    ("joining_energy", _REAL),  # energy lost by an asperity at contact onset, in the unit of `force_scale`
     ("table_at", _INT),  # where its force law and its stored energy begin among the tables,
     ("energy_at", _INT),
     ("number_at", _INT),  # and the number of its asperities above a height
@@ -173,7 +173,7 @@ SCENE: Final = _record(
     ("samples", _INT),  # in the whole run, the first at time 0; 0 for none
     ("knot_count", _INT),  # times at which a schedule has a knot inside the run, among the tables
     ("knots_at", _INT),
-    ("rest_speed", _REAL),  # slip speed that is told from rest
+    ("rest_speed", _REAL),  # smallest slip speed that counts as motion
     ("root_limit", _INT),  # roots in succession allowed to be closer than `root_spacing`, times 1 + t
     ("root_spacing", _REAL),
     ("torque_omega", _REAL),  # highest angular frequency of the torques that steps have to follow
@@ -191,13 +191,17 @@ HISTORY: Final = _record(
     ("gap", _REAL),  # gap and gap rate at the last accepted time
     ("gap_rate", _REAL),
     ("in_contact", _INT),  # 1 between onset and separation
-    ("joined", _REAL, (MATERIALS,)),  # height above which asperities were joined at the last turning point
+    (
+        "joined",
+        _REAL,
+        (MATERIALS,),
+    ),  # height above which asperities were in contact at the last turning point
     ("fully_stretched", _INT, (MATERIALS,)),  # 1 once full stretch has been reached on the way apart
     (
         "booked",
         _REAL,
         (MATERIALS,),
-    ),  # energy of the asperities above `joined` that joining takes (asperity model)
+    ),  # adhesion loss of the asperities above `joined` (asperity model)
     ("length", _REAL),  # contact length of an elastic contact, sqrt(radius / pitch), at its last evaluation
     ("loaded", _INT),  # 1 if that evaluation found it within reach
     ("stretched", _INT),  # 1 if asperities of it were stretched at the last turning point
@@ -240,7 +244,7 @@ STATE: Final = _record(
         "slip",
         _REAL,
     ),  # direction of the gear's slip against dry resistance: -1, +1; 0 while it is held at rest
-    ("slipping", _INT),  # 1 once a slip has become faster than the speed told from rest
+    ("slipping", _INT),  # 1 once a slip has become faster than `rest_speed`
     ("near", _INT, (2,)),  # flank close enough for any pair to touch
     ("last_flank", _INT),  # flank of the last onset, -1 before the first
     ("bound_exceeded", _INT),  # 1 once a pair has been below the lowest gap
@@ -254,7 +258,7 @@ STATE: Final = _record(
 )
 
 # -- work space ------------------------------------------------------------------------------------------------------
-QUADRATURE: Final = _record(  # what the powers were made of where the energy balance last looked
+QUADRATURE: Final = _record(  # inputs of the powers at the last sample of the energy balance
     ("time", _REAL),
     ("steps", _INT),  # accepted since
     ("kinetic", _REAL),
@@ -270,7 +274,7 @@ QUADRATURE: Final = _record(  # what the powers were made of where the energy ba
     ("load_rate", _REAL),
     ("radius_power", _REAL),
     ("radius_power_rate", _REAL),
-    ("booked", _REAL),  # work of the radius on what joining losses booked since then have taken
+    ("booked", _REAL),  # work of the radius on the adhesion losses added since then
 )
 
 RESISTANCE: Final = _record(  # the same of drag and damping, which are integrated at every step
@@ -283,18 +287,18 @@ RESISTANCE: Final = _record(  # the same of drag and damping, which are integrat
 )
 
 ADAMS: Final = _record(
-    ("own", _INT),  # 1 where Newton's iteration is ours
+    ("own", _INT),  # 1 with the package's own Newton iteration, 0 with IDA's
     ("evaluations", _INT),  # of the residual with its slopes, so far
     ("failures", _INT),  # of Newton's iteration, so far
-    ("contraction_rate", _REAL),  # what is left to correct after a correction, over the correction
-    ("omega_sq", _REAL),  # squared frequency of the motion, from the last evaluation
-    ("wanted", _INT),  # 1 where Adams' formulas are to be used from the next start on
-    ("used", _INT),  # 1 where they are
+    ("contraction_rate", _REAL),  # contraction of Newton's iteration: next correction over this one
+    ("omega_sq", _REAL),  # squared angular frequency of the motion, from the last evaluation
+    ("wanted", _INT),  # 1 for Adams formulas from the next start on
+    ("used", _INT),  # 1 while Adams formulas are used
     ("attempts", _INT),  # steps tried since the start
-    ("limited_steps", _INT),  # of them in succession shorter than they need be for the error
-    ("next_order", _INT),  # former rates to be used in the coming step
+    ("limited_steps", _INT),  # successive steps limited by stability, not by the error
+    ("next_order", _INT),  # order k of the next step: number of former rates
     ("n_history", _INT),  # former rates known
-    ("order_used", _INT),  # of them by the last formula; 0 if it was IDA's
+    ("order_used", _INT),  # order k of the last step; 0 if it used IDA's formula
     ("time", _REAL),  # the last accepted time, and the step up to it
     ("last_step", _REAL),
     ("new_step", _REAL),  # length of the step that is tried; 0 once it has been accepted
@@ -302,7 +306,7 @@ ADAMS: Final = _record(
     ("new_state", _REAL, (MOTION,)),
     ("predicted_rates", _REAL, (MOTION,)),
     ("state", _REAL, (MOTION,)),  # at the last accepted time
-    ("time_lags", _REAL, (MOST_ORDERS + 1,)),  # how long before it the others were, the last first
+    ("time_lags", _REAL, (MOST_ORDERS + 1,)),  # time from each former rate to it, the newest first
     ("basis_integrals", _REAL, (MOST_ORDERS + 1,)),  # of Newton's polynomials over these times
     ("basis_values", _REAL, (MOST_ORDERS + 1,)),
     (
@@ -314,10 +318,10 @@ ADAMS: Final = _record(
 )
 
 SEARCH: Final = _record(  # for the root of the guard in a step
-    ("low", _REAL),  # the guard where the interval to look at begins
+    ("low", _REAL),  # the guard at the beginning of the search interval
     ("low_time", _REAL),
     ("step_end", _REAL),  # time at the end of the step
-    ("rest", _INT),  # 1 after a root: the rest of its step has not been looked at
+    ("rest", _INT),  # 1 after a root: the rest of its step is still to be searched
     ("stop", _INT),  # 1 while a stop waits for the roots before it
     ("stop_time", _REAL),
     ("evaluations", _INT),  # of the guard, so far

@@ -45,7 +45,7 @@ _RESIDUAL = types.int32(types.float64, types.intp, types.intp, types.intp, types
 
 @compiled_callback(_RESIDUAL)
 def _unasked(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
-    return -1  # IDA wants a residual, but whether it vanishes is asked by Newton's iteration alone
+    return -1  # IDA requires a residual function, but only Newton's iteration evaluates the residual
 
 
 @compiled_callback(_INT(_PTR, _PTR, _PTR))

@@ -28,11 +28,12 @@ class Functions(NamedTuple):
     Attributes
     ----------
     model : ndarray, shape (3,)
-        Residual, Jacobian (0 if nobody asks for it), error weights.
+        Residual, Jacobian (0 if it is not needed), error weights.
     steps : ndarray, shape (2,) or (0,)
         Set-up and solution of a linear solver of ours; none where SUNDIALS has to solve, or nothing is left to.
     newton : ndarray, shape (3,) or (0,)
-        What a nonlinear solver of ours answers, see `gearidae.engine.integrate.newton`; none where SUNDIALS iterates.
+        Functions of the package's own nonlinear solver, see `gearidae.engine.integrate.newton`; none where SUNDIALS
+        iterates.
     vectors : ndarray, shape (4,) or (0,)
         Operations on vectors, see `gearidae.engine.sundials.vectors`; none where SUNDIALS has its own.
     """
