@@ -26,7 +26,9 @@ START = 6.0  # rad/s, of the pinion
 
 def blocks(language: str) -> list[str]:
     """The page's blocks of a language."""
-    return re.findall(rf"^```{language}\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    return re.findall(
+        rf"^```{language}\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE
+    )
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +50,9 @@ def test_half_the_modulus_is_half_the_pressure(page):
     surface = gd.preset("roller_slow").surface
     gap = surface.roughness * np.linspace(-1.0, 4.0, 11)
     np.testing.assert_allclose(
-        rough_pressure(gap, 0.0, surface, "soft"), 0.5 * rough_pressure(gap, 0.0, surface, "hertz"), rtol=1e-14
+        rough_pressure(gap, 0.0, surface, "soft"),
+        0.5 * rough_pressure(gap, 0.0, surface, "hertz"),
+        rtol=1e-14,
     )
 
 
@@ -85,7 +89,9 @@ def test_the_impact_on_springs_takes_what_is_booked(page):
     taken = -float(lossy.kinetic_change) - float(lossy.stored_change)
     assert taken == pytest.approx(float(lossy.adhesion_loss), rel=0, abs=float(lossy.residual_bound))
     assert float(lossy.kinetic_change) == pytest.approx(
-        0.5 * mass * float(lossy.speed[-1] ** 2 - lossy.speed[0] ** 2), rel=0, abs=2 * float(lossy.residual_bound)
+        0.5 * mass * float(lossy.speed[-1] ** 2 - lossy.speed[0] ** 2),
+        rel=0,
+        abs=2 * float(lossy.residual_bound),
     )
 
 
@@ -187,7 +193,9 @@ def test_changes_apply_and_work(is_event, files, script, tmp_path):
     }
     assert touched == {f"src/gearidae/{name}" for name in files}
     environment = os.environ | {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
 
 

@@ -143,7 +143,9 @@ def test_a_law_does_what_the_same_harmonic_does(shaft):
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
-@pytest.mark.parametrize("drive", [("motor", 9e-18, 12.0), ("swinging", 9e-18, 12.0, 2000.0)], ids=lambda d: d[0])
+@pytest.mark.parametrize(
+    "drive", [("motor", 9e-18, 12.0), ("swinging", 9e-18, 12.0, 2000.0)], ids=lambda d: d[0]
+)
 def test_energy_balances_with_laws_of_time_and_speed(drive, rtol):
     scene = gd.preset("teodorescu2009_low_speed").replace(
         {

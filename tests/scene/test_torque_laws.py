@@ -59,7 +59,10 @@ def test_one_number_needs_no_list(scene):
         ({"parameters": [1, 2]}, r"drive\.law\.name = \(missing\)"),
         ({"name": "motor"}, r"drive\.law\.parameters = \[\]: the law motor takes 2 numbers"),
         ({"name": "motor", "parameters": [1, 2, 3]}, r"drive\.law\.parameters = .*takes 2 numbers"),
-        ({"name": "motor", "parameters": [1, float("nan")]}, r"drive\.law\.parameters.*must be a finite number"),
+        (
+            {"name": "motor", "parameters": [1, float("nan")]},
+            r"drive\.law\.parameters.*must be a finite number",
+        ),
         ({"name": "motor", "parameters": [1, "much"]}, r"drive\.law\.parameters.*must be a number"),
         ({"name": "motor", "parameters": [1, 2], "gain": 3}, r"drive\.law\.gain = 3: unknown key"),
         ("motor", r"drive\.law = motor: must be a table"),
