@@ -1,6 +1,7 @@
 """What the solver samples: name, unit and meaning of each column, in the order in which the engine writes them.
 
-The engine fills a row of these (`gearidae.engine.model.observe`); dataset, files and their documentation follow from here.
+The engine fills a row of these (`gearidae.engine.model.observe`); dataset, files and their documentation follow from
+here.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ def page():
     *code, ending = blocks("python")
     names: dict[str, object] = {"__name__": "__extending__"}
     for block in code:
-        exec(block, names)
+        exec(compile(block, str(PAGE), "exec", dont_inherit=True), names)
     yield names
     exec(ending, names)
     assert not {"soft", "springs"} & set(law_names())
@@ -209,5 +209,5 @@ def test_every_file_that_the_page_names_is_there():
 def test_two_laws_of_one_name_are_refused(page):
     with pytest.raises(gd.SceneError, match="soft"):
         register(page["Soft"])
-    with pytest.raises(gd.SceneError, match="contact.asperity"):
+    with pytest.raises(gd.SceneError, match=r"contact\.asperity"):
         unregister("softer")

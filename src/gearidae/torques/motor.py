@@ -20,4 +20,4 @@ def motor(t: float, speed: float, p: Parameters) -> float:
     p : ndarray, shape (2,)
         Stall torque M0 [N m] and no-load speed w0 [rad/s].
     """
-    return p[0] * (1.0 - speed / p[1])
+    return float(p[0] * (1.0 - speed / p[1]))

@@ -1,8 +1,8 @@
 """Torques at the shafts: a sum of terms (Teodorescu et al. 2009, Eq. 2), each a file of `torques`.
 
-A term says what it adds to the torque at a time and to its rate; a registered law (`gearidae.torques`) is one that knows
-the speed too. Forces and times are scaled: torques are over the base radius and the reference load, speeds are those of
-the base circles.
+A term says what it adds to the torque at a time and to its rate; a registered law (`gearidae.torques`) is one that
+knows the speed too. Forces and times are scaled: torques are over the base radius and the reference load, speeds are
+those of the base circles.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Torque laws by their names (`gearidae.torques`): compiled when a scene first uses them, and called at an address.
 
-A law may stand in any file, or in none that could be read again, so that its compiled code is not kept on disk: compiling
-a few lines takes a fraction of a second. Its address belongs to this process and lies in the work space, which no file
-can set.
+A law may stand in any file, or in none that could be read again, so that its compiled code is not kept on disk:
+compiling a few lines takes a fraction of a second. Its address belongs to this process and lies in the work space,
+which no file can set.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _compile(function: Callable[..., Any]) -> Any:
     law: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
 
     def torque(t: float, speed: float, parameters: Any, count: int) -> float:
-        return law(t, speed, carray(parameters, (count,)))  # type: ignore[no-any-return]
+        return law(t, speed, carray(parameters, (count,)))
 
     return numba.cfunc(_SIGNATURE)(torque)
 
