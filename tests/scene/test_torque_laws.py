@@ -86,7 +86,7 @@ def test_what_is_no_name_is_refused(name):
 
 @pytest.mark.parametrize("count", [-1, 1.5, "two", 10**9])
 def test_what_is_no_number_of_parameters_is_refused(count):
-    with pytest.raises(SceneError, match="parameters = .*whole number in 0"):
+    with pytest.raises(SceneError, match=r"parameters = .*whole number in 0"):
         gd.register_torque("counted", parameters=count)
 
 
