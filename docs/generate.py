@@ -1,7 +1,11 @@
-"""Tables of the reference that follow from the code: scene keys, dataset variables, commands."""
+"""Tables of the reference that follow from the code: scene keys, dataset variables, commands, the engine's state."""
 
 from __future__ import annotations
 
+import ast
+import inspect
+import io
+import tokenize
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -9,10 +13,11 @@ from cyclopts import Argument
 
 from gearidae.archive.variables import EVENTS, LEDGER, RUN, SAM_FRACTION, SAMPLES, TIME, Variable
 from gearidae.cli.session import app
+from gearidae.engine.model import state
 from gearidae.records import EventKind, Flank
 from gearidae.scene import describe_keys
 
-__all__ = ["command_tables", "dataset_tables", "key_table", "write_tables"]
+__all__ = ["command_tables", "dataset_tables", "key_table", "state_tables", "write_tables"]
 
 
 def write_tables(folder: Path) -> None:
@@ -22,6 +27,7 @@ def write_tables(folder: Path) -> None:
         ("keys", key_table()),
         ("dataset", dataset_tables()),
         ("commands", command_tables()),
+        ("state", state_tables()),
     ):
         target = folder / f"{name}.inc.md"
         if not target.exists() or target.read_text(encoding="utf-8") != text:
@@ -92,6 +98,49 @@ def command_tables() -> str:
     ]
     parts.append(f"## With every command\n\n{_table(('option', ''), rows)}")
     return "\n".join(parts)
+
+
+def state_tables() -> str:
+    """List what a checkpoint carries, from the declarations in `gearidae.engine.model.state` and their comments."""
+    source = inspect.getsource(state)
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    comments = {one.start[0]: one.string.removeprefix("# ") for one in tokens if one.type == tokenize.COMMENT}
+    records = {}
+    for node in ast.parse(source).body:
+        if (
+            isinstance(node, ast.AnnAssign)
+            and isinstance(node.target, ast.Name)
+            and isinstance(node.value, ast.Call)
+        ):
+            records[node.target.id] = (node.value, comments.get(node.lineno, ""))
+    parts = []
+    for name, access in (
+        ("STATE", "state"),
+        ("HISTORY", "state.history[k]"),
+        ("ENERGY", "state.energy"),
+        ("PROGRESS", "state.progress"),
+    ):
+        call, about = records[name]
+        rows = [
+            (
+                f"`{access}.{field.elts[0].value}`",
+                comments.get(field.end_lineno or 0, _kind(field.elts[1], records)),
+            )
+            for field in call.args
+            if isinstance(field, ast.Tuple) and isinstance(field.elts[0], ast.Constant)
+        ]
+        heading = f"## `{name}`\n\n" + (f"{about[0].upper()}{about[1:]}.\n\n" if about else "")
+        parts.append(heading + _table(("field", "what it is"), rows))
+    return "\n".join(parts)
+
+
+def _kind(annotation: ast.expr, records: Iterable[str]) -> str:
+    """Point at a record that is listed by itself."""
+    return (
+        f"the record `{annotation.id}`"
+        if isinstance(annotation, ast.Name) and annotation.id in records
+        else ""
+    )
 
 
 def _names(argument: Argument) -> str:

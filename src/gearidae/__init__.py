@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from gearidae.runs.simulation import simulate
     from gearidae.runs.sweeping import sweep
     from gearidae.scene import Scene, load_case, preset
+    from gearidae.torques import register_torque, unregister_torque
 
 __version__ = "0.1.0"
 
@@ -35,9 +36,11 @@ __all__ = [
     "open_archive",
     "plot",
     "preset",
+    "register_torque",
     "simulate",
     "studies",
     "sweep",
+    "unregister_torque",
 ]
 
 # Public name -> the module it lives in; a module that is public itself maps to None.
@@ -52,9 +55,11 @@ _HOME: dict[str, str | None] = {
     "open_archive": "archive",
     "plot": None,
     "preset": "scene",
+    "register_torque": "torques",
     "simulate": "runs.simulation",
     "studies": None,
     "sweep": "runs.sweeping",
+    "unregister_torque": "torques",
 }
 
 __getattr__, __dir__ = lazy_names(globals(), _HOME)

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.columns import GEAR_SAMPLES, ROLLER_SAMPLES
+
 __all__ = [
     "GEAR_BOUND",
     "GEAR_COLUMNS",
@@ -34,18 +36,8 @@ __all__ = [
 Words = NDArray[Any]
 """A vector of 8-byte words whose meaning only their maker knows."""
 
-GEAR_COLUMNS = (
-    "gear_speed",
-    "pinion_speed",
-    "gear_angle",
-    "transmission_error",
-    "mesh_force",
-    "gear_contact_torque",
-    "drive_gap",
-    "coast_gap",
-    "pairs_in_contact",
-)
-ROLLER_COLUMNS = ("height", "speed", "force")
+GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
+ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 
 
 GEAR_BOUND = 10.0

@@ -123,7 +123,7 @@ def test_page_works_as_printed(page, folder, capfd):
     for block in blocks(page):
         if block.language == "python":
             # Padded, so that a failure names the line of the page.
-            code = compile("\n" * block.line + block.text, str(page), "exec")
+            code = compile("\n" * block.line + block.text, str(page), "exec", dont_inherit=True)
             exec(code, names)
         elif block.language == "console":
             for command, printed in commands(block.text):

@@ -16,8 +16,10 @@ CONTRACT = {
     "static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range",
     "coating": "sam_fraction energy",
-    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase",
-    "load": "torque harmonic drag schedule harmonic.amplitude harmonic.frequency harmonic.phase",
+    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
+    "law.parameters",
+    "load": "torque harmonic drag schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
+    "law.parameters",
     "initial": "gear_speed gap mesh_phase",
     "run": "duration samples rtol",
     "roller": "radius mass width speed height",

@@ -235,10 +235,8 @@ class _Events:
     def __init__(self, scene: Scene) -> None:
         assert scene.load is not None
         assert scene.initial is not None
-        load = scene.load
-        dry = load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule)
         self.counts = dict.fromkeys(EventKind, 0)
-        self._may_rest = dry and scene.initial.gear_speed == 0.0
+        self._may_rest = scene.load.is_dry and scene.initial.gear_speed == 0.0
         self._since: float | None = None  # when the gear came to rest
         self._total = 0.0
         self.time = 0.0  # of the last event

@@ -1,8 +1,8 @@
 """Catalogue of everything an archive can hold: name, dimensions, unit, meaning.
 
 One `Variable` per row of the dataset's layout; `dataset` builds from it and nothing is named or given a unit
-elsewhere. Units are written as UDUNITS, as CF asks. ``time`` is in ``s`` and not in "seconds since", which
-xarray would turn into nanosecond dates.
+elsewhere, but for sampled columns (`gearidae.columns`), which the engine writes. Units are written as UDUNITS, as CF
+asks. ``time`` is in ``s`` and not in "seconds since", which xarray would turn into nanosecond dates.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
+from gearidae.columns import GEAR_SAMPLES, ROLLER_SAMPLES
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Flank
 
 __all__ = ["EVENTS", "LEDGER", "RUN", "SAMPLES", "SAM_FRACTION", "TIME", "Variable", "by_name", "columns"]
@@ -67,45 +68,10 @@ SAM_FRACTION = Variable(
     "sam_fraction", (), "1", "fraction of the contact area covered by the self-assembled monolayer"
 )
 
-_GEAR_SAMPLES = (
-    Variable("gear_speed", ("time",), "rad s-1", "angular speed of the gear"),
-    Variable("pinion_speed", ("time",), "rad s-1", "angular speed of the pinion"),
-    Variable("gear_angle", ("time",), "rad", "rotation of the gear since the start", comment="not wrapped"),
-    Variable(
-        "transmission_error",
-        ("time",),
-        "m",
-        "dynamic transmission error",
-        comment="u = R1 phi1 - R2 phi2 - e(phi1), Teodorescu et al. 2009, Eq. 4",
-    ),
-    Variable(
-        "mesh_force",
-        ("time",),
-        "N",
-        "force along the line of action",
-        comment="positive drives the gear forward",
-    ),
-    Variable(
-        "gear_contact_torque",
-        ("time",),
-        "N m",
-        "torque of the tooth contacts on the gear",
-        comment="positive drives the gear forward; negative while adhesion holds it back",
-    ),
-    Variable("drive_gap", ("time",), "m", "smallest gap of all pairs on the drive flank"),
-    Variable("coast_gap", ("time",), "m", "smallest gap of all pairs on the coast flank"),
-    Variable("pairs_in_contact", ("time",), "1", "number of tooth pairs that transmit force"),
-)
-_ROLLER_SAMPLES = (
-    Variable("height", ("time",), "m", "height of the roller above the mean plane of the asperities"),
-    Variable(
-        "speed", ("time",), "m s-1", "velocity of the roller", comment="positive upwards, away from the plane"
-    ),
-    Variable(
-        "force", ("time",), "N", "contact force on the roller", comment="positive pushes the bodies apart"
-    ),
-)
-SAMPLES: Mapping[str, Variable] = {variable.name: variable for variable in (*_GEAR_SAMPLES, *_ROLLER_SAMPLES)}
+SAMPLES: Mapping[str, Variable] = {
+    column.name: Variable(column.name, ("time",), column.units, column.long_name, comment=column.comment)
+    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES)
+}
 
 _EVENTS = (
     Variable("event_time", ("event",), "s", "time of the event"),

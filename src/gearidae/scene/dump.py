@@ -49,11 +49,27 @@ def _table(group: Group) -> Iterator[str]:
                 knots = "".join(f"    [{time!r}, {torque!r}],\n" for time, torque in value)
                 entries.append((f"{name} = [\n{knots}]", field.description))
             continue
+        if value is None:
+            continue
+        if isinstance(value, Group):
+            entries.append((f"{name} = {_inline(value)}", field.description))
+            continue
         quantity = next((one for one in field.metadata if isinstance(one, Quantity)), None)
         entries.append((f"{name} = {_value(value, quantity)}", field.description))
     width = max((len(text) for text, _ in entries if "\n" not in text), default=0)
     for text, description in entries:
         yield f"# {description}\n{text}" if "\n" in text else f"{text:<{width}}  # {description}"
+
+
+def _inline(group: Group) -> str:
+    """Write a small table in one line."""
+    parts = (f"{name} = {_plain(getattr(group, name))}" for name in type(group).model_fields)
+    return f"{{ {', '.join(parts)} }}"
+
+
+def _plain(value: Any) -> str:
+    """Write a text, or a list of SI numbers."""
+    return _text(value) if isinstance(value, str) else f"[{', '.join(map(repr, value))}]"
 
 
 def _list_of_tables(table: str, name: str, group: Group) -> Iterator[str]:

@@ -33,7 +33,7 @@ class KeyInfo:
     required : bool
         Whether it must be given once its table is.
     default : object
-        Its value when not given; None if required.
+        Its value when not given; None if required, an empty tuple for a list or a table that is not there.
     allowed : str
         What it may hold, in words.
     description : str
@@ -132,7 +132,7 @@ def _walk(model: type[Group], prefix: str) -> Iterator[KeyInfo]:
     for name, field in model.model_fields.items():
         key = f"{prefix}{name}"
         table, is_list = _table(field.annotation)
-        if table is None or is_list:
+        if table is None or is_list or prefix:  # tables of the scene itself are no keys
             yield _describe(key, field)
         if table is not None:
             yield from _walk(table, f"{key}.")
@@ -158,13 +158,15 @@ def _describe(key: str, field: FieldInfo) -> KeyInfo:
         allowed = named.allowed().removeprefix("must be ")
     elif choices:
         allowed = "one of " + ", ".join(choices)
+    elif _table(field.annotation)[0] is not None and not _table(field.annotation)[1]:
+        allowed = "a table"
     else:
         allowed = "a text" if field.annotation is str else "a list"
     return KeyInfo(
         key=key,
         unit=number.unit if isinstance(number, Quantity) else "1" if number else "",
         required=field.is_required(),
-        default=None if field.is_required() else field.default,
+        default=None if field.is_required() else () if field.default is None else field.default,
         allowed=allowed,
         description=field.description or "",
     )

@@ -1,20 +1,24 @@
 """What drives the pinion and what loads the gear.
 
 Both torques are a constant, plus harmonics, plus a piecewise linear schedule that holds its end values
-outside its knots (Teodorescu et al. 2009, Eqs. 2 and 3).
+outside its knots (Teodorescu et al. 2009, Eqs. 2 and 3), plus a law of time and speed by its name
+(`gearidae.torques`).
 """
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field, model_validator
 
-from gearidae.scene.group import Group
+from gearidae.errors import SceneError
+from gearidae.scene.group import Group, shorten
+from gearidae.scene.named import Named
 from gearidae.scene.quantity import Phase, Quantity
 from gearidae.scene.tables import increasing, one_or_more, pairs
+from gearidae.torques import torque_law, torque_names
 
-__all__ = ["Drive", "Harmonic", "Load"]
+__all__ = ["Drive", "Harmonic", "Law", "Load"]
 
 Torque = Annotated[float, Quantity(unit="N m", at_least=-1e9, at_most=1e9, least=1e-40)]
 Time = Annotated[float, Quantity(unit="s", at_least=0, at_most=1e12, least=1e-20)]
@@ -34,6 +38,31 @@ class Harmonic(Group):
 Harmonics = Annotated[tuple[Harmonic, ...], one_or_more("amplitude, frequency, phase")]
 
 
+def _as_numbers(value: object) -> object:
+    """Accept one number, a list of them, or an array; what it holds is read later."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    return tuple(value) if isinstance(value, (list, tuple)) else (value,)
+
+
+class Law(Group):
+    """A torque law by its name, and its parameters; see `gearidae.torques`."""
+
+    name: Annotated[str, Named(torque_names)] = Field(description="name of a registered torque law")
+    parameters: Annotated[tuple[Annotated[float, Quantity(unit="1")], ...], BeforeValidator(_as_numbers)] = (
+        Field(default=(), description="its parameters, as many as it takes, in SI units")
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        """Let the law have as many parameters as it reads."""
+        wanted = torque_law(self.name).parameters
+        if len(self.parameters) != wanted:
+            raise SceneError(
+                "parameters", shorten(list(self.parameters)), f"the law {self.name} takes {wanted} numbers"
+            )
+        return self
+
+
 class Drive(Group):
     """Torque on the pinion, M1."""
 
@@ -42,6 +71,7 @@ class Drive(Group):
     schedule: Schedule = Field(
         default=(), description="[time, torque] knots, joined linearly, added to the constant"
     )
+    law: Law | None = Field(default=None, description="a torque law of time and speed, added to the rest")
 
 
 class Load(Group):
@@ -57,3 +87,11 @@ class Load(Group):
     schedule: Schedule = Field(
         default=(), description="[time, torque] knots, joined linearly, added to the constant"
     )
+    law: Law | None = Field(
+        default=None, description="a law of time and speed, added to the dry resistance against the motion"
+    )
+
+    @property
+    def is_dry(self) -> bool:
+        """Whether there is a resistance that opposes whichever motion there is, and may hold the gear at rest."""
+        return self.torque != 0.0 or bool(self.harmonic) or bool(self.schedule) or self.law is not None

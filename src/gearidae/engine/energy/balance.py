@@ -86,8 +86,8 @@ def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q.gear_travel, q.gear_speed, q.gear_acceleration = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     _note_resistance(m, t, q.gear_travel, y, yp)
     q.pinion_travel, q.pinion_speed, q.pinion_acceleration = _pinion(m, y, yp)
-    q.drive, q.drive_rate = _torque(m, DRIVE, t)
-    q.load, q.load_rate = _torque(m, LOAD, t)
+    q.drive, q.drive_rate = _torque(m, DRIVE, t, q.pinion_speed, q.pinion_acceleration)
+    q.load, q.load_rate = _torque(m, LOAD, t, y[W], yp[W])
     sample_radius_power(m, t, y)
 
 
@@ -150,7 +150,7 @@ def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[fl
     """Add the work of the drive; return the pinion's speed, the work's magnitude and its error estimate."""
     q = m.work.quadrature
     pinion, speed, acceleration = _pinion(m, y, yp)
-    force, rate = _torque(m, DRIVE, t)
+    force, rate = _torque(m, DRIVE, t, speed, acceleration)
     work, error = torque_work(
         h,
         pinion - q.pinion_travel,
@@ -167,7 +167,7 @@ def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[fl
 def _book_dry(m: Model, h: float, t: float, travel: float, w: float, w_rate: float) -> tuple[float, float]:
     """Add the loss by dry resistance; return its magnitude and its error estimate."""
     q = m.work.quadrature
-    force, rate = _torque(m, LOAD, t)
+    force, rate = _torque(m, LOAD, t, w, w_rate)
     if min(force, q.load) < 0.0:  # a dry resistance never pushes: what is left of a straight line
         most = max(force, q.load, 0.0)
         dry = 0.5 * most * most / abs(force - q.load) * travel if most > 0.0 else 0.0
@@ -269,8 +269,8 @@ def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
 
 
 @compiled
-def _torque(m: Model, shaft: int, t: float) -> tuple[float, float]:
-    """A torque over its base radius, and its rate."""
+def _torque(m: Model, shaft: int, t: float, speed: float, acceleration: float) -> tuple[float, float]:
+    """A torque over its base radius, and its rate along the motion of its shaft."""
     if is_constant(m, shaft):
         return m.scene.torque[shaft].constant, 0.0
-    return torque_force(m, shaft, t), torque_rate(m, shaft, t)
+    return torque_force(m, shaft, t, speed), torque_rate(m, shaft, t, speed, acceleration)

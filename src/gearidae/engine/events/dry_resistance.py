@@ -30,7 +30,7 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
 @compiled
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
-    return max(torque_force(m, LOAD, t), 0.0) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
+    return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
 
 
 @compiled
@@ -56,7 +56,7 @@ def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> 
     m.state.energy.dry_loss += before - kinetic_energy(m, y)
     push = _push(m, t, y)
     slipping = m.state.slip != 0.0
-    if slipping and abs(push) <= max(torque_force(m, LOAD, t), 0.0) + _NO_FORCE:
+    if slipping and abs(push) <= max(torque_force(m, LOAD, t, 0.0), 0.0) + _NO_FORCE:
         m.state.slip = 0.0
         return record(m, events, count, t, _STICK, 0, _NO_FLANK, 0.0)
     m.state.slip = 1.0 if push > 0.0 else -1.0

@@ -30,6 +30,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.model.tables import Tables
 from gearidae.engine.model.tooth_pairs import contact_length
 from gearidae.engine.model.torques.harmonic import pack_harmonics
+from gearidae.engine.model.torques.law import largest_torque, law_address
 from gearidae.engine.model.torques.schedule import pack_schedule
 from gearidae.mesh.involute import Geometry
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
@@ -94,7 +95,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     s.damping = mesh.damping * speed / float(s.force_unit)
     s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
-    s.dry = int(load.torque != 0.0 or bool(load.harmonic) or bool(load.schedule))
+    s.dry = int(load.is_dry)
     s.rest_speed = 10.0 * scene.run.rtol
     widest = math.sqrt(0.25 / float(s.sum_curvature))
     unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
@@ -110,6 +111,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     model.state.slip = np.sign(start.gear_speed) if s.dry else 1.0
     for shaft, law in ((DRIVE, drive), (LOAD, load)):
         model.state.segment[shaft] = sum(t <= 0.0 for t, _ in law.schedule)
+        if law.law is not None:
+            model.work.torque_law[shaft] = law_address(law.law.name)
     outside = start.mesh_phase - min(max(start.mesh_phase, 0.0), float(s.contact_ratio))
     relief = float(0.5 * s.relief_curvature * outside**2)
     u = float(s.half_backlash) + relief - start.gap / sigma
@@ -201,9 +204,11 @@ def _set_slots(s: Record, scene: Scene) -> None:
     s.slots, s.histories = slots, 2 * slots
 
 
-def _largest(shaft: Drive | Load) -> float:
-    """Bound of a shaft's prescribed torque [N m]."""
+def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
+    """Bound of a shaft's prescribed torque [N m]; of its law, up to a speed [rad/s]."""
     steady = abs(shaft.torque) + sum(abs(h.amplitude) for h in shaft.harmonic)
+    if shaft.law is not None:
+        steady += largest_torque(shaft.law.name, shaft.law.parameters, speed, duration)
     return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
 
 
@@ -212,10 +217,12 @@ def _reference_force(scene: Scene, mass: float) -> float:
     assert scene.drive
     assert scene.load
     assert scene.initial
-    geometry, speed = scene.geometry, scene.initial.gear_speed
+    geometry, speed, duration = scene.geometry, scene.initial.gear_speed, scene.run.duration
+    drive = _largest(scene.drive, speed * geometry.base_radius_gear / geometry.base_radius_pinion, duration)
+    load = _largest(scene.load, speed, duration)
     force = max(
-        _largest(scene.drive) / geometry.base_radius_pinion,
-        (_largest(scene.load) + scene.load.drag * speed**2) / geometry.base_radius_gear,
+        drive / geometry.base_radius_pinion,
+        (load + scene.load.drag * speed**2) / geometry.base_radius_gear,
     )
     if force == 0.0:
         force = mass * (speed * geometry.base_radius_gear) ** 2 / geometry.base_pitch
@@ -242,10 +249,14 @@ def _add_torques(s: Record, tables: Tables, scene: Scene) -> None:
             tables.add(pack_harmonics(harmonics, tau, unit)),
         )
         own.knot_count, own.knots_at = len(law.schedule), tables.add(pack_schedule(law.schedule, tau, unit))
+        own.law_torque, own.law_speed = unit, float(s.length_unit) / tau / radius
+        if law.law is not None:
+            own.law_count, own.law_at = len(law.law.parameters), tables.add(law.law.parameters)
         knots |= {t / tau for t, _ in law.schedule if 0.0 < t < scene.run.duration}
         fastest = max([fastest, *(h.frequency for h in law.harmonic)])
     _set_run(s, tables, scene, knots)
-    s.balance_steps = STRIDE
+    # a torque that knows the speed vibrates with it, and is looked at in each step
+    s.balance_steps = STRIDE if scene.drive.law is None and scene.load.law is None else 1
     s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
 
 

@@ -1,4 +1,4 @@
-"""From scaled states to what is recorded, in SI units: the columns of `gearidae.records`."""
+"""From scaled states to what is recorded, in SI units: the columns of `gearidae.columns`."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         Time over tau.
     y : ndarray, shape (n,)
         Scaled state.
-    row : ndarray, shape (9,) or (3,)
-        `GEAR_COLUMNS` or `ROLLER_COLUMNS` in SI units.
+    row : ndarray, shape (n,)
+        `GEAR_SAMPLES` or `ROLLER_SAMPLES` in SI units.
     """
     length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
     u, v = y[U], y[V]

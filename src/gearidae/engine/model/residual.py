@@ -98,7 +98,7 @@ def resisting_force(m: Model, t: float, w: float) -> float:
     """Resistance at the gear over R2, scaled: dry in the direction of slip, and drag (Eq. 2)."""
     force = m.scene.drag * w * abs(w)
     if m.scene.dry != 0 and m.state.slip != 0.0:
-        force += m.state.slip * max(torque_force(m, LOAD, t), 0.0)
+        force += m.state.slip * max(torque_force(m, LOAD, t, w), 0.0)
     return force
 
 
@@ -126,12 +126,14 @@ def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> tuple[floa
     u, phase, w = y[U], y[PHASE], y[W]
     force, relief, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y)
     force += m.scene.damping * v
-    drive = torque_force(m, DRIVE, t)
+    turn, e1, e2 = v + w, 0.0, 0.0
+    if m.scene.error_count != 0:
+        _, _, e1, e2 = static_error(m, u, phase)
+        turn = (v + w) / (1.0 - e1)
+    drive = torque_force(m, DRIVE, t, turn)
     if m.scene.error_count == 0:
         pinion = m.scene.pinion_inverse_mass * (drive - force)
     else:
-        _, _, e1, e2 = static_error(m, u, phase)
-        turn = (v + w) / (1.0 - e1)
         pinion = (1.0 - e1) * m.scene.pinion_inverse_mass * (drive - (1.0 - e1) * force) - e2 * turn * turn
     if held(m):
         out[W] = yp[W]
@@ -163,7 +165,9 @@ def residual(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
 def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     """dF/dy + cj dF/dy' of the motion, dense, column by column (Fortran order).
 
-    The static error's own slopes are left out: it is small, and the Jacobian only steers Newton's iteration.
+    The static error's own slopes are left out: it is small, and the Jacobian only steers Newton's iteration. So are the
+    slopes of a torque law in the speed: a shaft takes many steps to follow a mild law, and each iteration reduces what
+    is left by the ratio of a step to that time.
 
     Parameters
     ----------

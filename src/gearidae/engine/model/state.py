@@ -107,6 +107,10 @@ TORQUE: Final = _record(
     ("harmonics_at", _INT),
     ("knot_count", _INT),  # (time, value) of each
     ("knots_at", _INT),
+    ("law_count", _INT),  # parameters of the law, whose address is in `WORK`
+    ("law_at", _INT),
+    ("law_torque", _REAL),  # units of the law's torque [N m] and of the shaft's speed [rad/s]
+    ("law_speed", _REAL),
 )
 
 SCENE: Final = _record(
@@ -346,6 +350,7 @@ WORK: Final = _record(
     ("search", SEARCH),
     ("driver", DRIVER),
     ("elastic_service", _INT),  # where the compiled code of elastic contacts lies in this process
+    ("torque_law", _INT, (2,)),  # and that of the torque law of either shaft; 0 without one
 )
 
 

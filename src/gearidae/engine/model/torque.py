@@ -1,7 +1,8 @@
 """Torques at the shafts: a sum of terms (Teodorescu et al. 2009, Eq. 2), each a file of `torques`.
 
-A term says what it adds to the torque at a time and to its rate. Forces and times are scaled: torques are over the
-base radius and the reference load.
+A term says what it adds to the torque at a time and to its rate; a registered law (`gearidae.torques`) is one that
+knows the speed too. Forces and times are scaled: torques are over the base radius and the reference load, speeds are
+those of the base circles.
 """
 
 from __future__ import annotations
@@ -9,27 +10,34 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
 from gearidae.engine.model.torques.harmonic import harmonic_rate, harmonic_value
+from gearidae.engine.model.torques.law import law_rate, law_value
 from gearidae.engine.model.torques.schedule import schedule_rate, schedule_value
 
 __all__ = ["is_constant", "torque_force", "torque_rate"]
 
 
 @compiled(inline=True)
-def torque_force(m: Model, shaft: int, t: float) -> float:
-    """Torque over base radius at scaled time t, in units of the reference load."""
+def torque_force(m: Model, shaft: int, t: float, speed: float) -> float:
+    """Torque over base radius at scaled time t and scaled speed of the shaft, in units of the reference load."""
     value = m.scene.torque[shaft].constant
     value = harmonic_value(m, shaft, t, value)
-    return schedule_value(m, shaft, t, value)
+    value = schedule_value(m, shaft, t, value)
+    if m.work.torque_law[shaft] != 0:
+        value += law_value(m, shaft, t, speed)
+    return value
 
 
 @compiled
-def torque_rate(m: Model, shaft: int, t: float) -> float:
-    """Rate of change of `torque_force`."""
-    return harmonic_rate(m, shaft, t) + schedule_rate(m, shaft)
+def torque_rate(m: Model, shaft: int, t: float, speed: float, acceleration: float) -> float:
+    """Rate of change of `torque_force` along the motion."""
+    rate = harmonic_rate(m, shaft, t) + schedule_rate(m, shaft)
+    if m.work.torque_law[shaft] != 0:
+        rate += law_rate(m, shaft, t, speed, acceleration)
+    return rate
 
 
 @compiled
 def is_constant(m: Model, shaft: int) -> bool:
     """Whether a shaft's torque never changes."""
     own = m.scene.torque[shaft]
-    return own.harmonic_count == 0 and own.knot_count == 0
+    return own.harmonic_count == 0 and own.knot_count == 0 and m.work.torque_law[shaft] == 0

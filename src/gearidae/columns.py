@@ -1,0 +1,60 @@
+"""What the solver samples: name, unit and meaning of each column, in the order in which the engine writes them.
+
+The engine fills a row of these (`gearidae.engine.model.observe`); dataset, files and their documentation follow from
+here.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+__all__ = ["GEAR_SAMPLES", "ROLLER_SAMPLES", "Column"]
+
+
+class Column(NamedTuple):
+    """One sampled quantity.
+
+    Attributes
+    ----------
+    name : str
+        Name in the dataset and in the file.
+    units : str
+        UDUNITS unit.
+    long_name : str
+        What it is, in words.
+    comment : str
+        Sign convention and the like.
+    """
+
+    name: str
+    units: str
+    long_name: str
+    comment: str = ""
+
+
+GEAR_SAMPLES: Final = (
+    Column("gear_speed", "rad s-1", "angular speed of the gear"),
+    Column("pinion_speed", "rad s-1", "angular speed of the pinion"),
+    Column("gear_angle", "rad", "rotation of the gear since the start", "not wrapped"),
+    Column(
+        "transmission_error",
+        "m",
+        "dynamic transmission error",
+        "u = R1 phi1 - R2 phi2 - e(phi1), Teodorescu et al. 2009, Eq. 4",
+    ),
+    Column("mesh_force", "N", "force along the line of action", "positive drives the gear forward"),
+    Column(
+        "gear_contact_torque",
+        "N m",
+        "torque of the tooth contacts on the gear",
+        "positive drives the gear forward; negative while adhesion holds it back",
+    ),
+    Column("drive_gap", "m", "smallest gap of all pairs on the drive flank"),
+    Column("coast_gap", "m", "smallest gap of all pairs on the coast flank"),
+    Column("pairs_in_contact", "1", "number of tooth pairs that transmit force"),
+)
+ROLLER_SAMPLES: Final = (
+    Column("height", "m", "height of the roller above the mean plane of the asperities"),
+    Column("speed", "m s-1", "velocity of the roller", "positive upwards, away from the plane"),
+    Column("force", "N", "contact force on the roller", "positive pushes the bodies apart"),
+)

@@ -1,0 +1,23 @@
+"""A motor whose torque falls linearly with its speed, as that of a DC motor at constant voltage does."""
+
+from __future__ import annotations
+
+from gearidae.torques.registry import Parameters, register_torque
+
+__all__ = ["motor"]
+
+
+@register_torque("motor", parameters=2)
+def motor(t: float, speed: float, p: Parameters) -> float:
+    """Torque [N m] of a motor, ``M0 (1 - speed / w0)``.
+
+    Parameters
+    ----------
+    t : float
+        Time [s]; of no influence.
+    speed : float
+        Angular speed of the shaft [rad/s].
+    p : ndarray, shape (2,)
+        Stall torque M0 [N m] and no-load speed w0 [rad/s].
+    """
+    return float(p[0] * (1.0 - speed / p[1]))
