@@ -15,6 +15,7 @@ __all__ = [
     "ROLLER_COLUMNS",
     "EventKind",
     "Events",
+    "Extremes",
     "Flank",
     "Ledger",
     "Solution",
@@ -191,6 +192,69 @@ class Ledger:
 
 
 @dataclass(frozen=True, slots=True)
+class Extremes:
+    """What a run has been through, kept by the engine at its own steps and at extrema located between them.
+
+    Nothing here depends on how a run is sampled. What a run has no number for is NaN: the gear's speeds of a roller,
+    a part of the run that has not been reached, the time at which a gear sticks that does not.
+
+    Attributes
+    ----------
+    min_gear_speed, max_gear_speed : float
+        Extremes of the gear's speed [rad/s].
+    settled_gear_speed : float
+        Its mean once the start-up, the first twentieth of the run, is over [rad/s].
+    settled_spread : float
+        Its largest less its smallest from then on [rad/s].
+    speed_fall, speed_rise : float
+        How far it fell below what it had reached since, and rose above what it had fallen to [rad/s].
+    late_gear_speed, late_spread : float
+        Mean and spread over the second half of the run [rad/s].
+    last_min_gear_speed : float
+        Smallest in the last twentieth of the run [rad/s].
+    reversals : int
+        How often the gear's speed has fallen to zero.
+    stick_time : float
+        When its speed first fell to zero where it still is, to half a pitch [s]; 0 if it never rose above zero.
+    stick_exits : int
+        Mesh exits until then; all of them if it has not come to stand.
+    turned_back : float
+        How far it has been turned back since, in pitches; 0 if it has not.
+    mesh_exits : int
+        Pairs of the drive flank that have left the path of contact.
+    largest_mesh_force, smallest_mesh_force : float
+        Extremes of the force along the line of action, or on a roller [N].
+    largest_mesh_force_time, smallest_mesh_force_time : float
+        When [s].
+    smallest_separation : float
+        Smallest distance of the flanks [m], of elastic ones with their deflection.
+    final_speed : float
+        Speed of the gear [rad/s] or the roller [m/s] where the run stands.
+    """
+
+    min_gear_speed: float
+    max_gear_speed: float
+    settled_gear_speed: float
+    settled_spread: float
+    speed_fall: float
+    speed_rise: float
+    late_gear_speed: float
+    late_spread: float
+    last_min_gear_speed: float
+    reversals: int
+    stick_time: float
+    stick_exits: int
+    turned_back: float
+    mesh_exits: int
+    largest_mesh_force: float
+    largest_mesh_force_time: float
+    smallest_mesh_force: float
+    smallest_mesh_force_time: float
+    smallest_separation: float
+    final_speed: float
+
+
+@dataclass(frozen=True, slots=True)
 class Solution:
     """One run as the engine leaves it.
 
@@ -210,6 +274,8 @@ class Solution:
         Simulated time reached [s]; by default that of the last sample.
     ledger : Ledger, optional
         The energy ledger; None if the run produced nothing.
+    extremes : Extremes, optional
+        Likewise.
     """
 
     time: NDArray[np.float64]
@@ -220,3 +286,4 @@ class Solution:
     message: str
     reached: float | None = None
     ledger: Ledger | None = None
+    extremes: Extremes | None = None

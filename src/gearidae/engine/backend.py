@@ -20,7 +20,7 @@ from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Ledger, Solution, Statistics
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Extremes, Ledger, Solution, Statistics
 from gearidae.scene import Scene
 
 __all__ = [
@@ -28,7 +28,7 @@ __all__ = [
     "Start",
     "choose_backend",
     "follow",
-    "ledger_at",
+    "kept_at",
     "load_driver",
     "outlook",
     "ready_driver",
@@ -203,6 +203,8 @@ class Ended:
         Simulated time reached [s].
     ledger : Ledger, optional
         The newest energy ledger; None if the run did not begin.
+    extremes : Extremes, optional
+        The newest extremes, likewise.
     """
 
     statistics: Statistics
@@ -210,6 +212,7 @@ class Ended:
     message: str
     reached: float
     ledger: Ledger | None = None
+    extremes: Extremes | None = None
 
 
 def follow(
@@ -248,6 +251,7 @@ def follow(
     tally, reached, seen = replace(begin.tally), begin.time, begin.events
     status = message = ""
     ledger: Ledger | None = None
+    extremes: Extremes | None = None
     skipped: dict[str, int] = {}
     started = time.perf_counter()
     try:
@@ -261,7 +265,7 @@ def follow(
         ):
             take(block, tally, begin.wall_time + time.perf_counter() - started)
             reached = block.time
-            ledger = block.ledger or ledger
+            ledger, extremes = block.ledger or ledger, block.extremes or extremes
             seen += len(block.events)
             if on_progress is not None:
                 on_progress(reached, seen)
@@ -269,7 +273,7 @@ def follow(
     except KeyboardInterrupt:
         status, message = "interrupted", "interrupted by the user"
     wall_time = begin.wall_time + time.perf_counter() - started
-    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached, ledger)
+    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached, ledger, extremes)
 
 
 def statistics_of(tally: Tally, wall_time: float, backend: str, skipped: dict[str, int]) -> Statistics:
@@ -339,6 +343,7 @@ def solve(
         message=ended.message,
         reached=ended.reached,
         ledger=ended.ledger,
+        extremes=ended.extremes,
     )
 
 
@@ -372,8 +377,8 @@ def outlook(
     return problem.checkpoint(0.0, problem.start).size, problem.skipped
 
 
-def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Ledger:
-    """Return the energy ledger at a checkpoint of a run.
+def kept_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> tuple[Ledger, Extremes]:
+    """Return the energy ledger and the extremes at a checkpoint of a run.
 
     Parameters
     ----------
@@ -391,7 +396,7 @@ def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Le
     problem = make_problem(scene).of_checkpoint(checkpoint)
     state = np.empty(problem.start.size)
     time = problem.restore(checkpoint, state)
-    return problem.ledger(time, state, np.zeros_like(state))
+    return problem.kept(time, state, np.zeros_like(state))
 
 
 def _events(table: NDArray[np.float64]) -> Events:

@@ -166,8 +166,8 @@ class _Run:
         """How a run ended of which only the archive's final form was missing."""
         _, skipped = engine.outlook(self._scene, self._backend, point.state)
         statistics = statistics_of(point.tally, point.wall_time, self._backend, skipped)
-        ledger = engine.ledger_at(self._scene, point.state, self._backend)
-        return engine.Ended(statistics, "finished", "", point.time, ledger)
+        ledger, extremes = engine.kept_at(self._scene, point.state, self._backend)
+        return engine.Ended(statistics, "finished", "", point.time, ledger, extremes)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
         """Make the run's dataset, without samples and events."""
@@ -182,6 +182,7 @@ class _Run:
             message=ended.message,
             reached=ended.reached,
             ledger=ended.ledger,
+            extremes=ended.extremes,
         )
         return to_dataset(self._scene, solution)
 

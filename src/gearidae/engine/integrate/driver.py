@@ -11,7 +11,7 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
-from gearidae.records import Ledger
+from gearidae.records import Extremes, Ledger
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -116,6 +116,8 @@ class Block:
         All that it takes to go on from the end of this block; present at checkpoints and at the end.
     ledger : Ledger, optional
         The energy ledger at the end of this block; missing where a block ends in the middle of a step.
+    extremes : Extremes, optional
+        Likewise.
     """
 
     rows: Floats
@@ -123,6 +125,7 @@ class Block:
     time: float
     checkpoint: Floats | None = None
     ledger: Ledger | None = None
+    extremes: Extremes | None = None
 
 
 @dataclass(slots=True)
@@ -177,7 +180,11 @@ class Output(NamedTuple):
         return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, 5)))
 
     def block(
-        self, m: Model, time: float, checkpoint: Floats | None = None, ledger: Ledger | None = None
+        self,
+        m: Model,
+        time: float,
+        checkpoint: Floats | None = None,
+        kept: tuple[Ledger | None, Extremes | None] = (None, None),
     ) -> Block:
         """Hand out what there is, and begin anew.
 
@@ -186,8 +193,10 @@ class Output(NamedTuple):
         m : Model
         time : float
             Reached, over tau.
-        checkpoint, ledger
+        checkpoint
             See `Block`.
+        kept : tuple
+            Ledger and extremes, likewise; see `gearidae.engine.model.problem.Problem.kept`.
         """
         driver = m.work.driver
         block = Block(
@@ -195,7 +204,7 @@ class Output(NamedTuple):
             self.events[: driver.events].copy(),
             time * float(m.scene.time_unit),
             checkpoint,
-            ledger,
+            *kept,
         )
         driver.rows = driver.events = 0
         return block

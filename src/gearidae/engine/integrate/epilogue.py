@@ -8,6 +8,7 @@ from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, ha
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.schedule_knots import pass_knot
+from gearidae.engine.extremes.follow import follow_extremes, note_rest
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase
@@ -56,6 +57,7 @@ def finish_step(
     """
     driver, t = m.work.driver, m.work.driver.time
     accept(m, t, y)
+    follow_extremes(m, t, y, yp, flag != 0)
     _book(m, t, y, yp, between, flag)
     if m.state.bound_exceeded != 0:
         driver.error = BOUND_EXCEEDED
@@ -66,6 +68,7 @@ def finish_step(
     if flag == ROOT:
         driver.events, action = handle(m, t, y, events, driver.events)
         afresh |= action == RESTART
+        note_rest(m, t, y)
         if action == CROWDED:
             driver.error = CHATTER
     elif flag == STOP:

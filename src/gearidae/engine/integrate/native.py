@@ -15,6 +15,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.extremes.follow import restart_extremes
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import (
     BLOCK_STEPS,
@@ -80,6 +81,7 @@ def restart(s: Stepper, stop: float) -> int:
     ida, m, t = s.handles[IDA], s.m, s.clock[0]
     set_rates(m, t, s.y, s.yp)
     restart_quadrature(m, t, s.y, s.yp)
+    restart_extremes(m, t, s.y, s.yp)
     flag = sun.IDAReInit(ida, t, s.handles[Y], s.handles[YP])
     flag |= sun.IDASetInitStep(ida, first_step(m, t, s.y, s.yp, stop - t))
     flag |= sun.IDASetStopTime(ida, stop)
@@ -238,5 +240,5 @@ def _blocks(problem: Problem, s: Stepper, out: Output, tally: Tally) -> Iterator
             m,
             time,
             problem.checkpoint(time, s.y) if driver.pending < 0 or driver.done != 0 else None,
-            problem.ledger(time, s.y, s.yp) if driver.pending <= 0 else None,
+            problem.kept(time, s.y, s.yp) if driver.pending <= 0 else (None, None),
         )

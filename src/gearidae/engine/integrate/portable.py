@@ -20,6 +20,7 @@ from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.extremes.follow import restart_extremes
 from gearidae.engine.integrate.driver import (
     BLOCK_ROWS,
     BOUND_EXCEEDED,
@@ -80,7 +81,7 @@ def run(
             solver.start(y)
         elif driver.since % _BLOCK_STEPS == 0:
             fill_tally(tally, progress)
-            yield out.block(m, driver.time, None, problem.ledger(driver.time, y, yp))
+            yield out.block(m, driver.time, None, problem.kept(driver.time, y, yp))
     solver.count()
     fill_tally(tally, progress)
     tally.ending = solver.ending or ending_of_flag(int(driver.error), bool(m.scene.nodes > 0))
@@ -89,14 +90,14 @@ def run(
     if driver.done != 0 or driver.error == BOUND_EXCEEDED:
         yield _ready(problem, m, out, tally, y, yp)
     else:
-        yield out.block(m, driver.time, None, problem.ledger(driver.time, y, yp))
+        yield out.block(m, driver.time, None, problem.kept(driver.time, y, yp))
 
 
 def _ready(problem: Problem, m: Model, out: Output, tally: Tally, y: Floats, yp: Floats) -> Block:
     """Hand out a block with a checkpoint."""
     fill_tally(tally, m.state.progress)
     time = float(m.work.driver.time)
-    return out.block(m, time, problem.checkpoint(time, y), problem.ledger(time, y, yp))
+    return out.block(m, time, problem.checkpoint(time, y), problem.kept(time, y, yp))
 
 
 def _samples(m: Model, out: Output, y: Floats, trail: _Trail) -> Iterator[Block]:
@@ -130,6 +131,7 @@ class _Solver:
         m, t, yp = self._m, float(self._driver.time), np.zeros_like(y)
         set_rates(m, t, y, yp)
         restart_quadrature(m, t, y, yp)
+        restart_extremes(m, t, y, yp)
         stop = next_stop(m)
         self._make(y.size, first_step(m, t, y, yp, stop - t))
         self._ida.init_step(t, y, yp)

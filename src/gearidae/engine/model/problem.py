@@ -12,10 +12,12 @@ from gearidae.engine.energy.balance import accumulate_energy
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.motion import kinetic_energy
 from gearidae.engine.model import checkpoint as checkpoints
+from gearidae.engine.extremes.units import extremes_in_si
+from gearidae.engine.extremes.follow import note_present
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, Floats, Model, V, assign
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
-from gearidae.records import Ledger
+from gearidae.records import Extremes, Ledger
 
 __all__ = ["Problem"]
 
@@ -119,6 +121,28 @@ class Problem:
         for part, before in zip((energy, quadrature, resistance), kept, strict=True):
             assign(part, before)
         return ledger
+
+    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[Ledger, Extremes]:
+        """Return all that is kept of the run up to an accepted time: `ledger` and `extremes`."""
+        return self.ledger(time, state, rates), self.extremes(time, state)
+
+    def extremes(self, time: float, state: Floats) -> Extremes:
+        """The extremes of the run up to an accepted time.
+
+        Parameters
+        ----------
+        time : float
+            Over tau.
+        state : ndarray, shape (n,)
+            Scaled state there.
+        """
+        m = self.model
+        kept = m.state.extremes.copy()
+        if kept.begun != 0:
+            note_present(m, state)
+        found = extremes_in_si(m, time, state)
+        assign(m.state.extremes, kept)
+        return found
 
     def _in_joules(self, time: float, state: Floats) -> Ledger:
         m, e = self.model, self.model.state.energy
