@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "ELASTIC_COLUMNS",
     "GEAR_BOUND",
     "GEAR_COLUMNS",
     "ROLLER_BOUND",
@@ -20,6 +21,7 @@ __all__ = [
     "Ledger",
     "Solution",
     "Statistics",
+    "sampled_columns",
 ]
 
 GEAR_COLUMNS = (
@@ -34,12 +36,19 @@ GEAR_COLUMNS = (
     "pairs_in_contact",
 )
 ROLLER_COLUMNS = ("height", "speed", "force")
+ELASTIC_COLUMNS = ("min_separation",)
+"""What is sampled of elastic contacts besides, last."""
 
 
 GEAR_BOUND = 10.0
 """Residual of a gear pair's energy ledger over rtol and throughput, at most; the largest of the tests' cases is 0.5."""
 ROLLER_BOUND = 100.0
 """The same of a roller, all of whose energy goes through one impact; the largest is 30."""
+
+
+def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
+    """Names of what is sampled of a scene of gears or a roller, whose contact model is `elastic` or not."""
+    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())
 
 
 class EventKind(IntEnum):

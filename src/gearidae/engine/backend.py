@@ -20,7 +20,7 @@ from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Extremes, Ledger, Solution, Statistics
+from gearidae.records import Events, Extremes, Ledger, Solution, Statistics, sampled_columns
 from gearidae.scene import Scene
 
 __all__ = [
@@ -325,7 +325,7 @@ def solve(
     given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
-    columns = GEAR_COLUMNS if scene.roller is None else ROLLER_COLUMNS
+    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
 
     def take(block: Block, tally: Tally, wall_time: float) -> None:

@@ -34,7 +34,7 @@ from gearidae.engine.model.torques.harmonic import pack_harmonics
 from gearidae.engine.model.torques.schedule import pack_schedule
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.records import sampled_columns
 from gearidae.scene import Drive, Load, Scene
 
 __all__ = ["make_problem"]
@@ -117,7 +117,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
         "harmonics": int(not drive.harmonic and not load.harmonic),
         "dry_resistance": int(s.dry == 0),
     }
-    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], GEAR_COLUMNS, skipped)
+    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], skipped)
 
 
 def _roller_problem(scene: Scene, nodes: Nodes | None) -> Problem:
@@ -139,7 +139,7 @@ def _roller_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     model = _model(s, tables, [1.0, 1.0])
     model.state.slip = 1.0
     start = [roller.height / sigma, -roller.speed * float(s.time_unit) / sigma]
-    return _begun(model, scene, start, ROLLER_COLUMNS, {})
+    return _begun(model, scene, start, {})
 
 
 # -- constants -------------------------------------------------------------------------------------------------------
@@ -299,7 +299,7 @@ def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:
 
 
 def _begun(
-    m: Model, scene: Scene, motion: list[float], columns: tuple[str, ...], skipped: dict[str, int]
+    m: Model, scene: Scene, motion: list[float], skipped: dict[str, int]
 ) -> Problem:
     """Set the histories and the energy balance for the start."""
     s = m.scene
@@ -310,6 +310,7 @@ def _begun(
     begin(m, 0.0, y)
     open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]
+    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
     return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
 
 

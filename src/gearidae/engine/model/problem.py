@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearidae.engine.energy.adhesion import joining_lag
 from gearidae.engine.energy.balance import accumulate_energy
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.motion import kinetic_energy
@@ -148,15 +149,16 @@ class Problem:
         m, e = self.model, self.model.state.energy
         unit = float(m.scene.force_unit * m.scene.length_unit)
         stored, pending = stored_energy(m, state)
+        lag = joining_lag(m)
         return Ledger(
             time=time * self.time_unit,
             drive_work=unit * float(e.drive_work),
-            radius_work=unit * float(e.radius_work),
+            radius_work=unit * float(e.radius_work - lag),
             model_change=unit * float(e.model_change),
             drag_loss=unit * float(e.drag_loss),
             dry_loss=unit * float(e.dry_loss),
             damping_loss=unit * float(e.damping_loss),
-            adhesion_loss=unit * float(e.adhesion_loss + pending),
+            adhesion_loss=unit * float(e.adhesion_loss + pending - lag),
             stored_change=unit * float(stored - pending - e.start_stored),
             kinetic_change=unit * float(kinetic_energy(m, state) - e.start_kinetic),
             throughput=unit * float(e.throughput),

@@ -198,6 +198,9 @@ HISTORY: Final = _record(
         _REAL,
         (MATERIALS,),
     ),  # energy of the asperities above `joined` that joining takes (asperity model)
+    ("lag", _REAL),  # what joining has taken less than it would have at the present contact length,
+    ("lag_power", _REAL),  # its rate at the last accepted time, and the rate of that
+    ("lag_rate", _REAL),
     ("length", _REAL),  # contact length of an elastic contact, sqrt(radius / pitch), at its last evaluation
     ("loaded", _INT),  # 1 if that evaluation found it within reach
     ("stretched", _INT),  # 1 if asperities of it were stretched at the last turning point
