@@ -82,6 +82,8 @@ class GearOutcome:
         exits = "1 mesh exit" if self.mesh_exits == 1 else f"{self.mesh_exits} mesh exits"
         if self.verdict == "unfinished":
             return f"not followed to its end ({self.status})"
+        if self.verdict == "stops" and not math.isnan(self.stick_time):
+            return f"came to rest at {_seconds(self.stick_time)} ({exits})"
         if self.verdict not in ("sticks", "runs back"):
             return f"{_IN_WORDS[self.verdict]} through {exits} in {_seconds(self.window)}"
         if self.stick_time == 0.0 and self.verdict == "sticks":

@@ -150,7 +150,13 @@ class _Run:
         if self._scene.roller is None:
             end = self._scene.run.duration if ended.status == "finished" else 0.0
             told = account_of(
-                self._scene, archive.read, archive.samples, archive.events, end, ledger_of(template)
+                self._scene,
+                archive.read,
+                archive.samples,
+                archive.events,
+                end,
+                ledger_of(template),
+                ended.extremes,
             )
             template.attrs["account"] = told.as_json()
         return template

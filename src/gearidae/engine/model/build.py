@@ -46,7 +46,10 @@ ROOT_SPACING = 1e-12  # what is close, over the time itself
 
 
 def make_problem(
-    scene: Scene, nodes: Nodes | None = None, digest: tuple[float, ...] | None = None
+    scene: Scene,
+    nodes: Nodes | None = None,
+    digest: tuple[float, ...] | None = None,
+    columns: tuple[str, ...] | None = None,
 ) -> Problem:
     """Scale a scene and tabulate its force laws.
 
@@ -57,6 +60,8 @@ def make_problem(
         Layout of an elastic contact's nodes, in place of the one that is estimated.
     digest : tuple of four floats, optional
         Of the scene whose checkpoints these are, if it is not this one.
+    columns : tuple of str, optional
+        What that scene samples.
 
     Raises
     ------
@@ -65,16 +70,17 @@ def make_problem(
     """
     build = _gear_problem if scene.roller is None else _roller_problem
     problem = build(scene, nodes)
+    problem.columns = columns or problem.columns
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
     count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
     if count > 0:
         problem.depth = 1 if nodes is None else nodes.depth
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
-            problem.deeper = lambda: make_problem(scene, deeper, problem.digest)
+            problem.deeper = lambda: make_problem(scene, deeper, problem.digest, problem.columns)
     elif scene.contact.model == "auto":
         bodies = scene.replace({"contact.model": "elastic"})
-        problem.elastic = lambda: make_problem(bodies, None, problem.digest)
+        problem.elastic = lambda: make_problem(bodies, None, problem.digest, problem.columns)
     return problem
 
 
