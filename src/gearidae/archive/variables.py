@@ -186,13 +186,17 @@ _FORCE_EXTREMES = (
 _GEAR_EXTREMES = (
     Variable("min_gear_speed", (), "rad s-1", "smallest speed of the gear"),
     Variable("max_gear_speed", (), "rad s-1", "largest speed of the gear"),
-    Variable("settled_gear_speed", (), "rad s-1", "mean speed of the gear after the first twentieth of the run"),
+    Variable(
+        "settled_gear_speed", (), "rad s-1", "mean speed of the gear after the first twentieth of the run"
+    ),
     Variable("settled_spread", (), "rad s-1", "its largest speed less its smallest from then on"),
     Variable("speed_fall", (), "rad s-1", "how far its speed fell from then on below what it had reached"),
     Variable("speed_rise", (), "rad s-1", "how far its speed rose from then on above what it had fallen to"),
     Variable("late_gear_speed", (), "rad s-1", "mean speed of the gear in the second half of the run"),
     Variable("late_spread", (), "rad s-1", "its largest speed less its smallest there"),
-    Variable("last_min_gear_speed", (), "rad s-1", "smallest speed of the gear in the last twentieth of the run"),
+    Variable(
+        "last_min_gear_speed", (), "rad s-1", "smallest speed of the gear in the last twentieth of the run"
+    ),
     Variable("reversals", (), "1", "how often the gear's speed fell to zero", np.int64),
     Variable(
         "stick_time",

@@ -100,11 +100,7 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
 @compiled
 def cubic(s: float, h: float, f0: float, rate0: float, f1: float, rate1: float) -> float:
     """Cubic with given values and rates at both ends, at a share of the way between them."""
-    return (
-        f0
-        + s * s * (3.0 - 2.0 * s) * (f1 - f0)
-        + s * (1.0 - s) * h * ((1.0 - s) * rate0 - s * rate1)
-    )
+    return f0 + s * s * (3.0 - 2.0 * s) * (f1 - f0) + s * (1.0 - s) * h * ((1.0 - s) * rate0 - s * rate1)
 
 
 @compiled

@@ -32,9 +32,7 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         "smallest_separation": float(s.length_unit * e.separation),
     }
     if s.kind == ROLLER:
-        return Extremes(
-            **forces, **_NO_GEAR, **_NEVER, final_speed=float(y[V] * s.length_unit / s.time_unit)
-        )
+        return Extremes(**forces, **_NO_GEAR, **_NEVER, final_speed=float(y[V] * s.length_unit / s.time_unit))
     speed = float(s.length_unit / (s.time_unit * s.gear_radius))
     place = float(y[PHASE] + m.state.turns)
     means = [_mean(m, part, time, place) for part in e.part]

@@ -304,9 +304,7 @@ def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:
     )
 
 
-def _begun(
-    m: Model, scene: Scene, motion: list[float], skipped: dict[str, int]
-) -> Problem:
+def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int]) -> Problem:
     """Set the histories and the energy balance for the start."""
     s = m.scene
     y = np.concatenate([motion, np.zeros(int(s.nodes * s.histories))])

@@ -182,7 +182,9 @@ def _between(index: int, times: Floats, time: float) -> bool:
 def _check_extremes(e: Record, time: float) -> None:
     """Check that extremes are in order, and times of the past."""
     _require(e.begun in _FLAGS and e.held in _FLAGS, "flags of the extremes", "0 or 1")
-    _require(e.lowest_speed <= e.highest_speed and e.smallest_force <= e.largest_force, "extremes", "in order")
+    _require(
+        e.lowest_speed <= e.highest_speed and e.smallest_force <= e.largest_force, "extremes", "in order"
+    )
     counts = (e.reversals, e.mesh_exits, e.held_exits)
     _require(min(counts) >= 0 and e.held_exits <= e.mesh_exits, "counts of the extremes", "positive")
     times = (e.largest_force_time, e.smallest_force_time, e.held_time, *e.part["time"])

@@ -370,17 +370,19 @@ DRIVER: Final = _record(
     ("since", _INT),  # steps since the last checkpoint
 )
 
-TRACK: Final = _record(  # what the extremes are located from: the last accepted time, and forces at the last three
-    ("time", _REAL),
-    ("speed", _REAL),
-    ("speed_rate", _REAL),
-    ("place", _REAL),
-    ("travel", _REAL),  # transmission error, or height
-    ("travel_rate", _REAL),
-    ("next_part", _REAL),  # time at which the coming part of the run begins
-    ("forces", _INT),  # known since the force last had a corner
-    ("force_time", _REAL, (3,)),
-    ("force", _REAL, (3,)),
+TRACK: Final = (
+    _record(  # what the extremes are located from: the last accepted time, and forces at the last three
+        ("time", _REAL),
+        ("speed", _REAL),
+        ("speed_rate", _REAL),
+        ("place", _REAL),
+        ("travel", _REAL),  # transmission error, or height
+        ("travel_rate", _REAL),
+        ("next_part", _REAL),  # time at which the coming part of the run begins
+        ("forces", _INT),  # known since the force last had a corner
+        ("force_time", _REAL, (3,)),
+        ("force", _REAL, (3,)),
+    )
 )
 
 WORK: Final = _record(
