@@ -12,8 +12,8 @@ been worked out as if nothing were lost until the turning point (`gearidae.engin
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.elastic.calls import nodes_joining_loss
 from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.elastic.calls import nodes_joining_loss
 from gearidae.engine.energy.contacts import joining_loss
 from gearidae.engine.energy.quadrature import integral
 from gearidae.engine.energy.radius import length_and_rates, pairs_on_path

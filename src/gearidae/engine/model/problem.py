@@ -12,9 +12,9 @@ from gearidae.engine.energy.adhesion import joining_lag
 from gearidae.engine.energy.balance import accumulate_energy
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.motion import kinetic_energy
-from gearidae.engine.model import checkpoint as checkpoints
-from gearidae.engine.extremes.units import extremes_in_si
 from gearidae.engine.extremes.follow import note_present
+from gearidae.engine.extremes.units import extremes_in_si
+from gearidae.engine.model import checkpoint as checkpoints
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, Floats, Model, V, assign
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
