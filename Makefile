@@ -17,6 +17,7 @@ BIN    := $(VENV)/bin
 run: $(VENV)/installed
 	mkdir -p out
 	$(BIN)/gearidae sweep cases/low_speed.toml --over coating.sam_fraction=1,0.8,0.6,0.5,0.47,0.45 \
+	    --set run.duration=0.6 \
 	    -o out/low_speed.nc --overwrite
 	$(BIN)/gearidae plot out/low_speed.nc -o out/low_speed.png --overwrite
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-__all__ = ["GEAR_SAMPLES", "ROLLER_SAMPLES", "Column"]
+__all__ = ["ELASTIC_SAMPLES", "GEAR_SAMPLES", "ROLLER_SAMPLES", "Column"]
 
 
 class Column(NamedTuple):
@@ -58,3 +58,4 @@ ROLLER_SAMPLES: Final = (
     Column("speed", "m s-1", "velocity of the roller", "positive upwards, away from the plane"),
     Column("force", "N", "contact force on the roller", "positive pushes the bodies apart"),
 )
+ELASTIC_SAMPLES: Final = (Column("min_separation", "m", "smallest distance of the flanks, deflection included"),)

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.columns import GEAR_SAMPLES, ROLLER_SAMPLES
+from gearidae.columns import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES
 
 __all__ = [
+    "ELASTIC_COLUMNS",
     "GEAR_BOUND",
     "GEAR_COLUMNS",
     "QUADRATURE_BOUND",
@@ -26,11 +27,13 @@ __all__ = [
     "Ending",
     "EventKind",
     "Events",
+    "Extremes",
     "Flank",
     "Ledger",
     "Solution",
     "Statistics",
     "Words",
+    "sampled_columns",
 ]
 
 Words = NDArray[Any]
@@ -38,6 +41,8 @@ Words = NDArray[Any]
 
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
+ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
+"""What is sampled of elastic contacts besides, last."""
 
 
 GEAR_BOUND = 10.0
@@ -55,6 +60,11 @@ ROUNDING_BOUND = 1e3 * sys.float_info.epsilon
 """Rounding errors in sums over the steps of a run, over the sum of their sizes."""
 TRAVEL_BOUND = 10.0 * sys.float_info.epsilon
 """Rounding errors of a travel over the pitches that it is counted within."""
+
+
+def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
+    """Names of what is sampled of a scene of gears or a roller, whose contact model is `elastic` or not."""
+    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())
 
 
 class EventKind(IntEnum):
@@ -305,7 +315,9 @@ class Block:
         All that it takes to go on from the end of this block; present at checkpoints and at the end. Only the engine
         knows what the words mean, and checks them when it is to go on from there.
     ledger : Ledger, optional
-        The energy ledger at the end of this block; missing where a block ends in the middle of a step.
+        The energy balance at the end of this block; missing where a block ends in the middle of a step.
+    extremes : Extremes, optional
+        Likewise.
     """
 
     rows: NDArray[np.float64]
@@ -313,6 +325,70 @@ class Block:
     time: float
     checkpoint: Words | None = None
     ledger: Ledger | None = None
+    extremes: Extremes | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """What a run has been through, kept by the engine at its own steps and at extrema located between them.
+
+    Nothing here depends on how a run is sampled. What a run has no number for is NaN: the gear's speeds of a roller,
+    a part of the run that has not been reached, the time at which a gear sticks that does not.
+
+    Attributes
+    ----------
+    min_gear_speed, max_gear_speed : float
+        Extremes of the gear's speed [rad/s].
+    settled_gear_speed : float
+        Its mean once the start-up, the first twentieth of the run, is over [rad/s].
+    settled_spread : float
+        Its largest less its smallest from then on [rad/s].
+    speed_fall, speed_rise : float
+        How far it fell below what it had reached since, and rose above what it had fallen to [rad/s].
+    late_gear_speed, late_spread : float
+        Mean and spread over the second half of the run [rad/s].
+    last_min_gear_speed : float
+        Smallest in the last twentieth of the run [rad/s].
+    reversals : int
+        How often the gear's speed has fallen to zero.
+    stick_time : float
+        When its speed first fell to zero where it still is, to half a pitch [s]; 0 if it never rose above zero.
+    stick_exits : int
+        Mesh exits until then; all of them if it has not come to stand.
+    turned_back : float
+        How far it has been turned back since, in pitches; 0 if it has not.
+    mesh_exits : int
+        Pairs of the drive flank that have left the path of contact.
+    largest_mesh_force, smallest_mesh_force : float
+        Extremes of the force along the line of action, or on a roller [N].
+    largest_mesh_force_time, smallest_mesh_force_time : float
+        When [s].
+    smallest_separation : float
+        Smallest distance of the flanks [m], of elastic ones with their deflection.
+    final_speed : float
+        Speed of the gear [rad/s] or the roller [m/s] where the run stands.
+    """
+
+    min_gear_speed: float
+    max_gear_speed: float
+    settled_gear_speed: float
+    settled_spread: float
+    speed_fall: float
+    speed_rise: float
+    late_gear_speed: float
+    late_spread: float
+    last_min_gear_speed: float
+    reversals: int
+    stick_time: float
+    stick_exits: int
+    turned_back: float
+    mesh_exits: int
+    largest_mesh_force: float
+    largest_mesh_force_time: float
+    smallest_mesh_force: float
+    smallest_mesh_force_time: float
+    smallest_separation: float
+    final_speed: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -335,6 +411,8 @@ class Solution:
         Simulated time reached [s]; by default that of the last sample.
     ledger : Ledger, optional
         The energy ledger; None if the run produced nothing.
+    extremes : Extremes, optional
+        Likewise.
     """
 
     time: NDArray[np.float64]
@@ -345,3 +423,4 @@ class Solution:
     message: str
     reached: float | None = None
     ledger: Ledger | None = None
+    extremes: Extremes | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 import gearidae as gd
 from gearidae.analysis.verdict import IRREGULAR_ABOVE, outcomes
 from gearidae.archive import combine, to_dataset
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Events, Solution, Statistics
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Events, Extremes, Solution, Statistics
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 201})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 201})
@@ -33,7 +34,9 @@ def solution_of(scene, *, reached=1.0, status="finished", impacts=3):
 
 def gear_run(speed, scene=LOW, **options):
     solution = solution_of(scene, **options)
-    solution.samples["gear_speed"] = speed[: len(solution.time)]
+    speed = speed[: len(solution.time)]
+    solution.samples["gear_speed"] = speed
+    solution.samples["gear_angle"] = np.cumsum(speed) * scene.run.duration / (scene.run.samples - 1)
     return to_dataset(scene, solution)
 
 
@@ -50,10 +53,14 @@ def ripple(share):
         (np.where(AT < 0.04, ripple(1.5), 1.5), "turns smoothly"),  # bounces at the start only
         (1.5 - 2.0 * AT, "sticks"),
         (np.maximum(1.5 - 2.0 * AT, 0.0), "sticks"),
-        (1.5 * np.abs(1.0 - 2.0 * AT), "sticks"),  # at rest for an instant
+        (1.5 * np.abs(1.0 - 2.0 * AT), "irregular"),  # at rest for an instant, and turns on
         (np.zeros(201), "sticks"),  # never gets going
         (np.where(AT < 0.01, 0.0, 1.5), "turns smoothly"),  # starts from rest
         (np.where(AT < 0.04, 20 * AT * np.cos(80 * np.pi * AT), 1.5), "turns smoothly"),  # and bounces there
+        (2.0 * AT, "running up"),
+        (2.0 - 1.9 * AT, "running down"),
+        (np.minimum(6.0 * AT, 1.5), "turns smoothly"),  # up to speed by the second half
+        (-1.5 * AT, "runs back"),
         (np.where(AT < 0.04, 20 * AT, 1.5 - 2.0 * AT), "sticks"),  # from rest, and comes to rest again
     ],
 )
@@ -75,6 +82,73 @@ def test_a_run_cut_short_is_unfinished_unless_it_had_stuck():
     (stuck,) = outcomes(gear_run(1.5 - 4.0 * AT, **early))
     assert (turning.verdict, turning.status) == ("unfinished", "chatter")
     assert (stuck.verdict, stuck.status) == ("sticks", "chatter")
+
+
+EXTREMES = Extremes(
+    min_gear_speed=1.4,
+    max_gear_speed=1.6,
+    settled_gear_speed=1.5,
+    settled_spread=0.2,
+    speed_fall=0.2,
+    speed_rise=0.2,
+    late_gear_speed=1.5,
+    late_spread=0.2,
+    last_min_gear_speed=1.4,
+    reversals=0,
+    stick_time=math.nan,
+    stick_exits=5,
+    turned_back=0.0,
+    mesh_exits=5,
+    largest_mesh_force=3e-13,
+    largest_mesh_force_time=0.1,
+    smallest_mesh_force=-4e-13,
+    smallest_mesh_force_time=0.2,
+    smallest_separation=3e-8,
+    final_speed=1.5,
+)
+STUCK = {"stick_time": 0.2124, "stick_exits": 4, "mesh_exits": 9, "reversals": 3}
+
+
+@pytest.mark.parametrize(
+    ("found", "verdict", "words"),
+    [
+        ({}, "turns smoothly", "turned smoothly through 5 mesh exits in 0.3 s"),
+        (STUCK, "sticks", "sticks at 0.212 s (4 mesh exits)"),
+        (STUCK | {"stick_exits": 1, "stick_time": 0.0123}, "sticks", "sticks at 12.3 ms (1 mesh exit)"),
+        (STUCK | {"turned_back": 0.6}, "runs back", "runs back at 0.212 s (4 mesh exits)"),
+        ({"stick_time": 0.0, "stick_exits": 0}, "sticks", "does not start in 0.3 s"),
+        (
+            {"settled_spread": 0.5, "speed_fall": 0.5, "speed_rise": 0.4},
+            "irregular",
+            "turned irregularly through 5 mesh exits in 0.3 s",
+        ),
+        (
+            {"settled_spread": 0.5, "speed_fall": 0.3, "speed_rise": 0.5, "late_spread": 0.4},
+            "running up",
+            "was still running up through 5 mesh exits in 0.3 s",
+        ),
+        (
+            {"settled_spread": 0.5, "speed_fall": 0.5, "speed_rise": 0.3, "late_spread": 0.4},
+            "running down",
+            "was still running down through 5 mesh exits in 0.3 s",
+        ),
+    ],
+)
+def test_a_verdict_follows_from_the_extremes_and_not_from_the_samples(found, verdict, words):
+    solution = dataclasses.replace(solution_of(LOW), extremes=dataclasses.replace(EXTREMES, **found))
+    solution.samples["gear_speed"] = np.full(len(solution.time), -3.0)
+    (outcome,) = outcomes(to_dataset(LOW, solution))
+    assert (outcome.verdict, outcome.words) == (verdict, words)
+    assert (outcome.min_speed, outcome.max_speed) == (1.4, 1.6)
+
+
+@pytest.mark.parametrize("fraction", [1.0, 0.5, 0.47])
+def test_a_verdict_is_the_same_however_a_run_is_sampled_and_to_whatever_tolerance(fraction):
+    scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": fraction})
+    ways = [{"samples": 5}, {"samples": 301}, {"samples": 30001}, {"samples": "off"}]
+    ways += [{"samples": 5, "rtol": rtol} for rtol in (1e-5, 1e-7, 1e-9)]
+    told = {outcomes(gd.simulate(scene, t_end=0.3, **way))[0].words for way in ways}
+    assert len(told) == 1, told
 
 
 def test_impacts_are_counted_run_by_run():

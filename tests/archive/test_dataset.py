@@ -14,7 +14,7 @@ import gearidae as gd
 from gearidae.archive import combine, dimension_names, to_dataset
 from gearidae.archive.select import run_value, runs
 from gearidae.archive.variables import EVENTS, SAMPLES
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Statistics
+from gearidae.records import ELASTIC_COLUMNS, GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Statistics
 from gearidae.runs.running import unsolved
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
@@ -46,7 +46,7 @@ def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
 
 
 def test_catalogue_knows_every_column_of_the_engine():
-    assert set(SAMPLES) == {*GEAR_COLUMNS, *ROLLER_COLUMNS}
+    assert set(SAMPLES) == {*GEAR_COLUMNS, *ROLLER_COLUMNS, *ELASTIC_COLUMNS}
 
 
 def test_gear_run_has_the_promised_layout(make_solution):

@@ -61,7 +61,7 @@ def test_run(low, folder, capfd):
     assert main(["run", low, *SHORT, "coating.sam_fraction=0.8"]) == 0
     out, err = capfd.readouterr()
     assert err == ""
-    assert "turns smoothly" in out
+    assert "turned smoothly" in out
     assert "low.nc" in out
     ds = gd.open_archive("low.nc")
     assert ds.sam_fraction == 0.8
@@ -80,7 +80,7 @@ def test_sweep(low, folder, capfd):
     out, err = capfd.readouterr()
     assert err == ""
     assert "sam_fraction" in out
-    assert "turns smoothly" in out
+    assert "turned smoothly" in out
     ds = gd.open_archive("low.nc")
     assert ds.sam_fraction.values.tolist() == [1.0, 0.9, 0.8]
     for fraction in ("1", "0.9", "0.8"):
@@ -214,7 +214,7 @@ def test_a_failed_run_of_a_sweep_is_exit_3_and_named(low, folder, capfd, monkeyp
     assert main(["sweep", low, "--over", "coating.sam_fraction=1,0.5", *SHORT]) == 3
     out, err = capfd.readouterr()
     assert err == "gearidae: sam_fraction = 0.5: it chatters\n"
-    assert "turns smoothly" in out
+    assert "turned smoothly" in out
     assert gd.open_archive("low.nc").status.values.tolist() == ["finished", "chatter"]
 
 

@@ -19,8 +19,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.energy import ledger_of
+from gearidae.archive.extremes import extremes_of
 from gearidae.archive.select import is_roller, scene_of
-from gearidae.records import EventKind
+from gearidae.records import EventKind, Extremes
 from gearidae.scene import Scene
 
 __all__ = ["Account", "account", "account_of", "with_account"]
@@ -65,7 +66,8 @@ class Account:
     impacts : int
         Contacts made.
     largest_force, largest_force_time : float
-        Largest sampled force along the line of action [N], either way, and when.
+        Largest force along the line of action [N], either way, and when; from the engine's extremes, which know it
+        whatever is sampled, or from the samples of a run that is not at its end.
     drive_work : float
         Done by the torque on the pinion.
     drag_loss, dry_loss, damping_loss : float
@@ -138,7 +140,13 @@ def account(ds: xr.Dataset) -> Account | None:
     end = float(ds.attrs["t_end"]) if ds.attrs["status"] == "finished" else 0.0
     scene = Scene.from_dict(scene_of(ds))
     return account_of(
-        scene, lambda name, cut: ds[name][cut].values, ds.sizes["time"], ds.sizes["event"], end, ledger_of(ds)
+        scene,
+        lambda name, cut: ds[name][cut].values,
+        ds.sizes["time"],
+        ds.sizes["event"],
+        end,
+        ledger_of(ds),
+        extremes_of(ds),
     )
 
 
@@ -149,6 +157,7 @@ def account_of(
     events: int,
     end: float,
     ledger: Mapping[str, float] | None = None,
+    extremes: Extremes | None = None,
 ) -> Account:
     """Give an account of a run that is kept anywhere.
 
@@ -164,6 +173,8 @@ def account_of(
         Time that the run is known to have reached [s], besides that of samples and events.
     ledger : mapping, optional
         The run's energy ledger, from `gearidae.archive.energy.ledger_of`.
+    extremes : Extremes, optional
+        The run's extremes, from `gearidae.archive.extremes.extremes_of`.
 
     Returns
     -------
@@ -176,21 +187,32 @@ def account_of(
     for piece in _pieces(read, samples, _COLUMNS, overlap=1):
         fine.add(piece)
     end = max(end, incidents.time, np.nan_to_num(fine.time))
-    at_rest, resting = incidents.rest(end, moved=fine.top_speed > 0.0)
+    top, force, force_time = fine.top_speed, fine.largest_force, fine.largest_force_time
+    if extremes is not None:
+        top = extremes.max_gear_speed
+        force, force_time = _largest_force(extremes)
+    at_rest, resting = incidents.rest(end, moved=top > 0.0)
     adhering, clinging = fine.adhering()
     return Account(
-        top_speed=fine.top_speed,
-        time_to_speed=_time_to_speed(read, samples, fine.top_speed),
+        top_speed=top,
+        time_to_speed=_time_to_speed(read, samples, top),
         sticks=incidents.counts[EventKind.STICK],
         slips=incidents.counts[EventKind.SLIP],
         time_at_rest=at_rest,
         time_adhering=adhering,
         held_by="dry resistance" if resting else "adhesion" if clinging else "",
         impacts=incidents.counts[EventKind.ONSET],
-        largest_force=fine.largest_force,
-        largest_force_time=fine.largest_force_time,
+        largest_force=force,
+        largest_force_time=force_time,
         **_energies(ledger),
     )
+
+
+def _largest_force(extremes: Extremes) -> tuple[float, float]:
+    """Return the larger of both extremes of the force, without its sign, and when it acted."""
+    if extremes.largest_mesh_force >= -extremes.smallest_mesh_force:
+        return extremes.largest_mesh_force, extremes.largest_mesh_force_time
+    return -extremes.smallest_mesh_force, extremes.smallest_mesh_force_time
 
 
 def _energies(ledger: Mapping[str, float] | None) -> dict[str, float]:

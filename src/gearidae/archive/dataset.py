@@ -12,6 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.energy import ledger_attribute, ledger_numbers
+from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.variables import EVENTS, LEDGER, RUN, SAM_FRACTION, SAMPLES, TIME, by_name, columns
 from gearidae.errors import SceneError
@@ -45,6 +46,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
         name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in _columns(scene)
     }
     variables |= _event_variables([solution], np.array([fraction]))
+    variables |= extreme_variables(scene, [solution])
     return xr.Dataset(
         variables,
         coords={
@@ -126,6 +128,7 @@ def combine(
         source = [s if name in ("status", "message") else s.statistics for s in solutions]
         values = np.array([getattr(each, name) for each in source], dtype=variable.dtype)
         variables[name] = (dims, values.reshape(shape), variable.attributes)
+    variables |= extreme_variables(scene, solutions, dims, shape)
     kept = [ledger_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
     for name, variable in LEDGER.items():
         values = np.array([numbers.get(name, math.nan) for numbers in kept])
@@ -180,7 +183,7 @@ def _samples(solution: Solution, name: str) -> NDArray[np.float64]:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(is_roller=scene.roller is not None)
+    return columns(scene.roller is not None, scene.contact.model == "elastic")
 
 
 def key_labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:

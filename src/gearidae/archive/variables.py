@@ -15,10 +15,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gearidae.columns import GEAR_SAMPLES, ROLLER_SAMPLES
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Flank
+from gearidae.columns import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES
+from gearidae.records import EventKind, Flank, sampled_columns
 
-__all__ = ["EVENTS", "LEDGER", "RUN", "SAMPLES", "SAM_FRACTION", "TIME", "Variable", "by_name", "columns"]
+__all__ = [
+    "EVENTS",
+    "EXTREMES",
+    "LEDGER",
+    "ROLLER_EXTREMES",
+    "RUN",
+    "SAMPLES",
+    "SAM_FRACTION",
+    "TIME",
+    "Variable",
+    "by_name",
+    "columns",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +82,7 @@ SAM_FRACTION = Variable(
 
 SAMPLES: Mapping[str, Variable] = {
     column.name: Variable(column.name, ("time",), column.units, column.long_name, comment=column.comment)
-    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES)
+    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES, *ELASTIC_SAMPLES)
 }
 
 _EVENTS = (
@@ -117,15 +129,60 @@ _LEDGER = (
     Variable("residual", (), "J", "what does not add up in the energy ledger"),
     Variable("residual_bound", (), "J", "what the residual stays below in a sound run"),
 )
+_FORCE_EXTREMES = (
+    Variable("largest_mesh_force", (), "N", "largest force along the line of action, or on the roller"),
+    Variable("largest_mesh_force_time", (), "s", "when it acted"),
+    Variable("smallest_mesh_force", (), "N", "smallest force along the line of action, or on the roller"),
+    Variable("smallest_mesh_force_time", (), "s", "when it acted"),
+    Variable("smallest_separation", (), "m", "smallest distance of the flanks, deflection included"),
+    Variable(
+        "min_separation",
+        (),
+        "m",
+        "smallest distance of the flanks, deflection included",
+        comment="of elastic contacts along time, of others over the run",
+    ),
+    Variable("final_speed", (), "1", "speed of the gear [rad/s] or the roller [m/s] where the run ended"),
+)
+_GEAR_EXTREMES = (
+    Variable("min_gear_speed", (), "rad s-1", "smallest speed of the gear"),
+    Variable("max_gear_speed", (), "rad s-1", "largest speed of the gear"),
+    Variable(
+        "settled_gear_speed", (), "rad s-1", "mean speed of the gear after the first twentieth of the run"
+    ),
+    Variable("settled_spread", (), "rad s-1", "its largest speed less its smallest from then on"),
+    Variable("speed_fall", (), "rad s-1", "how far its speed fell from then on below what it had reached"),
+    Variable("speed_rise", (), "rad s-1", "how far its speed rose from then on above what it had fallen to"),
+    Variable("late_gear_speed", (), "rad s-1", "mean speed of the gear in the second half of the run"),
+    Variable("late_spread", (), "rad s-1", "its largest speed less its smallest there"),
+    Variable(
+        "last_min_gear_speed", (), "rad s-1", "smallest speed of the gear in the last twentieth of the run"
+    ),
+    Variable("reversals", (), "1", "how often the gear's speed fell to zero", np.int64),
+    Variable(
+        "stick_time",
+        (),
+        "s",
+        "when the gear came to stand",
+        comment="first fall of its speed to zero where it still is, to half a pitch; NaN if it turns",
+    ),
+    Variable("stick_exits", (), "1", "mesh exits on the drive flank until then", np.int64),
+    Variable("turned_back", (), "1", "pitches by which the gear has been turned back since it came to stand"),
+    Variable("mesh_exits", (), "1", "mesh exits on the drive flank", np.int64),
+)
 LEDGER: Mapping[str, Variable] = {variable.name: variable for variable in _LEDGER}
+ROLLER_EXTREMES: Mapping[str, Variable] = {variable.name: variable for variable in _FORCE_EXTREMES}
+EXTREMES: Mapping[str, Variable] = {
+    variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES)
+}
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
 
 
-def columns(is_roller: bool) -> tuple[str, ...]:
-    """Names of the sampled columns of a gear or a roller scene."""
-    return ROLLER_COLUMNS if is_roller else GEAR_COLUMNS
+def columns(is_roller: bool, is_elastic: bool = False) -> tuple[str, ...]:
+    """Names of the sampled columns of a gear or a roller scene, whose contact model is elastic or not."""
+    return sampled_columns(roller=is_roller, elastic=is_elastic)
 
 
 def by_name() -> dict[str, Variable]:
     """Every variable of the catalogue by its name."""
-    return {"time": TIME, "sam_fraction": SAM_FRACTION, **SAMPLES, **EVENTS, **RUN, **LEDGER}
+    return {"time": TIME, "sam_fraction": SAM_FRACTION, **SAMPLES, **EVENTS, **RUN, **LEDGER, **EXTREMES}

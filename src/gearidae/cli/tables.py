@@ -137,7 +137,9 @@ def _roller_cells(outcome: RollerOutcome) -> Sequence[str]:
 
 
 def _verdict(outcome: GearOutcome | RollerOutcome) -> str:
-    return outcome.verdict if outcome.status == "finished" else f"{outcome.verdict} ({outcome.status})"
+    if outcome.status == "finished" or outcome.verdict == "unfinished":
+        return outcome.words
+    return f"{outcome.words} ({outcome.status})"
 
 
 def _number(value: float) -> str:

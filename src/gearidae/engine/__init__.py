@@ -1,5 +1,5 @@
 """The engine: one residual, its guards and histories, and two drivers that integrate it with SUNDIALS IDA."""
 
-from gearidae.engine.backend import Ended, Start, choose_backend, follow, ledger_at, outlook, solve
+from gearidae.engine.backend import Ended, Start, choose_backend, follow, kept_at, outlook, solve
 
-__all__ = ["Ended", "Start", "choose_backend", "follow", "ledger_at", "outlook", "solve"]
+__all__ = ["Ended", "Start", "choose_backend", "follow", "kept_at", "outlook", "solve"]

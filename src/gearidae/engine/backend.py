@@ -20,7 +20,7 @@ from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Ledger, Solution, Statistics
+from gearidae.records import Events, Extremes, Ledger, Solution, Statistics, sampled_columns
 from gearidae.scene import Scene
 
 __all__ = [
@@ -28,7 +28,7 @@ __all__ = [
     "Start",
     "choose_backend",
     "follow",
-    "ledger_at",
+    "kept_at",
     "load_driver",
     "outlook",
     "ready_driver",
@@ -205,6 +205,8 @@ class Ended:
         Simulated time reached [s].
     ledger : Ledger, optional
         The latest energy balance; None if the run did not begin.
+    extremes : Extremes, optional
+        The latest extremes, likewise.
     """
 
     statistics: Statistics
@@ -212,6 +214,7 @@ class Ended:
     message: str
     reached: float
     ledger: Ledger | None = None
+    extremes: Extremes | None = None
 
 
 def follow(
@@ -250,6 +253,7 @@ def follow(
     tally, reached, seen = replace(begin.tally), begin.time, begin.events
     status = message = ""
     ledger: Ledger | None = None
+    extremes: Extremes | None = None
     skipped: dict[str, int] = {}
     started = time.perf_counter()
     try:
@@ -263,7 +267,7 @@ def follow(
         ):
             take(block, tally, begin.wall_time + time.perf_counter() - started)
             reached = block.time
-            ledger = block.ledger or ledger
+            ledger, extremes = block.ledger or ledger, block.extremes or extremes
             seen += len(block.events)
             if on_progress is not None:
                 on_progress(reached, seen)
@@ -271,7 +275,7 @@ def follow(
     except KeyboardInterrupt:
         status, message = "interrupted", "interrupted by the user"
     wall_time = begin.wall_time + time.perf_counter() - started
-    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached, ledger)
+    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached, ledger, extremes)
 
 
 def statistics_of(tally: Tally, wall_time: float, backend: str, skipped: dict[str, int]) -> Statistics:
@@ -323,7 +327,7 @@ def solve(
     given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
-    columns = GEAR_COLUMNS if scene.roller is None else ROLLER_COLUMNS
+    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
 
     def take(block: Block, tally: Tally, wall_time: float) -> None:
@@ -341,6 +345,7 @@ def solve(
         message=ended.message,
         reached=ended.reached,
         ledger=ended.ledger,
+        extremes=ended.extremes,
     )
 
 
@@ -374,8 +379,8 @@ def outlook(
     return problem.checkpoint(0.0, problem.start).size, problem.skipped
 
 
-def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Ledger:
-    """Return the energy balance at a checkpoint of a run.
+def kept_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> tuple[Ledger, Extremes]:
+    """Return the energy balance and the extremes at a checkpoint of a run.
 
     Parameters
     ----------
@@ -394,7 +399,7 @@ def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Le
     problem.prepare(scene.run.rtol, scene.run.sample_count)
     state = np.empty(problem.start.size)
     time = problem.restore(checkpoint, state)
-    return problem.ledger(time, state, np.zeros_like(state))
+    return problem.kept(time, state, np.zeros_like(state))
 
 
 def _events(table: NDArray[np.float64]) -> Events:

@@ -67,17 +67,14 @@ _LEDGER = (
     ("residual", "residual: what does not add up", "J"),
     ("residual_bound", "bound of the residual", "J"),
 )
-_IN_WORDS = {"irregular": "turns irregularly", "unfinished": "was not followed to the end of the run"}
 
 
 def headline(ds: xr.Dataset) -> str:
     """Say in one sentence what the runs did."""
     judged = outcomes(ds)
     if len(judged) == 1:
-        if judged[0].status == "finished" and not ds.sizes["time"]:
-            return "Without samples there is no saying what the run did."
         subject = "roller" if isinstance(judged[0], RollerOutcome) else "gear"
-        return f"The {subject} {_IN_WORDS.get(judged[0].verdict, judged[0].verdict)}."
+        return f"The {subject} {judged[0].words}."
     counts: dict[str, int] = {}
     for each in judged:
         counts[each.verdict] = counts.get(each.verdict, 0) + 1
@@ -179,7 +176,7 @@ def _outcome_cells(outcome: GearOutcome | RollerOutcome) -> list[str]:
         numbers = (outcome.peak_force * 1e6, outcome.pull_off_force * 1e6, outcome.restitution)
     else:
         numbers = (outcome.min_speed, outcome.max_speed)
-    return [outcome.verdict, *map(_number, numbers), str(outcome.impacts), outcome.status]
+    return [outcome.words, *map(_number, numbers), str(outcome.impacts), outcome.status]
 
 
 def _flatten(tables: dict[str, Any], swept: dict[str, Any]) -> Iterator[tuple[str, Any]]:

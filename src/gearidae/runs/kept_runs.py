@@ -17,7 +17,7 @@ import netCDF4
 import numpy as np
 
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
-from gearidae.records import Events, Ledger, Solution, Statistics
+from gearidae.records import Events, Extremes, Ledger, Solution, Statistics
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -150,6 +150,7 @@ def _write(path: Path, key: str, solution: Solution) -> None:
             "message": solution.message,
             "reached": solution.reached,
             "ledger": None if solution.ledger is None else asdict(solution.ledger),
+            "extremes": None if solution.extremes is None else asdict(solution.extremes),
         },
         default=int,  # numpy's integers
     )
@@ -196,6 +197,7 @@ def _read(path: Path, key: str) -> Solution:
         header["message"],
         header["reached"],
         None if header["ledger"] is None else Ledger(**header["ledger"]),
+        None if header.get("extremes") is None else Extremes(**header["extremes"]),
     )
 
 

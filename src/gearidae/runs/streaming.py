@@ -150,7 +150,13 @@ class _Run:
         if self._scene.roller is None:
             end = self._scene.run.duration if ended.status == "finished" else 0.0
             told = account_of(
-                self._scene, archive.read, archive.samples, archive.events, end, ledger_of(template)
+                self._scene,
+                archive.read,
+                archive.samples,
+                archive.events,
+                end,
+                ledger_of(template),
+                ended.extremes,
             )
             template.attrs["account"] = told.as_json()
         return template
@@ -166,8 +172,8 @@ class _Run:
         """How a run ended of which only the archive's final form was missing."""
         _, skipped = engine.outlook(self._scene, self._backend, point.state)
         statistics = statistics_of(point.statistics, point.wall_time, self._backend, skipped)
-        ledger = engine.ledger_at(self._scene, point.state, self._backend)
-        return engine.Ended(statistics, "finished", "", point.time, ledger)
+        ledger, extremes = engine.kept_at(self._scene, point.state, self._backend)
+        return engine.Ended(statistics, "finished", "", point.time, ledger, extremes)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
         """Make the run's dataset, without samples and events."""
@@ -182,6 +188,7 @@ class _Run:
             message=ended.message,
             reached=ended.reached,
             ledger=ended.ledger,
+            extremes=ended.extremes,
         )
         return to_dataset(self._scene, solution)
 

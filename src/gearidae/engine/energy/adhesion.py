@@ -1,15 +1,26 @@
-"""Adhesion loss of asperities at contact onset, added at the turning point of a closing contact."""
+r"""The energy that asperities lose by joining, booked at the turning point of a closing contact.
+
+Per length a closing contact loses :math:`q = |E(0)|\,(\Psi(g) - \Psi(\zeta))`, in closed form; but while it closes its
+length changes along the path of contact, so that it loses
+
+.. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
+
+The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has
+been worked out as if nothing were lost until the turning point (`gearidae.engine.energy.balance`).
+"""
 
 from __future__ import annotations
 
 from gearidae.compiled import compiled
+from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import nodes_joining_loss
 from gearidae.engine.energy.contacts import joining_loss
+from gearidae.engine.energy.quadrature import integral
 from gearidae.engine.energy.radius import length_and_rates, pairs_on_path
-from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.model.tooth_pairs import contact_length, pair_gap
+from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.tooth_pairs import contact_length, history_of, pair_gap
 
-__all__ = ["book_joining"]
+__all__ = ["book_joining", "follow_joining", "joining_lag", "sample_joining"]
 
 
 @compiled
@@ -18,6 +29,10 @@ def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float)
     length = 1.0
     if m.scene.kind == GEARS:
         length = contact_length(m, pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[3])
+        h = m.state.history[k]
+        m.state.energy.adhesion_loss -= h.lag
+        m.state.energy.radius_work -= h.lag
+        h.lag = h.lag_power = h.lag_rate = 0.0
     if m.scene.nodes > 0:
         m.state.energy.adhesion_loss += length * nodes_joining_loss(m, k, y, gap)
         return
@@ -43,3 +58,84 @@ def _book_before(m: Model, coast: int, pair: int, loss: float, length: float) ->
     q.radius_power -= loss * rate
     q.radius_power_rate -= loss * bend
     q.booked += loss * (length - was)
+
+
+@compiled(inline=True)
+def follow_joining(m: Model, h: float, y: Floats, w_rate: float) -> None:
+    """Follow the lag of closing gear contacts over a step that has been accepted.
+
+    Parameters
+    ----------
+    m : Model
+        With its mesh marks as they were in the step.
+    h : float
+        Length of the step.
+    y : ndarray
+        State at its end.
+    w_rate : float
+        Acceleration of the gear's surface there.
+    """
+    if m.scene.kind != GEARS or h <= 0.0:
+        return
+    for coast in range(2):
+        if m.state.near[coast] != 0 and (y[V] < 0.0) == (coast != 0):
+            _follow_flank(m, coast, h, y, w_rate)
+
+
+@compiled
+def sample_joining(m: Model, y: Floats) -> None:
+    """Look again at the rates of the lags, which jump at a mesh mark."""
+    for coast in range(2):
+        if m.state.near[coast] != 0:
+            _follow_flank(m, coast, 0.0, y, m.work.quadrature.gear_acceleration)
+
+
+@compiled
+def _follow_flank(m: Model, coast: int, h: float, y: Floats, w_rate: float) -> None:
+    """Follow the lags of a flank whose contacts close."""
+    sign = 1.0 - 2.0 * coast
+    gap = m.scene.half_backlash - sign * y[U]
+    if gap >= m.scene.cutoff:
+        return
+    number, slope = loading_value(m.tables, m.scene.number_at, gap)
+    first, last = pairs_on_path(m, coast)
+    for pair in range(first, last + 1):
+        k = history_of(m, coast, pair)
+        own = m.state.history[k]
+        if own.pair != pair or own.direction >= 0.0:
+            continue
+        loss, loss_slope = _loss(m, k, y, gap, number, slope)
+        power = rate = 0.0
+        if loss != 0.0:
+            _, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
+            power, rate = loss * stretch, loss * bend - loss_slope * sign * y[V] * stretch
+        own.lag += integral(h, own.lag_power, power, own.lag_rate, rate)
+        own.lag_power, own.lag_rate = power, rate
+
+
+@compiled
+def _loss(m: Model, k: int, y: Floats, gap: float, number: float, slope: float) -> tuple[float, float]:
+    """What a pair has lost per length since its last turning point, and its slope in the gap.
+
+    Of an elastic contact the slope is that of a rigid one in proportion.
+    """
+    if m.scene.nodes > 0:
+        loss = nodes_joining_loss(m, k, y, gap)
+        return loss, (loss * slope / number if number > 0.0 else 0.0)
+    loss = change = 0.0
+    for material in range(MATERIALS):
+        own = m.scene.material[material]
+        if own.stretch_limit > 0.0 and gap < m.state.history[k].joined[material]:
+            joining = own.joining_energy * own.force_scale
+            loss += joining * number + own.force_scale * m.state.history[k].booked[material]
+            change += joining * slope
+    return loss, change
+
+
+@compiled
+def joining_lag(m: Model) -> float:
+    """Sum of the lags of all contacts that close."""
+    lag = 0.0
+    for k in range(m.scene.histories):
+        lag += m.state.history[k].lag
+    return lag

@@ -12,6 +12,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import middle_gap
+from gearidae.engine.energy.adhesion import sample_joining
 from gearidae.engine.energy.balance import sample_radius_power
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard
@@ -100,6 +101,8 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
         if m.state.history[k].pair == pair:
             count = handle_pair(m, t, y, coast, pair, k, events, count)
     joined = m.scene.nodes > 0 and m.scene.kind == GEARS and m.state.energy.adhesion_loss != lost
+    if crossed:
+        sample_joining(m, y)
     if crossed or joined:
         sample_radius_power(m, t, y)
     if _crowded(m, t):

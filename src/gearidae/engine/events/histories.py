@@ -58,6 +58,7 @@ def clear_history(m: Model, coast: int) -> None:
     m.state.near[coast] = 0
     for k in range(m.scene.slots):
         m.state.history[coast * m.scene.slots + k].pair = EMPTY
+        m.state.history[coast * m.scene.slots + k].lag = 0.0
 
 
 @compiled
@@ -75,7 +76,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
         if gap >= m.scene.cutoff:
             h.booked[material] = 0.0
         h.fully_stretched[material] = 0
-    h.direction = 0.0
+    h.direction = h.lag = h.lag_power = h.lag_rate = 0.0
 
 
 @compiled(makes_arrays=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
-from gearidae.records import Block, Ending, Ledger, Statistics
+from gearidae.records import Block, Ending, Extremes, Ledger, Statistics
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -93,7 +93,11 @@ class Output(NamedTuple):
         return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, 5)))
 
     def block(
-        self, m: Model, time: float, checkpoint: Floats | None = None, ledger: Ledger | None = None
+        self,
+        m: Model,
+        time: float,
+        checkpoint: Floats | None = None,
+        kept: tuple[Ledger | None, Extremes | None] = (None, None),
     ) -> Block:
         """Hand out what there is, and begin anew.
 
@@ -102,8 +106,10 @@ class Output(NamedTuple):
         m : Model
         time : float
             Reached, over tau.
-        checkpoint, ledger
+        checkpoint
             See `Block`.
+        kept : tuple
+            Ledger and extremes, likewise; see `gearidae.engine.model.problem.Problem.kept`.
         """
         driver = m.work.driver
         rows, events = int(driver.rows), int(driver.events)
@@ -112,7 +118,7 @@ class Output(NamedTuple):
             self.events[:events].copy(),
             time * float(m.scene.time_unit),
             checkpoint,
-            ledger,
+            *kept,
         )
         driver.rows = driver.events = 0
         return block

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled
+from gearidae.engine.energy.adhesion import follow_joining
 from gearidae.engine.energy.balance import accumulate_energy
 from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.schedule_knots import pass_knot
+from gearidae.engine.extremes.follow import follow_extremes, note_rest
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase
 from gearidae.engine.integrate.step_control import change_wanted
-from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
+from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, W
 from gearidae.engine.model.tooth_pairs import in_flight
 
 __all__ = ["ROOT", "STOP", "finish_step", "has_room", "prepare_restart"]
@@ -56,6 +58,8 @@ def finish_step(
     """
     driver, t = m.work.driver, m.work.driver.time
     accept(m, t, y)
+    follow_joining(m, t - m.work.track.time, y, yp[W] if m.scene.kind == GEARS else 0.0)
+    follow_extremes(m, t, y, yp, flag != 0)
     _book(m, t, y, yp, between, flag)
     if m.state.bound_exceeded != 0:
         driver.error = BOUND_EXCEEDED
@@ -66,6 +70,7 @@ def finish_step(
     if flag == ROOT:
         driver.events, action = handle(m, t, y, events, driver.events)
         afresh |= action == RESTART
+        note_rest(m, t, y)
         if action == CROWDED:
             driver.error = CHATTER
     elif flag == STOP:

@@ -15,6 +15,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.extremes.follow import restart_extremes
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.by_address import observe_at
 from gearidae.engine.integrate.driver import (
@@ -87,6 +88,7 @@ def restart(s: Stepper, stop: float) -> int:
     ida, m, t = s.handles[IDA], s.m, s.clock[0]
     set_rates(m, t, s.y, s.yp)
     restart_quadrature(m, t, s.y, s.yp)
+    restart_extremes(m, t, s.y, s.yp)
     flag = sun.IDAReInit(ida, t, s.handles[Y], s.handles[YP])
     flag |= sun.IDASetInitStep(ida, first_step(m, t, s.y, s.yp, stop - t))
     flag |= sun.IDASetStopTime(ida, stop)
@@ -262,5 +264,5 @@ def _blocks(problem: Problem, s: Arrays, out: Output, tally: Tally) -> Iterator[
             m,
             reached,
             problem.checkpoint(reached, s.y) if driver.pending < 0 or driver.done != 0 else None,
-            problem.ledger(reached, s.y, s.yp) if driver.pending <= 0 else None,
+            problem.kept(reached, s.y, s.yp) if driver.pending <= 0 else (None, None),
         )

@@ -20,6 +20,7 @@ from gearidae.engine.elastic.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.extremes.follow import restart_extremes
 from gearidae.engine.integrate.by_address import (
     finish_step_at,
     guard_at,
@@ -97,7 +98,7 @@ def run(
             solver.start(y)
         if time.monotonic() - handed_out > BLOCK_SECONDS:
             fill_tally(tally, progress)
-            yield out.block(m, float(driver.time), None, problem.ledger(float(driver.time), y, yp))
+            yield out.block(m, float(driver.time), None, problem.kept(float(driver.time), y, yp))
             handed_out = time.monotonic()
     solver.count()
     fill_tally(tally, progress)
@@ -107,14 +108,14 @@ def run(
     if driver.done != 0 or driver.error == BOUND_EXCEEDED:
         yield _ready(problem, m, out, tally, y, yp)
     else:
-        yield out.block(m, driver.time, None, problem.ledger(driver.time, y, yp))
+        yield out.block(m, driver.time, None, problem.kept(driver.time, y, yp))
 
 
 def _ready(problem: Problem, m: Model, out: Output, tally: Tally, y: Floats, yp: Floats) -> Block:
     """Hand out a block with a checkpoint."""
     fill_tally(tally, m.state.progress)
     reached = float(m.work.driver.time)
-    return out.block(m, reached, problem.checkpoint(reached, y), problem.ledger(reached, y, yp))
+    return out.block(m, reached, problem.checkpoint(reached, y), problem.kept(reached, y, yp))
 
 
 def _samples(solver: _Solver, out: Output, y: Floats) -> Iterator[Block]:
@@ -149,6 +150,7 @@ class _Solver:
         m, t, yp = self.m, float(self._driver.time), np.zeros_like(y)
         set_rates(m, t, y, yp)
         restart_quadrature(m, t, y, yp)
+        restart_extremes(m, t, y, yp)
         stop = next_stop(m)
         self._make(y.size, first_step(m, t, y, yp, stop - t))
         self._ida.init_step(t, y, yp)

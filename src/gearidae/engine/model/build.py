@@ -33,7 +33,7 @@ from gearidae.engine.model.torques.harmonic import pack_harmonics
 from gearidae.engine.model.torques.law import largest_torque, law_address
 from gearidae.engine.model.torques.schedule import pack_schedule
 from gearidae.mesh.involute import Geometry
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.records import sampled_columns
 from gearidae.scene import Drive, Load, Scene
 from gearidae.scene.limits import check_reach, pairs_within_reach
 
@@ -47,7 +47,10 @@ ROOT_SPACING = 1e-12  # what is close, over the time itself
 
 
 def make_problem(
-    scene: Scene, nodes: Nodes | None = None, digest: tuple[float, ...] | None = None
+    scene: Scene,
+    nodes: Nodes | None = None,
+    digest: tuple[float, ...] | None = None,
+    columns: tuple[str, ...] | None = None,
 ) -> Problem:
     """Scale a scene and tabulate its force laws.
 
@@ -58,6 +61,8 @@ def make_problem(
         Layout of an elastic contact's nodes, in place of the one that is estimated.
     digest : tuple of four floats, optional
         Of the scene whose checkpoints these are, if it is not this one.
+    columns : tuple of str, optional
+        What that scene samples.
 
     Raises
     ------
@@ -66,16 +71,17 @@ def make_problem(
     """
     build = _gear_problem if scene.roller is None else _roller_problem
     problem = build(scene, nodes)
+    problem.columns = columns or problem.columns
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
     count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
     if count > 0:
         problem.depth = 1 if nodes is None else nodes.depth
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
-            problem.deeper = lambda: make_problem(scene, deeper, problem.digest)
+            problem.deeper = lambda: make_problem(scene, deeper, problem.digest, problem.columns)
     elif scene.contact.model == "auto":
         bodies = scene.replace({"contact.model": "elastic"})
-        problem.elastic = lambda: make_problem(bodies, None, problem.digest)
+        problem.elastic = lambda: make_problem(bodies, None, problem.digest, problem.columns)
     return problem
 
 
@@ -122,7 +128,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
         "harmonics": int(not drive.harmonic and not load.harmonic),
         "dry_resistance": int(s.dry == 0),
     }
-    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], GEAR_COLUMNS, skipped)
+    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], skipped)
 
 
 def _roller_problem(scene: Scene, nodes: Nodes | None) -> Problem:
@@ -144,7 +150,7 @@ def _roller_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     model = _model(s, tables, [1.0, 1.0])
     model.state.slip = 1.0
     start = [roller.height / sigma, -roller.speed * float(s.time_unit) / sigma]
-    return _begun(model, scene, start, ROLLER_COLUMNS, {})
+    return _begun(model, scene, start, {})
 
 
 # -- constants -------------------------------------------------------------------------------------------------------
@@ -308,9 +314,7 @@ def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:
     )
 
 
-def _begun(
-    m: Model, scene: Scene, motion: list[float], columns: tuple[str, ...], skipped: dict[str, int]
-) -> Problem:
+def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int]) -> Problem:
     """Set the histories and the energy balance for the start."""
     s = m.scene
     y = np.concatenate([motion, np.zeros(int(s.nodes * s.histories))])
@@ -320,6 +324,7 @@ def _begun(
     begin(m, 0.0, y)
     open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]
+    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
     return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
 
 

@@ -162,6 +162,7 @@ def _check_run(m: Model, s: Record) -> None:
     _require(set(s.near.tolist()) <= _FLAGS, "near", "0 or 1")
     _require(s.last_flank in (-1, 0, 1), "last_flank", "a flank")
     _require(0 <= s.roots <= scene.root_limit and s.last_root <= s.time, "roots", "before the time")
+    _check_extremes(s.extremes, float(s.time))
     sums = ("throughput", "quadrature_error", "loss_error", "peak_kinetic")
     _require(all(s.energy[name] >= 0.0 for name in sums), "energy", "positive sums")
     p = s.progress
@@ -176,6 +177,21 @@ def _check_run(m: Model, s: Record) -> None:
 def _between(index: int, times: Floats, time: float) -> bool:
     """Whether an index counts the times that have been passed; one at this very time may wait."""
     return bool((times < time).sum() <= index <= (times <= time).sum())
+
+
+def _check_extremes(e: Record, time: float) -> None:
+    """Check that extremes are in order, and times of the past."""
+    _require(e.begun in _FLAGS and e.held in _FLAGS, "flags of the extremes", "0 or 1")
+    _require(
+        e.lowest_speed <= e.highest_speed and e.smallest_force <= e.largest_force, "extremes", "in order"
+    )
+    counts = (e.reversals, e.mesh_exits, e.held_exits)
+    _require(min(counts) >= 0 and e.held_exits <= e.mesh_exits, "counts of the extremes", "positive")
+    times = (e.largest_force_time, e.smallest_force_time, e.held_time, *e.part["time"])
+    _require(all(0.0 <= one <= time for one in times), "times of the extremes", "in the past")
+    for part in e.part:
+        _require(part.begun in _FLAGS and part.lowest <= part.highest, "parts of the extremes", "in order")
+    _require(e.fall >= 0.0 and e.rise >= 0.0 and e.bottom <= e.top, "extremes since start-up", "in order")
 
 
 def _check_mesh(m: Model, s: Record, phase: float) -> None:

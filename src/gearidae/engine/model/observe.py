@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from gearidae.compiled import compiled
+from gearidae.engine.extremes.separation import separation
 from gearidae.engine.model.residual import mesh_forces, roller_force
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
 
 __all__ = ["observe"]
+
+_GEARS: Final = len(GEAR_COLUMNS)
+_ROLLER: Final = len(ROLLER_COLUMNS)
 
 
 @compiled
@@ -25,16 +31,19 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     y : ndarray, shape (n,)
         Scaled state.
     row : ndarray, shape (n,)
-        `GEAR_SAMPLES` or `ROLLER_SAMPLES` in SI units.
+        `GEAR_SAMPLES` or `ROLLER_SAMPLES`, and of elastic contacts `ELASTIC_SAMPLES`, in SI units.
     """
     length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
     u, v = y[U], y[V]
     if m.scene.kind == ROLLER:
         force, _ = roller_force(m, t, y)
         row[0], row[1], row[2] = u * length, v * speed, force * m.scene.force_unit
+        if row.size > _ROLLER:
+            row[_ROLLER] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
     force, relief, _, _, _, _ = mesh_forces(m, t, y)
+    force += m.scene.damping * v
     e1 = 0.0
     if m.scene.error_count != 0:
         _, _, e1, _ = static_error(m, u, phase)
@@ -55,3 +64,5 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         if gap < m.scene.contact_gap:
             touching += 1.0
     row[8] = touching
+    if row.size > _GEARS:
+        row[_GEARS] = separation(m, y) * length

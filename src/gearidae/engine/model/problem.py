@@ -8,14 +8,17 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from gearidae.engine.energy.adhesion import joining_lag
 from gearidae.engine.energy.balance import BALANCE, balance_at
+from gearidae.engine.extremes.follow import note_present
+from gearidae.engine.extremes.units import extremes_in_si
 from gearidae.engine.model import checkpoint as checkpoints
 from gearidae.engine.model.state import DRIVE, ENERGY, GEARS, LOAD, MATERIALS, Floats, Model, V, assign
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
 from gearidae.engine.sundials.memory import Located
 from gearidae.errors import SceneError
-from gearidae.records import Ledger
+from gearidae.records import Extremes, Ledger
 
 __all__ = ["Problem"]
 
@@ -127,20 +130,43 @@ class Problem:
             assign(part, before)
         return ledger
 
+    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[Ledger, Extremes]:
+        """Return all that is kept of the run up to an accepted time: `ledger` and `extremes`."""
+        return self.ledger(time, state, rates), self.extremes(time, state)
+
+    def extremes(self, time: float, state: Floats) -> Extremes:
+        """The extremes of the run up to an accepted time.
+
+        Parameters
+        ----------
+        time : float
+            Over tau.
+        state : ndarray, shape (n,)
+            Scaled state there.
+        """
+        m = self.model
+        kept = m.state.extremes.copy()
+        if kept.begun != 0:
+            note_present(m, state)
+        found = extremes_in_si(m, time, state)
+        assign(m.state.extremes, kept)
+        return found
+
     def _in_joules(self, time: float, stored: float, pending: float, kinetic: float) -> Ledger:
         # one look at all sums: a record's fields cost microseconds each outside compiled code
         e = dict(zip(ENERGY.names or (), self.model.state.energy.item(), strict=True))
         scene = self.model.scene
         unit = float(scene.force_unit * scene.length_unit)
+        lag = joining_lag(self.model)
         return Ledger(
             time=time * self.time_unit,
             drive_work=unit * e["drive_work"],
-            radius_work=unit * e["radius_work"],
+            radius_work=unit * (e["radius_work"] - lag),
             model_change=unit * e["model_change"],
             drag_loss=unit * e["drag_loss"],
             dry_loss=unit * e["dry_loss"],
             damping_loss=unit * e["damping_loss"],
-            adhesion_loss=unit * (e["adhesion_loss"] + pending),
+            adhesion_loss=unit * (e["adhesion_loss"] + pending - lag),
             stored_change=unit * (stored - pending - e["start_stored"]),
             kinetic_change=unit * (kinetic - e["start_kinetic"]),
             throughput=unit * e["throughput"],

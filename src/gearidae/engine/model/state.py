@@ -22,6 +22,7 @@ __all__ = [
     "DRIVE",
     "EMPTY",
     "ENERGY",
+    "EXTREMES",
     "GEARS",
     "HISTORY",
     "LOAD",
@@ -29,6 +30,7 @@ __all__ = [
     "MATERIALS",
     "MOST_ORDERS",
     "MOTION",
+    "PARTS",
     "PHASE",
     "PROGRESS",
     "ROLLER",
@@ -206,6 +208,9 @@ HISTORY: Final = _record(
         _REAL,
         (MATERIALS,),
     ),  # adhesion loss of the asperities above `joined` (asperity model)
+    ("lag", _REAL),  # what joining has taken less than it would have at the present contact length,
+    ("lag_power", _REAL),  # its rate at the last accepted time, and the rate of that
+    ("lag_rate", _REAL),
     ("length", _REAL),  # contact length of an elastic contact, sqrt(radius / pitch), at its last evaluation
     ("loaded", _INT),  # 1 if that evaluation found it within reach
     ("stretched", _INT),  # 1 if asperities of it were stretched at the last turning point
@@ -239,6 +244,39 @@ PROGRESS: Final = _record(  # of a driver
     ("flight_steps", _INT),
 )
 
+PARTS: Final = (0.05, 0.5, 0.95)
+"""Where the parts of a run begin over which speeds are judged, as shares of its end: start-up, half, last twentieth."""
+
+PART: Final = _record(  # of a run, from where it begins to where the run stands
+    ("begun", _INT),
+    ("lowest", _REAL),  # speed of the gear
+    ("highest", _REAL),
+    ("time", _REAL),  # where it began: time,
+    ("place", _REAL),  # and how far the gear had turned, in pitches
+)
+
+EXTREMES: Final = _record(  # of a run so far, at accepted times and located extrema
+    ("begun", _INT),
+    ("lowest_speed", _REAL),  # of the gear, or of a roller
+    ("highest_speed", _REAL),
+    ("top", _REAL),  # highest and lowest speed since start-up,
+    ("bottom", _REAL),
+    ("fall", _REAL),  # and how far it has fallen below the first and risen above the second
+    ("rise", _REAL),
+    ("part", PART, (len(PARTS),)),
+    ("reversals", _INT),  # how often the speed has fallen to zero
+    ("held", _INT),  # 1 while the gear has not turned on by half a pitch since one of them,
+    ("held_time", _REAL),  # the time and place of the first such, and the mesh exits until then
+    ("held_place", _REAL),
+    ("held_exits", _INT),
+    ("mesh_exits", _INT),  # on the drive flank
+    ("largest_force", _REAL),  # along the line of action, mesh damping included; of a roller, on it
+    ("largest_force_time", _REAL),
+    ("smallest_force", _REAL),
+    ("smallest_force_time", _REAL),
+    ("separation", _REAL),  # least distance of the flanks, deflection included
+)
+
 STATE: Final = _record(
     ("time", _REAL),  # last accepted time
     ("turns", _REAL),  # whole pitches taken out of the phase
@@ -258,6 +296,7 @@ STATE: Final = _record(
     ("segment", _INT, (2,)),  # the schedules' current segments: set at knots, never inside a step
     ("energy", ENERGY),
     ("progress", PROGRESS),
+    ("extremes", EXTREMES),
     ("history", HISTORY, (2 * SLOTS_HIGH,)),
 )
 
@@ -343,9 +382,25 @@ DRIVER: Final = _record(
     ("since", _INT),  # steps since the last checkpoint
 )
 
+TRACK: Final = (
+    _record(  # what the extremes are located from: the last accepted time, and forces at the last three
+        ("time", _REAL),
+        ("speed", _REAL),
+        ("speed_rate", _REAL),
+        ("place", _REAL),
+        ("travel", _REAL),  # transmission error, or height
+        ("travel_rate", _REAL),
+        ("next_part", _REAL),  # time at which the coming part of the run begins
+        ("forces", _INT),  # known since the force last had a corner
+        ("force_time", _REAL, (3,)),
+        ("force", _REAL, (3,)),
+    )
+)
+
 WORK: Final = _record(
     ("quadrature", QUADRATURE),
     ("resistance", RESISTANCE),
+    ("track", TRACK),
     ("adams", ADAMS),
     ("search", SEARCH),
     ("driver", DRIVER),

@@ -1,0 +1,77 @@
+"""The extremes of runs in a dataset: variables without a dimension of a single run, along the swept ones of a sweep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Sequence
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.variables import EXTREMES, ROLLER_EXTREMES
+from gearidae.records import Extremes, Solution
+from gearidae.scene import Scene
+
+__all__ = ["extreme_variables", "extremes_of"]
+
+
+def extreme_variables(
+    scene: Scene, solutions: Sequence[Solution], dims: tuple[str, ...] = (), shape: tuple[int, ...] = ()
+) -> dict[Hashable, Any]:
+    """Make the variables of the runs' extremes.
+
+    Parameters
+    ----------
+    scene : Scene
+        That the runs were derived from.
+    solutions : sequence of Solution
+        One a run.
+    dims, shape : tuple, optional
+        Swept dimensions and their lengths.
+
+    Returns
+    -------
+    dict
+        Name to dimensions, values and attributes. NaN, and 0 of counts, where a run produced nothing; empty if none
+        did.
+    """
+    if all(solution.extremes is None for solution in solutions):
+        return {}
+    names = list(EXTREMES if scene.roller is None else ROLLER_EXTREMES)
+    if scene.contact.model == "elastic":  # of these it is sampled
+        names.remove("min_separation")
+    made: dict[Hashable, Any] = {}
+    for name in names:
+        variable = EXTREMES[name]
+        nothing = 0 if variable.dtype is np.int64 else math.nan
+        field = "smallest_separation" if name == "min_separation" else name
+        values = [getattr(solution.extremes, field, nothing) for solution in solutions]
+        made[name] = (dims, np.array(values, dtype=variable.dtype).reshape(shape), variable.attributes)
+    return made
+
+
+def extremes_of(run: xr.Dataset) -> Extremes | None:
+    """Read the extremes of one run.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A single run, or one picked from a sweep.
+
+    Returns
+    -------
+    Extremes or None
+        None if there are none: the run produced nothing, or is not at its end.
+    """
+    if "final_speed" not in run.variables or math.isnan(float(run["final_speed"])):
+        return None
+    numbers: dict[str, Any] = {}
+    for field in fields(Extremes):
+        counts = EXTREMES[field.name].dtype is np.int64
+        if field.name in run.variables:
+            numbers[field.name] = run[field.name].item()
+        else:
+            numbers[field.name] = 0 if counts else math.nan
+    return Extremes(**numbers)

@@ -1,0 +1,101 @@
+"""The record of a run's extremes in SI units."""
+
+from __future__ import annotations
+
+import math
+
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, Record, V, W
+from gearidae.records import Extremes
+
+__all__ = ["extremes_in_si"]
+
+
+def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
+    """Take the extremes out of a model.
+
+    Parameters
+    ----------
+    m : Model
+        Its extremes include the state at `time`.
+    time : float
+        Reached, over tau.
+    y : ndarray, shape (n,)
+        Scaled state there.
+    """
+    s, e = m.scene, m.state.extremes
+    force, tau = float(s.force_unit), float(s.time_unit)
+    forces = {
+        "largest_mesh_force": force * float(e.largest_force),
+        "largest_mesh_force_time": tau * float(e.largest_force_time),
+        "smallest_mesh_force": force * float(e.smallest_force),
+        "smallest_mesh_force_time": tau * float(e.smallest_force_time),
+        "smallest_separation": float(s.length_unit * e.separation),
+    }
+    if s.kind == ROLLER:
+        return Extremes(**forces, **_NO_GEAR, **_NEVER, final_speed=float(y[V] * s.length_unit / s.time_unit))
+    speed = float(s.length_unit / (s.time_unit * s.gear_radius))
+    place = float(y[PHASE] + m.state.turns)
+    means = [_mean(m, part, time, place) for part in e.part]
+    spreads = [speed * float(part.highest - part.lowest) if part.begun else math.nan for part in e.part]
+    settled = bool(e.part[0].begun)
+    return Extremes(
+        **forces,
+        min_gear_speed=speed * float(e.lowest_speed),
+        max_gear_speed=speed * float(e.highest_speed),
+        settled_gear_speed=speed * means[0],
+        settled_spread=spreads[0],
+        speed_fall=speed * float(e.fall) if settled else math.nan,
+        speed_rise=speed * float(e.rise) if settled else math.nan,
+        late_gear_speed=speed * means[1],
+        late_spread=spreads[1],
+        last_min_gear_speed=speed * float(e.part[2].lowest) if e.part[2].begun else math.nan,
+        final_speed=speed * float(y[W]),
+        **_standstill(e, tau, place),
+        mesh_exits=int(e.mesh_exits),
+        reversals=int(e.reversals),
+    )
+
+
+_NO_GEAR = dict.fromkeys(
+    (
+        "min_gear_speed",
+        "max_gear_speed",
+        "settled_gear_speed",
+        "settled_spread",
+        "speed_fall",
+        "speed_rise",
+        "late_gear_speed",
+        "late_spread",
+        "last_min_gear_speed",
+        "stick_time",
+        "turned_back",
+    ),
+    math.nan,
+)
+_NEVER = {"reversals": 0, "stick_exits": 0, "mesh_exits": 0}
+
+
+def _standstill(e: Record, tau: float, place: float) -> dict[str, float]:
+    """Where and when the gear came to stand."""
+    if e.held:
+        return {
+            "stick_time": tau * float(e.held_time),
+            "stick_exits": int(e.held_exits),
+            "turned_back": max(float(e.held_place) - place, 0.0),
+        }
+    never_moved = bool(e.highest_speed <= 0.0)
+    return {
+        "stick_time": 0.0 if never_moved else math.nan,
+        "stick_exits": int(e.mesh_exits),
+        "turned_back": max(-place, 0.0) if never_moved else 0.0,
+    }
+
+
+def _mean(m: Model, part: Record, time: float, place: float) -> float:
+    """Mean speed over a part of the run, scaled."""
+    span = time - float(part.time)
+    if not part.begun:
+        return math.nan
+    if span <= 0.0:
+        return float(part.lowest)
+    return (place - float(part.place)) / float(span * m.scene.phase_rate)
