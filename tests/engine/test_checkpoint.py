@@ -88,7 +88,7 @@ def damage(name, checkpoint):
         *range(first),
         *(first + length * k + j for k in [*used[:2], empty] for j in range(length)),
         *range(behind, behind + min(y.size, 8)),
-        *np.linspace(behind + y.size, checkpoint.size - 1, 24, dtype=int).tolist() * (m.scene.nodes > 0),
+        *np.linspace(behind + y.size, checkpoint.size - 1, 24, dtype=int).tolist() * int(m.scene.nodes > 0),
     ]
     for word in words:
         values = [*WORST, *((bits(checkpoint)[word : word + 1] + step).view(np.float64)[0] for step in STEPS)]

@@ -90,7 +90,8 @@ import json
 
 import numpy as np
 
-from gearidae.contact.kernels import law
+from gearidae.contact.kernels import branches, evaluate, law
+from gearidae.engine.sundials import memory
 
 laws = ("branch_value", "stretched_value")
 counts = dict.fromkeys(laws, 0)
@@ -108,7 +109,17 @@ def counted(name, function):
     return call
 
 
-law.eight_powers = eight_powers
+evaluate.eight_powers = branches.eight_powers = eight_powers
+models = []
+
+
+class Located:  # a model has no address here
+    def __init__(self, m):
+        models.append(m)
+        self.place = len(models) - 1
+
+
+memory.Located, memory.model_at = Located, models.__getitem__
 for name in laws:
     setattr(law, name, counted(name, getattr(law, name)))
 
