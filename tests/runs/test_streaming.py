@@ -217,6 +217,7 @@ def test_readable_at_any_time_while_the_run_goes_on(path, monkeypatch):
 
 def test_a_run_may_look_at_its_own_archive_and_nobody_else_may_write_it(path, monkeypatch):
     monkeypatch.setattr(native, "BLOCK_STEPS", 200)
+    monkeypatch.setattr(native, "FIRST_STEPS", 200)
     looked = []
 
     def look(reached, events):
@@ -281,7 +282,7 @@ def test_resuming_what_is_finished_says_so(path, capfd):
     assert "before" not in capfd.readouterr().out
     before = path.read_bytes()
     assert main(arguments) == 0
-    assert "finished before" in capfd.readouterr().out
+    assert "already finished" in capfd.readouterr().out
     assert path.read_bytes() == before
 
 
