@@ -10,11 +10,6 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-
-for module in [m for name, m in sys.modules.items() if name.startswith("gearidae.engine")]:
-    for name, stand_in in (("Located", Located), ("model_at", models.__getitem__)):
-        if hasattr(module, name):
-            setattr(module, name, stand_in)
 from gearidae.engine.model import build_contact
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(

@@ -19,7 +19,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.archive import growing
 from gearidae.cli import main
-from gearidae.engine.integrate import native, portable
+from gearidae.engine.integrate import driver, native, portable
 from gearidae.runs import streaming
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
@@ -39,8 +39,8 @@ def path(tmp_path):
 def many_small_blocks(monkeypatch):
     """Blocks, checkpoints and growth of the file all the time, by the driver whose limits are not compiled in."""
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 300)
-    monkeypatch.setattr(portable, "_BLOCK_STEPS", 50)
-    monkeypatch.setattr(portable, "BLOCK_ROWS", 7)
+    monkeypatch.setattr(portable, "BLOCK_SECONDS", 0.0)
+    monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
     monkeypatch.setattr(growing, "EVENT_ROOM", 16)
     monkeypatch.setattr(growing, "_COPIED", 50)
