@@ -224,7 +224,7 @@ def test_flanks_that_touch_together(backlash, share, fraction, torque):
     scene = BASE.replace(
         {
             "mesh.backlash": backlash,
-            "initial.gap": share * backlash,
+            "initial.gap": round(share, 6) * backlash,
             "coating.sam_fraction": fraction,
             "drive.torque": torque,
             "run.rtol": 1e-6,
