@@ -42,7 +42,7 @@ def _finish(place, numbers, flag, events):  # type: ignore[no-untyped-def]
     n, driver = m.scene.states, m.work.driver
     a, room = carray(numbers, (VECTORS * n + 1,)), carray(events, (BLOCK_EVENTS, 5))
     driver.time = a[VECTORS * n]
-    if not has_room(m, room):  # nobody reads them
+    if not has_room(m.work.driver.events, room):  # nobody reads them
         driver.events = 0
     between = (a[2 * n : 3 * n], a[3 * n : 4 * n])
     afresh = finish_step(m, a[:n], a[n : 2 * n], between, flag, room)

@@ -49,7 +49,7 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
         digest.update(f"{name} {version(name)}".encode())
     for path in (*(root / package for package in COMPILED_PACKAGES), *sources):
         for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
-            if PLAIN_FOLDERS.isdisjoint(source.relative_to(root).parts):
+            if PLAIN_FOLDERS.isdisjoint(source.parts[len(root.parts) :]):
                 digest.update(source.read_bytes())
     base = os.environ.get("NUMBA_CACHE_DIR")
     folder = Path(base) / "gearidae" if base else user_cache_path("gearidae")

@@ -5,6 +5,8 @@ The pieces are made small here, and every read of the file is watched; the large
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -17,8 +19,8 @@ from gearidae.archive import netcdf, pieces, save, time_index, to_dataset
 from gearidae.archive.growing import GrowingArchive
 from gearidae.plot import spectra, style
 from gearidae.report import build_report, series
-from gearidae.studies import tooth_contacts as teeth
 
+teeth = import_module("gearidae.studies.tooth_contacts")
 SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
 LOOKED_BACK = 4_096  # samples that the view of the teeth looks back at together
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})

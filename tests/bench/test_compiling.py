@@ -18,7 +18,7 @@ def test_every_compiled_function_of_the_benchmark_is_kept_there():
     folder = str(own.cache_folder(compiling.SOURCES))
     declared = [one for one in vars(kinks).values() if isinstance(one, numba.core.dispatcher.Dispatcher)]
     mine = [one for one in declared if one.py_func.__module__ == kinks.__name__]
-    assert len(mine) == 5
+    assert {one.py_func.__name__ for one in mine} == {"arm", "watch"}
     assert all(one.stats.cache_path.startswith(folder) for one in mine)
     others = [one for one in declared if one not in mine]
     assert others

@@ -32,11 +32,11 @@ def backend(request):
 def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
     """Full of samples, or of events: the second has room for two, and for what may come at once."""
     whole = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
-    for module in (driver, portable):
-        monkeypatch.setattr(module, "BLOCK_ROWS", 7)
+    monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(driver, "BLOCK_EVENTS", room)
     if backend == "native":
         monkeypatch.setattr(native, "BLOCK_STEPS", 13)
+        monkeypatch.setattr(native, "FIRST_STEPS", 13)
     pieces = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
     assert len(pieces[2]) > 40
     assert max(len(block.rows) for block in pieces[2]) <= 7
@@ -83,9 +83,9 @@ def test_a_foreign_checkpoint_is_refused():
 def test_phase_is_taken_back_without_a_trace(monkeypatch):
     """Whole pitches move out of the phase now and then; angle, pairs and motion go on as if nothing had been."""
     plain = solve(FAST, rtol=1e-7, t_end=2e-4, samples=501, backend="sksundae")
-    finish = portable.finish_step
+    finish = portable.finish_step_at
     monkeypatch.setattr(
-        portable, "finish_step", lambda m, y, *rest: finish(m, y, *rest) or abs(y[PHASE]) > 5.0
+        portable, "finish_step_at", lambda place, y, *rest: finish(place, y, *rest) or abs(y[PHASE]) > 5.0
     )
     monkeypatch.setattr(portable, "prepare_restart", epilogue.prepare_restart.py_func)
     monkeypatch.setattr(epilogue, "rebase", _rebase_now)

@@ -88,7 +88,7 @@ def damage(name, checkpoint):
         *range(first),
         *(first + length * k + j for k in [*used[:2], empty] for j in range(length)),
         *range(behind, behind + min(y.size, 8)),
-        *np.linspace(behind + y.size, checkpoint.size - 1, 24, dtype=int).tolist() * (m.scene.nodes > 0),
+        *np.linspace(behind + y.size, checkpoint.size - 1, 24, dtype=int).tolist() * int(m.scene.nodes > 0),
     ]
     for word in words:
         values = [*WORST, *((bits(checkpoint)[word : word + 1] + step).view(np.float64)[0] for step in STEPS)]
@@ -143,7 +143,7 @@ def test_a_checkpoint_of_another_scene_is_refused(sound):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", ["dry gears", "roller"])
 def test_damage_is_refused_or_harmless(name, sound, tmp_path):
     """What is let through is run by the native driver in another process, whose death would be seen."""
     let_through, count = [], 0

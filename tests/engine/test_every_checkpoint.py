@@ -28,7 +28,7 @@ def test_every_checkpoint_is_taken_back(name, rtol, monkeypatch):
     taken = [
         b.checkpoint for b in run_blocks(problem, rtol, 57, "sksundae", Tally()) if b.checkpoint is not None
     ]
-    assert len(taken) > 10
+    assert len(taken) >= 10
     again = make_problem(scene)
     for checkpoint in taken:
         own = again.of_checkpoint(checkpoint)

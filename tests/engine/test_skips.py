@@ -90,7 +90,9 @@ import json
 
 import numpy as np
 
-from gearidae.contact.kernels import law
+import sys
+
+from gearidae.contact.kernels import branches, evaluate, law
 
 laws = ("branch_value", "stretched_value")
 counts = dict.fromkeys(laws, 0)
@@ -108,12 +110,27 @@ def counted(name, function):
     return call
 
 
-law.eight_powers = eight_powers
+evaluate.eight_powers = branches.eight_powers = eight_powers
+models = []
+
+
+class Located:  # a model has no address here
+    def __init__(self, m):
+        models.append(m)
+        self.place = len(models) - 1
+
+
 for name in laws:
     setattr(law, name, counted(name, getattr(law, name)))
 
 import gearidae as gd
 from gearidae.engine import solve
+from gearidae.engine.integrate import portable
+
+for module in [m for name, m in sys.modules.items() if name.startswith("gearidae.engine")]:
+    for name, stand_in in (("Located", Located), ("model_at", models.__getitem__)):
+        if hasattr(module, name):
+            setattr(module, name, stand_in)
 
 scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.003, "run.samples": 11, "run.rtol": 1e-6})
 for fraction in (1.0, 0.999):

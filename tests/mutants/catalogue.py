@@ -134,8 +134,8 @@ MUTANTS = (
     Mutant(
         "SAM fraction taken for the bare one",
         "engine/model/build_contact.py",
-        "((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))",
-        "((scene.surface, fraction), (scene.coated_surface, 1.0 - fraction))",
+        "enumerate(scene.materials())",
+        "enumerate([(s, 1.0 - f) for s, f in scene.materials()])",
         IMPACT,
     ),
     Mutant(
@@ -218,8 +218,8 @@ MUTANTS = (
     Mutant(
         "dry resistance that holds twice as much as it should",
         "engine/events/dry_resistance.py",
-        "return max(torque_force(m, LOAD, t), 0.0) + 2.0",
-        "return 2.0 * max(torque_force(m, LOAD, t), 0.0) + 2.0",
+        "return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0",
+        "return 2.0 * max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0",
         ("properties/test_event_times.py",),
     ),
     Mutant(

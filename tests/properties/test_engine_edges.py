@@ -217,14 +217,14 @@ def test_a_grazing_contact_is_seen_if_it_is_one(margin, touches):
     backlash=st.sampled_from([0.0, 1e-9, 2e-8, 5e-8]),
     share=st.floats(0.0, 1.0),
     fraction=st.sampled_from([0.0, 0.4, 1.0]),
-    torque=st.floats(-3e-11, 3e-11),
+    torque=st.floats(-3e-11, 3e-11).map(lambda torque: torque if abs(torque) > 1e-30 else 0.0),
 )
 def test_flanks_that_touch_together(backlash, share, fraction, torque):
     """Backlash below the reach of adhesion: both flanks in contact, and every onset has its flank."""
     scene = BASE.replace(
         {
             "mesh.backlash": backlash,
-            "initial.gap": share * backlash,
+            "initial.gap": round(share, 6) * backlash,
             "coating.sam_fraction": fraction,
             "drive.torque": torque,
             "run.rtol": 1e-6,

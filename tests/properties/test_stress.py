@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.cli import main
 from gearidae.engine import solve
 from gearidae.engine.integrate.driver import BLOCK_STEPS
 from gearidae.engine.model.build import ROOT_LIMIT, make_problem
 from gearidae.records import Ending, EventKind
 from gearidae_bench import stress, stress_checks
+from gearidae_bench.__main__ import main
 from gearidae_bench.random_scenes import random_scene
 from gearidae_bench.stress import Outcome, run_one, run_stress
 from gearidae_bench.stress_report import counts, ledger_quantiles, page, quantiles, worst
@@ -146,7 +146,7 @@ def test_the_page_counts_and_lists():
 
 
 def test_command_line(tmp_path, capsys):
-    assert main(["bench", "--stress", "--runs", "3", "--seed", "1", "-o", str(tmp_path / "out")]) == 0
+    assert main(["--stress", "--runs", "3", "--seed", "1", "-o", str(tmp_path / "out")]) == 0
     assert "finished" in capsys.readouterr().out
     assert "seed 1" in (tmp_path / "out" / "stress.md").read_text()
-    assert main(["bench", "--stress", "--runs", "0"]) == 2
+    assert main(["--stress", "--runs", "0"]) == 2

@@ -54,7 +54,7 @@ def test_times_are_said_as_people_say_them(seconds, words):
     assert RunTime(1.0, seconds, 1.0).words() == words
 
 
-@pytest.mark.parametrize("changes", [{"drive.torque": 0.0}, {"drive.torque": 1.0}, {"drive.torque": 1e-100}])
+@pytest.mark.parametrize("changes", [{"drive.torque": 0.0}, {"drive.torque": 1.0}, {"drive.torque": 1e-39}])
 def test_there_is_always_an_estimate(changes):
     expected = run_time(LOW.replace(changes))
     assert 0.0 < expected.steps < math.inf

@@ -19,7 +19,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.archive import growing
 from gearidae.cli import main
-from gearidae.engine.integrate import native, portable
+from gearidae.engine.integrate import driver, native, portable
 from gearidae.runs import streaming
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
@@ -39,8 +39,8 @@ def path(tmp_path):
 def many_small_blocks(monkeypatch):
     """Blocks, checkpoints and growth of the file all the time, by the driver whose limits are not compiled in."""
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 300)
-    monkeypatch.setattr(portable, "_BLOCK_STEPS", 50)
-    monkeypatch.setattr(portable, "BLOCK_ROWS", 7)
+    monkeypatch.setattr(portable, "BLOCK_SECONDS", 0.0)
+    monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
     monkeypatch.setattr(growing, "EVENT_ROOM", 16)
     monkeypatch.setattr(growing, "_COPIED", 50)
@@ -217,6 +217,7 @@ def test_readable_at_any_time_while_the_run_goes_on(path, monkeypatch):
 
 def test_a_run_may_look_at_its_own_archive_and_nobody_else_may_write_it(path, monkeypatch):
     monkeypatch.setattr(native, "BLOCK_STEPS", 200)
+    monkeypatch.setattr(native, "FIRST_STEPS", 200)
     looked = []
 
     def look(reached, events):
@@ -281,7 +282,7 @@ def test_resuming_what_is_finished_says_so(path, capfd):
     assert "before" not in capfd.readouterr().out
     before = path.read_bytes()
     assert main(arguments) == 0
-    assert "finished before" in capfd.readouterr().out
+    assert "already finished" in capfd.readouterr().out
     assert path.read_bytes() == before
 
 
