@@ -66,7 +66,7 @@ def stream(
     if found is not None:
         backend = _same_backend(backend, str(found.attrs["backend"]))
         found.close()
-    run = _Run(scene, target, engine.choose_backend(backend))
+    run = _Run(scene, target, engine.choose_backend(backend, scene.run.method))
     with run.take_up() if found is not None else run.begin() as archive:
         with run_progress(progress, scene.run.duration) as report:
             ended = run.follow(archive, report)

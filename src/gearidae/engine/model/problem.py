@@ -48,6 +48,8 @@ class Problem:
         Makes the elastic problem that takes over when the asperity model, chosen automatically, no longer will do.
     deeper : callable, optional
         Makes the same elastic problem with nodes laid out for deeper contacts, if there can be any.
+    method : str
+        ``run.method`` of the scene.
     """
 
     model: Model
@@ -59,6 +61,7 @@ class Problem:
     depth: int = 0
     elastic: Callable[[], Problem] | None = None
     deeper: Callable[[], Problem] | None = None
+    method: str = "auto"
 
     @property
     def time_unit(self) -> float:
