@@ -20,17 +20,17 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import cache
+from functools import cache, update_wrapper
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Final, TypeVar, cast, overload
+from typing import Any, Final, NamedTuple, TypeVar, cast, overload
 
 import numba
 from llvmlite import binding
 from numba.core import caching
 from platformdirs import user_cache_path
 
-__all__ = ["cache_folder", "compiled", "compiled_callback", "is_cached", "numba_options"]
+__all__ = ["Function", "cache_folder", "compiled", "compiled_callback", "is_cached", "numba_options"]
 
 log = logging.getLogger(__name__)
 
@@ -48,10 +48,15 @@ _OF_NO_EFFECT: Final = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS", "NUMBA_DEBUG_CAC
 
 
 @cache
-def cache_folder() -> Path:
+def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
     """Where the compiled code of exactly these sources, library versions, settings and this processor is kept.
 
     Under ``NUMBA_CACHE_DIR`` if that is set, else in the user's cache folder.
+
+    Parameters
+    ----------
+    sources : tuple of Path, optional
+        Folders or files besides gearidae's own whose functions are compiled, of a package that builds on it.
     """
     digest = hashlib.sha256(sys.version.encode())
     for name in ("numba", "llvmlite", "numpy", "scikit-sundae"):
@@ -60,10 +65,9 @@ def cache_folder() -> Path:
     for name, value in sorted(os.environ.items()):
         if name.startswith(("NUMBA_", PLAIN)) and name not in _OF_NO_EFFECT:
             digest.update(f"{name}={value}".encode())
-    for package in COMPILED_PACKAGES:
-        path = _ROOT / package
+    for path in (*(_ROOT / package for package in COMPILED_PACKAGES), *sources):
         for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
-            digest.update(source.relative_to(_ROOT).as_posix().encode())
+            digest.update(source.relative_to(path.parent).as_posix().encode())
             digest.update(source.read_bytes())
     base = os.environ.get("NUMBA_CACHE_DIR")
     folder = Path(base) / "gearidae" if base else user_cache_path("gearidae")
@@ -88,50 +92,69 @@ def is_cached() -> bool:
         )
         return False
     if getattr(numba.config, "CACHE_LOCATOR_CLASSES", ""):
-        log.warning("NUMBA_CACHE_LOCATOR_CLASSES is set, under which compiled code could go stale: none is kept")
+        log.warning(
+            "NUMBA_CACHE_LOCATOR_CLASSES is set, under which compiled code could go stale: none is kept"
+        )
         return False
     return True
 
 
+class _Declared(NamedTuple):
+    """What is being declared: what besides gearidae's own sources it is made of, and whether Python calls it."""
+
+    sources: tuple[Path, ...]
+    called: bool
+
+
 _declaring = threading.RLock()
-_own = False  # whether the function that is being declared is one of ours
+_declared: _Declared | None = None  # nothing of ours
 
 
 class _Place(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
     """Tells numba where the compiled code of one function is kept.
 
-    Of gearidae's own sources the folder's name says all; a file from elsewhere, an extension, is looked at besides.
+    Of sources that are named the folder's name says all; a file from elsewhere, an extension, is looked at besides.
     """
 
-    def __init__(self, function: Callable[..., Any], file: str) -> None:
+    def __init__(self, function: Callable[..., Any], file: str, declared: _Declared) -> None:
         path = Path(file).resolve()
-        self._line = function.__code__.co_firstlineno
-        if path.is_relative_to(_ROOT.resolve()):
-            self._folder, self._stamp = "_".join(path.relative_to(_ROOT.resolve()).parent.parts), ""
+        kind = "called" if declared.called else "linked"
+        self._which, self._stamp = f"{function.__code__.co_firstlineno}-{kind}", ""
+        known = [root.resolve() for root in (_ROOT, *declared.sources)]
+        roots = [root for root in known if path.is_relative_to(root)]
+        if roots:
+            inside = path.parent.relative_to(roots[0].parent) if path != roots[0] else Path(path.parent.name)
+            name = "_".join(inside.parts)
         else:
-            self._folder = f"else_{hashlib.sha256(str(path.parent).encode()).hexdigest()[:16]}"
+            name = hashlib.sha256(str(path.parent).encode()).hexdigest()[:16]
             self._stamp = hashlib.sha256(path.read_bytes()).hexdigest()
+        self._folder = cache_folder(declared.sources) / name
 
     def get_cache_path(self) -> str:
         """Folder of the function's module."""
-        return str(cache_folder() / (self._folder or "gearidae"))
+        return str(self._folder)
 
     def get_source_stamp(self) -> str:
         """What has to be the same for kept code to be fresh."""
         return self._stamp
 
     def get_disambiguator(self) -> str:
-        """What tells functions of one name in one module apart."""
-        return str(self._line)
+        """What tells functions of one name in one module apart, and the two forms of one function."""
+        return self._which
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], file: str) -> _Place | None:
-        """Return the place of a function that `compiled` declares, and of no other."""
-        return cls(function, file) if _own and Path(file).exists() else None
+        """Return the place of a function that is declared here, and of no other."""
+        if _declared is None or not Path(file).exists():
+            return None
+        return cls(function, file, _declared)
 
 
 # numba asks the first of these that answers; its own name folders after the sources' absolute paths
-if hasattr(caching, "_CacheLocator") and hasattr(caching.CompileResultCacheImpl, "_locator_classes"):
+_CAN_BE_ASKED: Final = hasattr(caching, "_CacheLocator") and hasattr(
+    caching.CompileResultCacheImpl, "_locator_classes"
+)
+if _CAN_BE_ASKED:
     caching.CompileResultCacheImpl._locator_classes = [
         _Place,
         *caching.CompileResultCacheImpl._locator_classes,
@@ -139,25 +162,30 @@ if hasattr(caching, "_CacheLocator") and hasattr(caching.CompileResultCacheImpl,
 
 
 @contextmanager
-def _own_cache() -> Iterator[None]:
+def _own_cache(sources: tuple[Path, ...], called: bool = True) -> Iterator[None]:
     """Have numba ask `_Place` while a function is being declared, by one thread at a time.
 
     A numba that cannot be made to ask keeps the code in the same folder, and shares it with nobody.
     """
-    global _own
+    global _declared
     config: Any = numba.config
     with _declaring:
-        before = _own, config.CACHE_DIR
-        _own, config.CACHE_DIR = True, str(cache_folder())
+        before = _declared, config.CACHE_DIR
+        _declared, config.CACHE_DIR = _Declared(sources, called), str(cache_folder(sources))
         try:
             yield
         finally:
-            _own, config.CACHE_DIR = before
+            _declared, config.CACHE_DIR = before
 
 
 # -- numba's options -------------------------------------------------------------------------------------------------
 
-_UNDOCUMENTED: Final[dict[str, Any]] = {"_nrt": False, "forceinline": True, "no_cfunc_wrapper": True}
+_UNDOCUMENTED: Final[dict[str, Any]] = {
+    "_nrt": False,
+    "forceinline": True,
+    "no_cfunc_wrapper": True,
+    "no_cpython_wrapper": True,
+}
 
 
 @cache
@@ -170,7 +198,11 @@ def numba_options() -> frozenset[str]:
         return frozenset(json.loads(note.read_text())) & frozenset(_UNDOCUMENTED)
     taken = frozenset(name for name, value in _UNDOCUMENTED.items() if _takes(name, value))
     for name in sorted(frozenset(_UNDOCUMENTED) - taken):
-        log.warning("numba %s does not take its option %s any more: runs will be slower", numba.__version__, name)
+        log.warning(
+            "numba %s does not take its option %s: runs or compilation will be slower",
+            numba.__version__,
+            name,
+        )
     if is_cached():
         with suppress(OSError):
             note.write_text(json.dumps(sorted(taken)))
@@ -191,16 +223,48 @@ def _takes(name: str, value: Any) -> bool:
     return True
 
 
-@overload
-def compiled(function: F) -> F: ...
+# -- functions -------------------------------------------------------------------------------------------------------
+
+
+class Function:
+    """A compiled function in two forms: one for compiled callers, and one for Python, each compiled when first called.
+
+    Python's form has to take records and arrays out of Python's objects. Almost all functions are called from compiled
+    code alone, and a third of the compilation would go into what nobody uses.
+    """
+
+    def __init__(self, function: Callable[..., Any], linked: Any, called: Any) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self._called = called
+        self._linked = linked
+        self._numba_type_ = linked._numba_type_  # by which numba knows it for a compiled function
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._called(*arguments)
+
+    @property
+    def cache_path(self) -> str:
+        """Folder in which its compiled code is kept."""
+        return str(self._linked.stats.cache_path)
 
 
 @overload
-def compiled(*, makes_arrays: bool = False, inline: bool = False) -> Callable[[F], F]: ...
+def compiled(function: F, *, sources: tuple[Path, ...] = ()) -> F: ...
+
+
+@overload
+def compiled(
+    *, makes_arrays: bool = False, inline: bool = False, sources: tuple[Path, ...] = ()
+) -> Callable[[F], F]: ...
 
 
 def compiled(
-    function: F | None = None, *, makes_arrays: bool = False, inline: bool = False
+    function: F | None = None,
+    *,
+    makes_arrays: bool = False,
+    inline: bool = False,
+    sources: tuple[Path, ...] = (),
 ) -> F | Callable[[F], F]:
     """Compile a numerical function on first use; it runs without the GIL and divides as IEEE 754 says.
 
@@ -213,24 +277,38 @@ def compiled(
         function that is wrong about it.
     inline : bool
         Put the function into whatever calls it: for the few that every step goes through.
+    sources : tuple of Path, optional
+        As for `cache_folder`.
     """
     # nobody calls these functions as C does but through callbacks
     wanted = {"_nrt": makes_arrays, "forceinline": inline, "no_cfunc_wrapper": True}
 
     def declare(function: F) -> F:
-        options: Any = {name: value for name, value in wanted.items() if name in numba_options()}
-        with _own_cache():
-            dispatcher: Any = numba.njit(cache=is_cached(), nogil=True, error_model="numpy", **options)(function)
-        return cast("F", dispatcher)
+        options = {name: value for name, value in wanted.items() if name in numba_options()}
+        called = _declare(function, sources, options, called=True)
+        if not (
+            _CAN_BE_ASKED and "no_cpython_wrapper" in numba_options() and hasattr(called, "_numba_type_")
+        ):
+            return cast("F", called)
+        linked = _declare(function, sources, options | {"no_cpython_wrapper": True}, called=False)
+        return cast("F", Function(function, linked, called))
 
     return declare if function is None else declare(function)
 
 
-def compiled_callback(signature: Any) -> Callable[[F], Any]:
+def _declare(
+    function: Callable[..., Any], sources: tuple[Path, ...], options: dict[str, Any], *, called: bool
+) -> Any:
+    """Declare one form of a function to numba."""
+    with _own_cache(sources, called):
+        return numba.njit(cache=is_cached(), nogil=True, error_model="numpy", **options)(function)
+
+
+def compiled_callback(signature: Any, *, sources: tuple[Path, ...] = ()) -> Callable[[F], Any]:
     """Compile a C callback of this signature at once, or take it from the cache."""
 
     def decorate(function: F) -> Any:
-        with _own_cache():
+        with _own_cache(sources):
             return numba.cfunc(signature, cache=is_cached())(function)
 
     return decorate

@@ -318,7 +318,7 @@ def solve(
 
 def outlook(
     scene: Scene, backend: str, checkpoint: NDArray[np.float64] | None = None
-) -> tuple[int, dict[str, int]]:
+) -> tuple[int, dict[str, int], str]:
     """What can be said of a run without running it.
 
     Parameters
@@ -334,6 +334,8 @@ def outlook(
         Numbers in a checkpoint, of the contact model that the run begins with.
     skipped : dict
         What the run did not need until then, by name.
+    method : str
+        The formulas that the run begins with, see `Statistics`.
 
     Raises
     ------
@@ -343,7 +345,7 @@ def outlook(
     problem = make_problem(scene)
     if checkpoint is not None and problem.of_checkpoint(checkpoint).depth > 0:
         problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
-    return problem.checkpoint(0.0, problem.start).size, problem.skipped
+    return problem.checkpoint(0.0, problem.start).size, problem.skipped, formulas(problem, backend)
 
 
 def ledger_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> Ledger:

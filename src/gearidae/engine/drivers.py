@@ -11,8 +11,9 @@ from types import ModuleType
 from gearidae.compiling import compiling
 from gearidae.engine.integrate.driver import Block, Tally
 from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.state import GEARS
 
-__all__ = ["ADAMS", "BDF", "formulas", "load_driver", "native_formulas", "ready_driver", "solver_compiling"]
+__all__ = ["ADAMS", "BDF", "formulas", "load_driver", "native_formulas", "ready_driver"]
 
 log = logging.getLogger(__name__)
 
@@ -21,14 +22,14 @@ ADAMS, BDF = "adams", "bdf"
 
 TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
 
-solver_compiling = partial(compiling, "the solver", "about half a minute")
+_solver_compiling = partial(compiling, "the solver", "about half a minute")
 """Says so while the solver is compiled."""
 
 
 @cache
 def load_driver(backend: str) -> ModuleType:
     """Import a driver; late, as the native one compiles its callbacks when it is imported."""
-    with solver_compiling():
+    with _solver_compiling():
         return import_module(f"gearidae.engine.integrate.{'native' if backend == 'native' else 'portable'}")
 
 
@@ -43,10 +44,12 @@ def native_formulas(method: str) -> str:
     method : {"auto", "bdf"}
         ``run.method`` of the scene.
     """
-    from gearidae.engine.sundials.self_test import failure  # which runs the driver, and so cannot be loaded before it
+    from gearidae.engine.sundials.self_test import (
+        failure,
+    )  # which runs the driver, and so cannot be loaded before it
 
     for way in (ADAMS, BDF) if method == "auto" else (BDF,):
-        with solver_compiling():
+        with _solver_compiling():
             failed = failure(way)
         if not failed:
             return way
@@ -84,7 +87,8 @@ def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block
         run = partial(run, as_ida=True)
     kind = (backend, as_ida, int(problem.model.scene.kind), bool(problem.model.scene.nodes > 0))
     if kind not in _ready:
-        with solver_compiling():
+        bodies = "gear pairs" if kind[2] == GEARS else "rollers"
+        with compiling(f"the solver for {bodies}{' in elastic contact' if kind[3] else ''}", "some seconds"):
             for _ in run(problem.shortened(TINY), 1e-3, 2, Tally()):
                 pass
         _ready.add(kind)

@@ -130,7 +130,9 @@ def examine(way: str) -> str:
         return f"the order stays at {fine.order}, below {expected.order}"
     gain = coarse.error * COARSE / (fine.error * FINE)
     if not gain >= expected.gain:
-        return f"with a thousandth of the tolerance the error falls by {gain:.3g}, and not by {expected.gain:g}"
+        return (
+            f"with a thousandth of the tolerance the error falls by {gain:.3g}, and not by {expected.gain:g}"
+        )
     return ""
 
 
