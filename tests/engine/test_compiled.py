@@ -78,10 +78,8 @@ def test_other_peoples_numba_cache_is_left_alone():
 
 
 SMALL = """
-import gearidae.contact.psi, sys
-from gearidae.compiled import cache_folder, compiled
-import gearidae.contact.kernels.lanes as lanes
-from gearidae.contact.kernels import law
+import gearidae.contact.kernels.law as law
+from gearidae.compiled import cache_folder
 from numba.core import event
 import numpy as np
 class Count(event.Listener):
@@ -90,8 +88,8 @@ class Count(event.Listener):
     def on_end(self, done): pass
 count = Count()
 event.register("numba:compile", count)
-assert law._septic(np.arange(12.0), 0, 0.5)
-print(law.__file__, cache_folder(), count.n)
+value = law._septic(np.arange(64.0), 0, 0.5 / law.KNOTS_PER_SIGMA, 0.0, 4)[0]
+print(law.__file__, cache_folder(), count.n, value)
 """
 
 
@@ -102,30 +100,45 @@ def copied(folder):
     return {"PYTHONPATH": str(folder)}
 
 
+def edit(folder):
+    """Shift all pieces by one knot."""
+    file = folder / "gearidae" / "contact" / "kernels" / "law.py"
+    text = file.read_text()
+    assert text.count(PLACE) == 1
+    file.write_text(text.replace(PLACE, f"{PLACE} + 1.0"))
+
+
+PLACE = "position = (x - low) * KNOTS_PER_SIGMA"
+
+
 def test_environments_of_the_same_sources_share(tmp_path):
-    cache = tmp_path / "cache"
-    told = [
-        run(cache, "", SMALL, copied(tmp_path / name)).stdout.split() for name in ("one", "other")
-    ]
-    assert [Path(file).is_relative_to(tmp_path / name) for (file, _, _), name in zip(told, ("one", "other"))]
-    assert told[0][0] != told[1][0]
+    cache, names = tmp_path / "cache", ("one", "other")
+    told = [run(cache, "", SMALL, copied(tmp_path / name)).stdout.split() for name in names]
+    for (file, *_), name in zip(told, names, strict=True):
+        assert Path(file).is_relative_to(tmp_path / name)
     assert told[0][1] == told[1][1]
     assert int(told[0][2]) > 0
     assert told[1][2] == "0"
+    assert told[0][3] == told[1][3]
+    edit(tmp_path / "other")
+    edited = run(cache, "", SMALL, {"PYTHONPATH": str(tmp_path / "other")}).stdout.split()
+    assert edited[1] != told[1][1]
+    assert int(edited[2]) > 0
+    assert edited[3] != told[1][3]
 
 
-def test_edited_sources_are_compiled_anew_and_nothing_is_kept_beside_them(tmp_path):
+def test_what_cannot_be_kept_is_compiled_anew_and_never_stale(tmp_path):
     """A folder that cannot be written: what stands in its way is a file."""
     (tmp_path / "file").write_text("")
     environment = copied(tmp_path / "one")
-    code = SMALL.replace("count.n)", "count.n, law._septic(np.arange(12.0), 0, 0.5))")
-    first = run(tmp_path / "file", "", code, environment)
-    assert first.stderr.count("compiled code cannot be kept") == 1
-    callee = tmp_path / "one" / "gearidae" / "contact" / "kernels" / "law.py"
-    text = callee.read_text()
-    assert "def _septic" in text
-    again = run(tmp_path / "file", "", code, environment)
-    assert int(again.stdout.split()[2]) > 0
+    first, same = (run(tmp_path / "file", "", SMALL, environment) for _ in range(2))
+    edit(tmp_path / "one")
+    edited = run(tmp_path / "file", "", SMALL, environment)
+    for told in (first, same, edited):
+        assert told.stderr.count("compiled code cannot be kept") == 1
+        assert int(told.stdout.split()[2]) > 0
+    assert first.stdout == same.stdout
+    assert edited.stdout.split()[3] != first.stdout.split()[3]
     assert not list((tmp_path / "one").rglob("*.nb?"))
 
 
