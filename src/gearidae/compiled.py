@@ -155,10 +155,8 @@ _CAN_BE_ASKED: Final = hasattr(caching, "_CacheLocator") and hasattr(
     caching.CompileResultCacheImpl, "_locator_classes"
 )
 if _CAN_BE_ASKED:
-    caching.CompileResultCacheImpl._locator_classes = [
-        _Place,
-        *caching.CompileResultCacheImpl._locator_classes,
-    ]
+    _impl: Any = caching.CompileResultCacheImpl
+    _impl._locator_classes = [_Place, *_impl._locator_classes]
 
 
 @contextmanager
@@ -241,6 +239,7 @@ class Function:
         self._numba_type_ = linked._numba_type_  # by which numba knows it for a compiled function
 
     def __call__(self, *arguments: Any) -> Any:
+        """Call it from Python."""
         return self._called(*arguments)
 
     @property

@@ -51,7 +51,7 @@ def _leave() -> None:
     _depth -= 1
 
 
-class _Told(event.Listener):  # type: ignore[misc]
+class _Told(event.Listener):
     """What numba tells when it compiles a function that it has not found on disk."""
 
     def __init__(self, what: str, how_long: str) -> None:
