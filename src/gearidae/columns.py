@@ -58,4 +58,6 @@ ROLLER_SAMPLES: Final = (
     Column("speed", "m s-1", "velocity of the roller", "positive upwards, away from the plane"),
     Column("force", "N", "contact force on the roller", "positive pushes the bodies apart"),
 )
-ELASTIC_SAMPLES: Final = (Column("min_separation", "m", "smallest distance of the flanks, deflection included"),)
+ELASTIC_SAMPLES: Final = (
+    Column("min_separation", "m", "smallest distance of the flanks, deflection included"),
+)

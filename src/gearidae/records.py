@@ -177,6 +177,8 @@ class Statistics:
         How the driver ended.
     fold_gap : float, optional
         Gap at which the elastic contact folds, if that was the ending [m].
+    method : str
+        The formulas that the run began with: ``adams`` (and IDA's own where these are better), or ``bdf``, IDA's own.
     """
 
     steps: int = 0
@@ -192,6 +194,7 @@ class Statistics:
     flight_steps: int = 0
     ending: Ending = Ending.FINISHED
     fold_gap: float | None = None
+    method: str = ""
 
     def note_fold(self, gap: float) -> None:
         """Call the ending a fold if it was one; NaN if not, else the gap at which the contact folds [m]."""

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import numba
-
 from gearidae import compiled as own
 from gearidae_bench import compiling, kinks
 
@@ -16,13 +14,13 @@ def test_the_benchmark_has_a_folder_of_its_own():
 
 def test_every_compiled_function_of_the_benchmark_is_kept_there():
     folder = str(own.cache_folder(compiling.SOURCES))
-    declared = [one for one in vars(kinks).values() if isinstance(one, numba.core.dispatcher.Dispatcher)]
+    declared = [one for one in vars(kinks).values() if isinstance(one, own.Function)]
     mine = [one for one in declared if one.py_func.__module__ == kinks.__name__]
     assert {one.py_func.__name__ for one in mine} == {"arm", "watch"}
-    assert all(one.stats.cache_path.startswith(folder) for one in mine)
+    assert all(one.cache_path.startswith(folder) for one in mine)
     others = [one for one in declared if one not in mine]
     assert others
-    assert not any(one.stats.cache_path.startswith(folder) for one in others)
+    assert not any(one.cache_path.startswith(folder) for one in others)
 
 
 def test_an_edited_source_changes_the_folder(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -140,7 +141,7 @@ def joined_along(gap, limit, count):
     turns = np.flatnonzero(np.diff(np.sign(np.diff(gap)))) + 1
     edges = [0, *turns.tolist(), gap.size - 1]
     joined, total, booked = gap[0], 0.0, 0.0
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in pairwise(edges):
         if gap[last] > gap[first]:
             joined = max(joined, gap[last] - limit)
             continue

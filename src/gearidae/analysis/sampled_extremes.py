@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -29,12 +30,12 @@ def extremes_of_samples(run: xr.Dataset) -> Extremes | None:
     end = reached(speed)
     if not end:
         return None
-    shown = dict.fromkeys(_FLOATS, math.nan) | {
+    shown: dict[str, Any] = dict.fromkeys(_FLOATS, math.nan) | {
         "largest_mesh_force": force.high,
         "smallest_mesh_force": force.low,
         "final_speed": float(speed[end - 1]),
     }
-    counts = dict.fromkeys(("reversals", "stick_exits", "mesh_exits"), 0)
+    counts: dict[str, Any] = dict.fromkeys(("reversals", "stick_exits", "mesh_exits"), 0)
     return Extremes(**shown, **counts) if roller else Extremes(**(shown | _of_gear(run, end)), **counts)
 
 

@@ -26,6 +26,7 @@ _NUMBERS = ("rtol", "t_end", "wall_time")
 _COUNTS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
 _NEEDED = (*_TEXTS, *_NUMBERS, *_COUNTS)
 _MORE_TEXTS = (
+    "method",
     "summary",
     "references",
     "license",

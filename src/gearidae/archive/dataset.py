@@ -226,7 +226,8 @@ def _totals(solutions: Sequence[Solution]) -> dict[str, Any]:
     statistics = [solution.statistics for solution in solutions]
     totals: dict[str, Any] = {name: sum(getattr(each, name) for each in statistics) for name in _COUNTERS}
     totals["wall_time"] = math.fsum(each.wall_time for each in statistics)
-    totals["backend"] = ", ".join(sorted({each.backend for each in statistics if each.backend}))
+    for name in ("backend", "method"):
+        totals[name] = ", ".join(sorted({getattr(each, name) for each in statistics} - {""}))
     skipped = statistics[0].skipped if len(statistics) == 1 else [each.skipped for each in statistics]
     totals["skipped"] = json.dumps(skipped, default=int)
     return totals

@@ -102,6 +102,7 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
     for name in ("steps", "residual_evaluations", "jacobian_evaluations", "restarts"):
         yield name.replace("_", " "), str(attributes[name]), ""
     yield "wall time", f"{attributes['wall_time']:.3g} s", f"backend {attributes['backend']}"
+    yield "method", str(attributes.get("method", "")), ""
     for surface in ("bare", "coated"):
         regime = attributes[f"tabor_regime_{surface}"]
         yield f"Tabor parameter, {surface}", f"{attributes[f'tabor_parameter_{surface}']:.4g}", str(regime)

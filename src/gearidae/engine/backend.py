@@ -6,15 +6,12 @@ import logging
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from functools import cache
-from importlib import import_module
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.compiled import say_compiling
 from gearidae.engine.changeover import change_over, deepen
+from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.integrate.driver import Block, Ending, Tally
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
@@ -29,9 +26,7 @@ __all__ = [
     "choose_backend",
     "follow",
     "kept_at",
-    "load_driver",
     "outlook",
-    "ready_driver",
     "run_blocks",
     "solve",
     "statistics_of",
@@ -39,16 +34,16 @@ __all__ = [
 
 log = logging.getLogger(__name__)
 
-TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
 
-
-def choose_backend(backend: str = "auto") -> str:
+def choose_backend(backend: str = "auto", method: str = "auto") -> str:
     """Name the driver that will run.
 
     Parameters
     ----------
     backend : {"auto", "native", "sksundae"}
-        ``auto`` takes the native driver where it works, and logs why where it does not.
+        ``auto`` takes the native driver where it works and passes its self-test, and logs why where it does not.
+    method : {"auto", "bdf"}
+        ``run.method`` of the scene.
 
     Raises
     ------
@@ -61,36 +56,13 @@ def choose_backend(backend: str = "auto") -> str:
         return backend
     reason = unavailable()
     if not reason:
-        return "native"
+        if native_formulas(method):
+            return "native"
+        reason = "it fails its self-test"
     if backend == "native":
         raise SceneError("backend", backend, f"cannot be used here: {reason}")
     log.warning("the native driver cannot be used here: %s; running through scikit-sundae instead", reason)
     return "sksundae"
-
-
-@cache
-def load_driver(backend: str) -> ModuleType:
-    """Import a driver; on the first run of all that takes a while, which is said."""
-    module = "native" if backend == "native" else "portable"
-    say_compiling(_COMPILED[module], "the solver", "about half a minute")
-    # imported late: the native driver compiles its callbacks when it is imported
-    return import_module(f"gearidae.engine.integrate.{module}")
-
-
-_COMPILED = {"native": "native", "portable": "residual"}  # a module that is compiled with each driver
-
-_ready: set[tuple[str, int, bool]] = set()
-
-
-def ready_driver(backend: str, problem: Problem) -> ModuleType:
-    """Load a driver and have all that it needs for this kind of problem compiled, or read from disk, by a tiny run."""
-    driver = load_driver(backend)
-    kind = (backend, int(problem.model.scene.kind), bool(problem.model.scene.nodes > 0))
-    if kind not in _ready:
-        for _ in driver.run(problem.shortened(TINY), 1e-3, 2, Tally()):
-            pass
-        _ready.add(kind)
-    return driver
 
 
 def run_blocks(
@@ -119,13 +91,14 @@ def run_blocks(
     """
     driver = ready_driver(backend, problem)
     problem.prepare(rtol, samples)  # by which checkpoints are judged
+    tally.method = formulas(problem, backend)
     if problem.elastic is None:
         yield from _run_bodies(problem, rtol, samples, driver, tally, resume)
         return
     bodies = problem if resume is None else problem.of_checkpoint(resume)
     rigid = bodies is problem
     if rigid and not (resume is not None and problem.outgrown(resume)):
-        for block in driver.run(problem, rtol, samples, tally, resume):
+        for block in driver(problem, rtol, samples, tally, resume):
             resume = block.checkpoint
             yield block
         if tally.ending is not Ending.DEFLECTION or resume is None:
@@ -146,7 +119,7 @@ def _run_bodies(
     problem: Problem,
     rtol: float,
     samples: int,
-    driver: ModuleType,
+    driver: Callable[..., Iterator[Block]],
     tally: Tally,
     resume: NDArray[np.float64] | None,
 ) -> Iterator[Block]:
@@ -159,7 +132,7 @@ def _run_bodies(
             deeper = problem.deeper()
             resume = deepen(problem, deeper, resume)
             problem = deeper
-        for block in driver.run(problem, rtol, samples, tally, resume):
+        for block in driver(problem, rtol, samples, tally, resume):
             resume = block.checkpoint
             yield block
         if tally.ending is not Ending.TOO_DEEP or problem.deeper is None or resume is None:
@@ -248,7 +221,7 @@ def follow(
     SceneError
         If the scene is beyond what the engine can do.
     """
-    name = choose_backend(backend)
+    name = choose_backend(backend, scene.run.method)
     begin = begin or Start()
     tally, reached, seen = replace(begin.tally), begin.time, begin.events
     status = message = ""
@@ -291,6 +264,7 @@ def statistics_of(tally: Tally, wall_time: float, backend: str, skipped: dict[st
         wall_time=wall_time,
         backend=backend,
         skipped=skipped | {"flight_steps": tally.flight_steps},
+        method=tally.method,
     )
 
 
@@ -351,7 +325,7 @@ def solve(
 
 def outlook(
     scene: Scene, backend: str, checkpoint: NDArray[np.float64] | None = None
-) -> tuple[int, dict[str, int]]:
+) -> tuple[int, dict[str, int], str]:
     """What can be said of a run without running it.
 
     Parameters
@@ -367,6 +341,8 @@ def outlook(
         Numbers in a checkpoint, of the contact model that the run begins with.
     skipped : dict
         What the run did not need until then, by name.
+    method : str
+        The formulas that the run begins with, see `Statistics`.
 
     Raises
     ------
@@ -376,7 +352,7 @@ def outlook(
     problem = make_problem(scene)
     if checkpoint is not None and problem.of_checkpoint(checkpoint).depth > 0:
         problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
-    return problem.checkpoint(0.0, problem.start).size, problem.skipped
+    return problem.checkpoint(0.0, problem.start).size, problem.skipped, formulas(problem, backend)
 
 
 def kept_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> tuple[Ledger, Extremes]:

@@ -32,6 +32,7 @@ _PROVENANCE = (
     ("status", "status"),
     ("message", "message"),
     ("backend", "driver of the solver"),
+    ("method", "formulas of the solver"),
     ("rtol", "relative tolerance"),
     ("steps", "solver steps"),
     ("residual_evaluations", "evaluations of the residual"),

@@ -52,7 +52,7 @@ def prepare(
         raise SceneError(
             "scene", type(scene).__name__, "must be a Scene (from load_case, preset or Scene.from_dict)"
         )
-    engine.choose_backend(backend)  # refuses what is unknown or cannot work here
+    engine.choose_backend(backend, scene.run.method)  # refuses what is unknown or cannot work here
     settings = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     given = {key: value for key, value in settings.items() if value is not None}
     return scene.replace(given) if given else scene

@@ -66,7 +66,7 @@ def stream(
     if found is not None:
         backend = _same_backend(backend, str(found.attrs["backend"]))
         found.close()
-    run = _Run(scene, target, engine.choose_backend(backend))
+    run = _Run(scene, target, engine.choose_backend(backend, scene.run.method))
     with run.take_up() if found is not None else run.begin() as archive:
         with run_progress(progress, scene.run.duration) as report:
             ended = run.follow(archive, report)
@@ -79,7 +79,7 @@ class _Run:
 
     def __init__(self, scene: Scene, target: Path, backend: str) -> None:
         self._scene, self._target, self._backend = scene, target, backend
-        self._checkpoint_size, self._skipped = engine.outlook(scene, backend)
+        self._checkpoint_size, self._skipped, self._method = engine.outlook(scene, backend)
 
     def begin(self) -> GrowingArchive:
         """Make the archive."""
@@ -170,15 +170,18 @@ class _Run:
 
     def _ended_at(self, point: Checkpoint) -> Ended:
         """How a run ended of which only the archive's final form was missing."""
-        _, skipped = engine.outlook(self._scene, self._backend, point.state)
-        statistics = statistics_of(point.statistics, point.wall_time, self._backend, skipped)
+        _, skipped, method = engine.outlook(self._scene, self._backend, point.state)
+        counted = replace(point.statistics, method=method)
+        statistics = statistics_of(counted, point.wall_time, self._backend, skipped)
         ledger, extremes = engine.kept_at(self._scene, point.state, self._backend)
         return engine.Ended(statistics, "finished", "", point.time, ledger, extremes)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
         """Make the run's dataset, without samples and events."""
         empty = unsolved("running", "the run is not at its end yet")
-        statistics = replace(empty.statistics, backend=self._backend, skipped=self._skipped)
+        statistics = replace(
+            empty.statistics, backend=self._backend, method=self._method, skipped=self._skipped
+        )
         if ended is None:
             return to_dataset(self._scene, replace(empty, statistics=statistics))
         solution = replace(

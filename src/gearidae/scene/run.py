@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final, Self
+from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -38,6 +38,10 @@ class Run(Group):
     )
     rtol: Annotated[float, Quantity(unit="1", at_least=1e-12, at_most=0.1)] = Field(
         default=1e-6, description="relative tolerance of the solver"
+    )
+    method: Literal["auto", "bdf"] = Field(
+        default="auto",
+        description="bdf: IDA's own formulas, iteration and root search throughout; auto: Adams' where they are better",
     )
 
     @model_validator(mode="after")

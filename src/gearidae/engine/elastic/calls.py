@@ -22,7 +22,8 @@ from numba.core import cgutils
 from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
-from gearidae.compiled import compiled, say_compiling
+from gearidae.compiled import compiled
+from gearidae.compiling import compiling
 from gearidae.engine.model.state import Floats, Model
 
 __all__ = [
@@ -62,8 +63,8 @@ LENGTH_FORCE: Final = 8
 @cache
 def service() -> int:
     """Address of the function that answers; compiled on first use, which is said."""
-    say_compiling("service", "elastic contacts", "some 20 seconds")
-    return int(import_module("gearidae.engine.elastic.service").answer.address)
+    with compiling("elastic contacts", "some 20 seconds"):
+        return int(import_module("gearidae.engine.elastic.service").answer.address)
 
 
 QUESTION: Final = (*(types.int64,) * 3, *(types.float64,) * 4)

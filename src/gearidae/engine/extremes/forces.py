@@ -20,11 +20,12 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
         return 0.0 if in_flight(m) else yp[V] / m.scene.gear_inverse_mass
     if in_flight(m):
         return m.scene.damping * y[V]
-    drive, acceleration = torque_force(m, DRIVE, t), yp[V] + yp[W]
+    acceleration, turn = yp[V] + yp[W], y[V] + y[W]
     if m.scene.error_count == 0:
-        return drive - acceleration / m.scene.pinion_inverse_mass
+        return torque_force(m, DRIVE, t, turn) - acceleration / m.scene.pinion_inverse_mass
     _, _, e1, e2 = static_error(m, y[U], y[PHASE])
-    turn = (y[V] + y[W]) / (1.0 - e1)
+    turn /= 1.0 - e1
+    drive = torque_force(m, DRIVE, t, turn)
     pinion = (acceleration + e2 * turn * turn) / ((1.0 - e1) * m.scene.pinion_inverse_mass)
     return (drive - pinion) / (1.0 - e1)
 

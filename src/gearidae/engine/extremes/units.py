@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any, Final
 
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, Record, V, W
 from gearidae.records import Extremes
@@ -24,7 +25,7 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
     """
     s, e = m.scene, m.state.extremes
     force, tau = float(s.force_unit), float(s.time_unit)
-    forces = {
+    forces: dict[str, Any] = {
         "largest_mesh_force": force * float(e.largest_force),
         "largest_mesh_force_time": tau * float(e.largest_force_time),
         "smallest_mesh_force": force * float(e.smallest_force),
@@ -56,7 +57,7 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
     )
 
 
-_NO_GEAR = dict.fromkeys(
+_NO_GEAR: Final[dict[str, Any]] = dict.fromkeys(
     (
         "min_gear_speed",
         "max_gear_speed",
@@ -72,10 +73,10 @@ _NO_GEAR = dict.fromkeys(
     ),
     math.nan,
 )
-_NEVER = {"reversals": 0, "stick_exits": 0, "mesh_exits": 0}
+_NEVER: Final[dict[str, Any]] = {"reversals": 0, "stick_exits": 0, "mesh_exits": 0}
 
 
-def _standstill(e: Record, tau: float, place: float) -> dict[str, float]:
+def _standstill(e: Record, tau: float, place: float) -> dict[str, Any]:
     """Where and when the gear came to stand."""
     if e.held:
         return {

@@ -72,6 +72,7 @@ def make_problem(
     build = _gear_problem if scene.roller is None else _roller_problem
     problem = build(scene, nodes)
     problem.columns = columns or problem.columns
+    problem.method = scene.run.method
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
     count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
     if count > 0:

@@ -51,6 +51,8 @@ class Problem:
         Makes the elastic problem for the time when the automatically chosen asperity model is no longer sufficient.
     deeper : callable, optional
         Makes the same elastic problem with nodes laid out for deeper contacts, if there can be any.
+    method : str
+        ``run.method`` of the scene.
     located : Located
         Where the model lies in this process, for compiled functions that are called from Python.
     """
@@ -64,6 +66,7 @@ class Problem:
     depth: int = 0
     elastic: Callable[[], Problem] | None = None
     deeper: Callable[[], Problem] | None = None
+    method: str = "auto"
     located: Located = field(init=False)
 
     def __post_init__(self) -> None:

@@ -1,0 +1,96 @@
+"""Say that something is being compiled, while it is: the first run on a machine takes a while."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from time import monotonic
+from typing import Any
+
+from numba.core import event
+
+__all__ = ["compiling"]
+
+log = logging.getLogger(__name__)
+
+_one_at_a_time = threading.RLock()
+_depth = 0
+
+
+@contextmanager
+def compiling(what: str, how_long: str) -> Iterator[None]:
+    """Say that something is compiled, if it is and when it is: code that is read from disk needs no words.
+
+    On a terminal a line counts the functions, without one a line before and one after say it.
+
+    Parameters
+    ----------
+    what : str
+        What is compiled here, for instance "the solver".
+    how_long : str
+        How long that takes at most, in words.
+    """
+    global _depth
+    with _one_at_a_time, ExitStack() as stack:
+        _depth += 1
+        stack.callback(_leave)
+        if _depth > 1:  # whoever is outside says it
+            yield
+            return
+        told = _Told(what, how_long)
+        stack.callback(told.end)
+        stack.enter_context(event.install_listener("numba:compile", told))
+        yield
+
+
+def _leave() -> None:
+    global _depth
+    _depth -= 1
+
+
+class _Told(event.Listener):
+    """What numba tells when it compiles a function that it has not found on disk."""
+
+    def __init__(self, what: str, how_long: str) -> None:
+        self._what, self._how_long = what, how_long
+        self._began: float | None = None
+        self._count, self._line = 0, ExitStack()
+        self._status: Any = None
+
+    def on_start(self, begun: Any) -> None:
+        """Take note of a function that is begun."""
+        if self._began is None:
+            self._began = monotonic()
+            self._begin()
+
+    def on_end(self, done: Any) -> None:
+        """Take note of a function that is done."""
+        self._count += 1
+        if self._status is not None:
+            self._status.update(f"{self._sentence()}: {self._count} functions")
+
+    def end(self) -> None:
+        """Say that it is over."""
+        self._line.close()
+        if self._began is not None:
+            seconds = monotonic() - self._began
+            log.warning("%s: %d functions compiled in %.0f s", self._what, self._count, seconds)
+
+    def _sentence(self) -> str:
+        return f"compiling {self._what} for this machine: once, {self._how_long}"
+
+    def _begin(self) -> None:
+        if log.isEnabledFor(logging.WARNING) and sys.stderr.isatty():
+            from rich.console import Console
+            from rich.errors import LiveError
+
+            try:
+                status = Console(stderr=True).status(self._sentence())
+                self._status = self._line.enter_context(status)
+            except LiveError:  # something else is being shown already
+                self._status = None
+        if self._status is None:
+            log.warning("%s", self._sentence())

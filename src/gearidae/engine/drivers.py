@@ -1,0 +1,95 @@
+"""The drivers, each ready to run: loaded, compiled, and with the formulas that have passed the self-test here."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from importlib import import_module
+from types import ModuleType
+
+from gearidae.compiling import compiling
+from gearidae.engine.integrate.driver import Block, Tally
+from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.state import GEARS
+
+__all__ = ["ADAMS", "BDF", "formulas", "load_driver", "native_formulas", "ready_driver"]
+
+log = logging.getLogger(__name__)
+
+ADAMS, BDF = "adams", "bdf"
+"""Formulas: those of Adams, with IDA's own where they are better; IDA's own, iteration and root search throughout."""
+
+TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
+
+_solver_compiling = partial(compiling, "the solver", "about half a minute")
+"""Says so while the solver is compiled."""
+
+
+@cache
+def load_driver(backend: str) -> ModuleType:
+    """Import a driver; late, as the native one compiles its callbacks when it is imported."""
+    with _solver_compiling():
+        return import_module(f"gearidae.engine.integrate.{'native' if backend == 'native' else 'portable'}")
+
+
+@cache
+def native_formulas(method: str) -> str:
+    """Formulas with which the native driver has passed the self-test; an empty string if there are none.
+
+    What has failed is named in the log, once.
+
+    Parameters
+    ----------
+    method : {"auto", "bdf"}
+        ``run.method`` of the scene.
+    """
+    from gearidae.engine.sundials.self_test import (
+        failure,
+    )  # which runs the driver, and so cannot be loaded before it
+
+    for way in (ADAMS, BDF) if method == "auto" else (BDF,):
+        with _solver_compiling():
+            failed = failure(way)
+        if not failed:
+            return way
+        log.warning("the native driver fails its self-test with %s: %s", _NAMES[way], failed)
+    return ""
+
+
+_NAMES = {ADAMS: "Adams' formulas", BDF: "IDA's own formulas"}
+
+
+def formulas(problem: Problem, backend: str) -> str:
+    """Name the formulas that a run of this problem begins with, `ADAMS` or `BDF`.
+
+    Elastic contacts are stiff, and left to IDA's own. So is everything by the portable driver.
+    """
+    if backend != "native" or problem.model.scene.nodes > 0:
+        return BDF
+    return native_formulas(problem.method) or BDF
+
+
+_ready: set[tuple[str, bool, int, bool]] = set()
+
+
+def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block]]:
+    """Load a driver and have all that it needs for this kind of problem compiled, or read from disk, by a tiny run.
+
+    Returns
+    -------
+    callable
+        The driver's ``run``, see `gearidae.engine.integrate.native.run`.
+    """
+    run: Callable[..., Iterator[Block]] = load_driver(backend).run
+    as_ida = backend == "native" and native_formulas(problem.method) != ADAMS
+    if as_ida:
+        run = partial(run, as_ida=True)
+    kind = (backend, as_ida, int(problem.model.scene.kind), bool(problem.model.scene.nodes > 0))
+    if kind not in _ready:
+        bodies = "gear pairs" if kind[2] == GEARS else "rollers"
+        with compiling(f"the solver for {bodies}{' in elastic contact' if kind[3] else ''}", "some seconds"):
+            for _ in run(problem.shortened(TINY), 1e-3, 2, Tally()):
+                pass
+        _ready.add(kind)
+    return run

@@ -1,0 +1,84 @@
+"""That something is compiled is said when it is, and never when it is not."""
+
+import io
+import sys
+
+import numba
+import pytest
+
+from gearidae.compiling import compiling
+
+
+@pytest.fixture
+def fresh():
+    """Make functions that have to be compiled."""
+
+    def make():
+        return numba.njit(lambda x: x + 1.0)
+
+    return make
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_a_line_before_and_one_after(fresh, caplog):
+    with compiling("the toy", "no time"):
+        assert caplog.text == ""
+        assert fresh()(1.0) == 2.0
+        assert caplog.messages == ["compiling the toy for this machine: once, no time"]
+        fresh()(1.0)
+    assert len(caplog.messages) == 2
+    assert caplog.messages[1].startswith("the toy: 2 functions compiled in ")
+
+
+def test_nothing_is_said_where_nothing_is_compiled(fresh, caplog):
+    ready = fresh()
+    ready(1.0)
+    with compiling("the toy", "no time"):
+        ready(1.0)
+    fresh()(1.0)  # and nothing of what comes later
+    assert caplog.messages == []
+
+
+def test_the_outermost_says_it_once(fresh, caplog):
+    with compiling("the house", "a while"):
+        with compiling("a room", "no time"):
+            fresh()(1.0)
+        fresh()(1.0)
+    assert [message.split(":")[0] for message in caplog.messages] == [
+        "compiling the house for this machine",
+        "the house",
+    ]
+    caplog.clear()
+    with compiling("a room", "no time"):
+        fresh()(1.0)
+    assert "a room" in caplog.text
+
+
+def test_an_error_ends_it(fresh, caplog):
+
+    @compiling("the toy", "no time")
+    def fail():
+        return fresh()(1.0) / 0.0
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert len(caplog.messages) == 2
+    caplog.clear()
+    fresh()(1.0)
+    assert caplog.messages == []
+
+
+def test_functions_are_counted_on_a_terminal(fresh, caplog, monkeypatch):
+    shown = Terminal()
+    monkeypatch.setattr(sys, "stderr", shown)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "120")
+    with compiling("the toy", "no time"):
+        for _ in range(3):
+            fresh()(1.0)
+    assert "compiling the toy for this machine: once, no time: 3 functions" in shown.getvalue()
+    assert [message.split(" in ")[0] for message in caplog.messages] == ["the toy: 3 functions compiled"]
