@@ -1,4 +1,4 @@
-"""Extremes that the engine keeps, compared with dense samples, with an independent quadrature and across checkpoints."""
+"""Extremes that the engine keeps: against dense samples, an independent quadrature, and across checkpoints."""
 
 from __future__ import annotations
 

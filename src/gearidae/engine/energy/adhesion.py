@@ -97,14 +97,13 @@ def _follow_flank(m: Model, coast: int, h: float, y: Floats, w_rate: float) -> N
     gap = m.scene.half_backlash - sign * y[U]
     if gap >= m.scene.cutoff:
         return
-    number, slope = loading_value(m.tables, m.scene.number_at, gap)
     first, last = pairs_on_path(m, coast)
     for pair in range(first, last + 1):
         k = history_of(m, coast, pair)
         own = m.state.history[k]
         if own.pair != pair or own.direction >= 0.0:
             continue
-        loss, loss_slope = _loss(m, k, y, gap, number, slope)
+        loss, loss_slope = _loss(m, k, y, gap)
         power = rate = 0.0
         if loss != 0.0:
             _, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
@@ -114,21 +113,23 @@ def _follow_flank(m: Model, coast: int, h: float, y: Floats, w_rate: float) -> N
 
 
 @compiled
-def _loss(m: Model, k: int, y: Floats, gap: float, number: float, slope: float) -> tuple[float, float]:
+def _loss(m: Model, k: int, y: Floats, gap: float) -> tuple[float, float]:
     """What a pair has lost per length since its last turning point, and its slope in the gap.
 
     Of an elastic contact the slope is that of a rigid one in proportion.
     """
-    if m.scene.nodes > 0:
-        loss = nodes_joining_loss(m, k, y, gap)
-        return loss, (loss * slope / number if number > 0.0 else 0.0)
-    loss = change = 0.0
+    loss = change = lost = 0.0
     for material in range(MATERIALS):
         own = m.scene.material[material]
-        if own.stretch_limit > 0.0 and gap < m.state.history[k].joined[material]:
+        if own.stretch_limit > 0.0 and (m.scene.nodes > 0 or gap < m.state.history[k].joined[material]):
+            number, slope = loading_value(m.tables, own.number_at, gap)
             joining = own.joining_energy * own.force_scale
+            lost += joining * number
             loss += joining * number + own.force_scale * m.state.history[k].booked[material]
             change += joining * slope
+    if m.scene.nodes > 0:
+        loss = nodes_joining_loss(m, k, y, gap)
+        return loss, (loss * change / lost if lost > 0.0 else 0.0)
     return loss, change
 
 
