@@ -12,7 +12,7 @@ import pytest
 import gearidae as gd
 from gearidae import engine
 from gearidae.contact import asperity_of
-from gearidae.contact.kernels.energy import JOINING
+from gearidae.contact.asperities.jkr import JOINING
 from gearidae.contact.psi import psi
 from gearidae.mesh import curvature_radii
 from gearidae.records import EventKind, Flank
