@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cyclopts import Argument
 
-from gearidae.archive.variables import EVENTS, LEDGER, RUN, SAM_FRACTION, SAMPLES, TIME, Variable
+from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, RUN, SAM_FRACTION, SAMPLES, TIME, Variable
 from gearidae.cli.session import app
 from gearidae.engine.model import state
 from gearidae.records import EventKind, Flank
@@ -57,7 +57,7 @@ def dataset_tables() -> str:
         ("Samples", SAMPLES.values()),
         ("Events", EVENTS.values()),
         ("Status and statistics of a run", RUN.values()),
-        ("Energy ledger of a run", LEDGER.values()),
+        ("Energy balance of a run", ENERGY_BALANCE.values()),
     )
     headings = ("name", "dimensions", "unit", "what it is")
     parts = []

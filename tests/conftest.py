@@ -24,8 +24,8 @@ def end_early(monkeypatch):
     """Let every run end before its time: after a share of its output, by Ctrl-C or by chatter."""
 
     def arrange(status, share=0.5):
-        def cut(problem, rtol, samples, backend, tally, resume=None):
-            blocks = list(whole(problem, rtol, samples, backend, tally, resume))
+        def cut(problem, rtol, samples, backend, statistics, resume=None):
+            blocks = list(whole(problem, rtol, samples, backend, statistics, resume))
             rows = np.concatenate([block.rows for block in blocks])
             events = np.concatenate([block.events for block in blocks])
             kept = int(share * len(rows))
@@ -33,7 +33,7 @@ def end_early(monkeypatch):
             yield Block(rows[:kept], events[events[:, 0] <= time], time)
             if status == "interrupted":
                 raise KeyboardInterrupt
-            tally.ending = Ending.CHATTER
+            statistics.ending = Ending.CHATTER
 
         whole = backend_module.run_blocks
         monkeypatch.setattr(backend_module, "run_blocks", cut)

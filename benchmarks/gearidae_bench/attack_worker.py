@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import gearidae as gd
 from gearidae import engine
 from gearidae.errors import SceneError
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Ledger
+from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EnergyBalance, EventKind
 from gearidae.scene import Scene
 from gearidae_bench.extreme_scenes import extreme_scene
 
@@ -106,7 +106,7 @@ class Followed:
     message: str = ""
     steps: int = 0
     reached: float = 0.0
-    ledger: Ledger | None = None
+    balance: EnergyBalance | None = None
 
 
 class _Enough(Exception):  # noqa: N818 - not an error: the way out of a run that is left alone
@@ -213,11 +213,11 @@ def run_scene(
     found = Followed(rows[0], events[0])
     started = time.perf_counter()
 
-    def take(block: Any, tally: Any, wall_time: float) -> None:
+    def take(block: Any, statistics: Any, wall_time: float) -> None:
         rows.append(block.rows)
         events.append(block.events)
-        found.steps, found.reached = int(tally.steps), float(block.time)
-        found.ledger = block.ledger or found.ledger
+        found.steps, found.reached = int(statistics.steps), float(block.time)
+        found.balance = block.balance or found.balance
         alive()
         if found.steps >= budget or len(rows) > _BLOCKS or time.perf_counter() - started > seconds:
             raise _Enough
@@ -245,10 +245,10 @@ def _compared(
     coarse = run_scene(short, backend, _STEPS_FINER * budget, alive, _SECONDS)
     rtol = max(scene.run.rtol / _FINER, _LEAST_RTOL)
     fine = run_scene(short.replace({"run.rtol": rtol}), backend, _STEPS_FINER * budget, alive, _SECONDS)
-    if not coarse.status == fine.status == "finished" or coarse.ledger is None:
+    if not coarse.status == fine.status == "finished" or coarse.balance is None:
         return math.nan, math.nan
-    bound = coarse.ledger.bound(scene.run.rtol, roller=scene.roller is not None)
-    residual = abs(coarse.ledger.residual)
+    bound = coarse.balance.bound(scene.run.rtol, roller=scene.roller is not None)
+    residual = abs(coarse.balance.residual)
     balance = residual / bound if bound > 0.0 else (math.inf if residual > 0.0 else 0.0)
     return _difference(scene, coarse.rows, fine.rows, horizon), balance
 

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate.driver import Ending, Tally
+from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import Model
+from gearidae.records import Statistics
 from gearidae_bench.loop import run_dop853, run_rk4
 from gearidae_bench.reference import end_of, physical
 from gearidae_bench.roots import CALLS, FAILED, STEPS
@@ -87,13 +88,15 @@ class Contender:
 
 def _engine(backend: str) -> Callable[[Problem, float, Floats], Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        tally = Tally()
-        table = np.concatenate([b.rows for b in run_blocks(problem, tolerance, times.size, backend, tally)])
-        if tally.ending is not Ending.FINISHED:
+        statistics = Statistics()
+        table = np.concatenate(
+            [b.rows for b in run_blocks(problem, tolerance, times.size, backend, statistics)]
+        )
+        if statistics.ending is not Ending.FINISHED:
             return BROKEN
         names = ("speed", "height") if "height" in problem.columns else ("gear_speed", "transmission_error")
         speed, position = (table[:, problem.columns.index(name)] for name in names)
-        return Outcome(speed, position, tally.steps, tally.residual_evaluations)
+        return Outcome(speed, position, statistics.steps, statistics.residual_evaluations)
 
     return run
 

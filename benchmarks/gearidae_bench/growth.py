@@ -16,7 +16,7 @@ from typing import Final
 
 from gearidae.engine.backend import choose_backend, run_blocks
 from gearidae.engine.model.build import make_problem
-from gearidae.records import Statistics as Tally
+from gearidae.records import Statistics as Statistics
 from gearidae.scene import Scene
 from gearidae_bench.scenes import SCENES
 
@@ -65,11 +65,11 @@ class Start:
 
 
 def _drain(scene: Scene) -> int:
-    tally = Tally()
+    statistics = Statistics()
     backend = choose_backend()
-    for _ in run_blocks(make_problem(scene), scene.run.rtol, scene.run.sample_count, backend, tally):
+    for _ in run_blocks(make_problem(scene), scene.run.rtol, scene.run.sample_count, backend, statistics):
         pass
-    return tally.steps
+    return statistics.steps
 
 
 def _timed(work: Callable[[], object], repeats: int) -> float:

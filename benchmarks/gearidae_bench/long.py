@@ -160,14 +160,14 @@ class _Watch:
         self._speed: float | None = None
         self.parts: list[Part] = []
 
-    def take(self, block: Block, tally: Statistics, wall_time: float) -> None:
+    def take(self, block: Block, statistics: Statistics, wall_time: float) -> None:
         """Look at a block; parts end at blocks, so that they differ in length by a block at most."""
         self._look_at_events(block)
         if len(block.rows):
             self._look_at_samples(block)
-        self._part.steps, self._part.cpu_time = tally.steps, time.process_time() - self._began
-        if block.ledger is not None:
-            self._part.imbalance = block.ledger.imbalance
+        self._part.steps, self._part.cpu_time = statistics.steps, time.process_time() - self._began
+        if block.balance is not None:
+            self._part.imbalance = block.balance.imbalance
         self._report(self._part.passages)
         left = (
             self._samples - self._part.samples

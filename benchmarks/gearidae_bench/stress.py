@@ -19,17 +19,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate.driver import BLOCK_STEPS, Tally
+from gearidae.engine.integrate.driver import BLOCK_STEPS
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
 from gearidae.errors import SceneError
-from gearidae.records import EventKind, Ledger
+from gearidae.records import EnergyBalance, EventKind, Statistics
 from gearidae.runs.executors import own_executor, stop
 from gearidae.scene import Scene
 from gearidae_bench.random_scenes import SCENES_PER_SURFACE, random_scene
 from gearidae_bench.stress_checks import complaint_about
 
-__all__ = ["ELASTIC_SHARE", "LEDGER_TOLERANCES", "STEP_BUDGET", "Outcome", "run_one", "run_stress"]
+__all__ = ["BALANCE_TOLERANCES", "ELASTIC_SHARE", "STEP_BUDGET", "Outcome", "run_one", "run_stress"]
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ STEP_BUDGET = 5 * BLOCK_STEPS
 ELASTIC_SHARE = 5
 """With elastic bodies, steps take longer: the budget is divided by this."""
 
-LEDGER_TOLERANCES = 1e4
+BALANCE_TOLERANCES = 1e4
 """Largest imbalance of the energy balance of a finished run, in tolerances."""
 
 _PATIENCE = 600.0  # [s]; no four scenes take a tenth of that
@@ -159,14 +159,14 @@ def run_one(scene: Scene, number: int = 0, budget: int = STEP_BUDGET) -> Outcome
     started = time.perf_counter()
     try:
         run = _solve(scene, scene.run.rtol, budget)
-        status = run.tally.ending.status
+        status = run.statistics.ending.status
         if status == "finished" and run.reached < 1.0:
             status = "budget"
         error = math.nan
         complaint = complaint_about(
             scene, run.rows, run.events, float(run.problem.model.scene.force_unit), rigid=run.rigid
         )
-        if status == "finished" and run.imbalance > LEDGER_TOLERANCES * scene.run.rtol:
+        if status == "finished" and run.imbalance > BALANCE_TOLERANCES * scene.run.rtol:
             complaint = complaint or f"the energy balance has an imbalance of {run.imbalance:.1e}"
         if len(run.rows) > 1 and not complaint:
             error = _error(scene, run, budget)
@@ -180,12 +180,12 @@ def run_one(scene: Scene, number: int = 0, budget: int = STEP_BUDGET) -> Outcome
     return Outcome(
         number,
         status,
-        run.tally.ending.message,
+        run.statistics.ending.message,
         complaint,
         scene.run.rtol,
         error,
         run.imbalance,
-        run.tally.steps,
+        run.statistics.steps,
         time.perf_counter() - started,
         run.reached,
     )
@@ -196,7 +196,7 @@ class _Run:
     """What came of a scene within the budget."""
 
     problem: Problem
-    tally: Tally
+    statistics: Statistics
     rows: Floats
     events: Floats
     reached: float  # share of the simulated time
@@ -209,24 +209,29 @@ class _Run:
 
 
 def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
-    problem, tally = make_problem(scene), Tally()
-    rows, events, reached, ledger = [], [], 0.0, None
-    for spent, block in enumerate(run_blocks(problem, rtol, scene.run.sample_count, "native", tally), 1):
+    problem, statistics = make_problem(scene), Statistics()
+    rows, events, reached, balance = [], [], 0.0, None
+    for spent, block in enumerate(run_blocks(problem, rtol, scene.run.sample_count, "native", statistics), 1):
         rows.append(block.rows)
         events.append(block.events)
         reached = block.time / (float(problem.model.scene.end) * problem.time_unit)
-        ledger = block.ledger or ledger
+        balance = block.balance or balance
         if spent * BLOCK_STEPS * (1 if _is_rigid(problem) else ELASTIC_SHARE) >= budget:
             break
     table = np.concatenate(rows)
     return _Run(
-        problem, tally, table, np.concatenate(events), min(reached, 1.0), _imbalance(scene, ledger, table)
+        problem,
+        statistics,
+        table,
+        np.concatenate(events),
+        min(reached, 1.0),
+        _imbalance(scene, balance, table),
     )
 
 
-def _imbalance(scene: Scene, ledger: Ledger | None, rows: Floats) -> float:
+def _imbalance(scene: Scene, balance: EnergyBalance | None, rows: Floats) -> float:
     """Residual over the energy exchanged; speeds have errors of a tolerance even if no energy is exchanged."""
-    if ledger is None:
+    if balance is None:
         return math.nan
     if scene.roller:
         motion = 0.5 * scene.roller.mass * rows[:, 1] ** 2
@@ -235,8 +240,8 @@ def _imbalance(scene: Scene, ledger: Ledger | None, rows: Floats) -> float:
         motion = 0.5 * (
             scene.gears.gear_inertia * rows[:, 0] ** 2 + scene.gears.pinion_inertia * rows[:, 1] ** 2
         )
-    scale = ledger.throughput + float(motion.max(initial=0.0))
-    return abs(ledger.residual) / scale if scale > 0.0 else 0.0
+    scale = balance.throughput + float(motion.max(initial=0.0))
+    return abs(balance.residual) / scale if scale > 0.0 else 0.0
 
 
 def _is_rigid(problem: Problem) -> bool:

@@ -11,9 +11,9 @@ import numpy as np
 
 import gearidae
 from gearidae.records import Ending
-from gearidae_bench.stress import ELASTIC_SHARE, LEDGER_TOLERANCES, STEP_BUDGET, Outcome
+from gearidae_bench.stress import BALANCE_TOLERANCES, ELASTIC_SHARE, STEP_BUDGET, Outcome
 
-__all__ = ["counts", "ledger_quantiles", "page", "quantiles", "worst"]
+__all__ = ["balance_quantiles", "counts", "page", "quantiles", "worst"]
 
 _MEANINGS = {ending.status: ending.message for ending in Ending} | {
     "finished": "reached the end of the run",
@@ -39,7 +39,7 @@ _CHECKS = (
     "**Checks.** 24 samples of each run are checked. Gaps must agree with the geometry. Without elastic bodies, forces"
     " must lie between those of a contact that has just formed and of one stretched to its limit, both from quadrature."
     " All numbers must be finite and all events in order of time. The energy balance of a finished run must close to"
-    f" {LEDGER_TOLERANCES:,.0f} tolerances."
+    f" {BALANCE_TOLERANCES:,.0f} tolerances."
 )
 _ERRORS = (
     "The motion up to its third turning point (or stick or slip) is compared with that at a tenth of the tolerance. The"
@@ -49,7 +49,7 @@ _REASON = (
     "Large ratios belong to scenes whose adhesion is at least 1e8 times the load. The contact falls into a deep"
     " potential well and leaves it by a small difference of large energies, which amplifies every error."
 )
-_LEDGER = (
+_ENERGY_BALANCE = (
     "The energy balance of a run sums all works, losses and stored energies. The table gives its imbalance at the end"
     " of finished runs, divided by the sum of the energy exchanged and the largest kinetic energy, in tolerances:"
 )
@@ -80,7 +80,7 @@ def quantiles(outcomes: Sequence[Outcome]) -> dict[float, float]:
     return _quantiles([outcome.ratio for outcome in outcomes])
 
 
-def ledger_quantiles(outcomes: Sequence[Outcome]) -> dict[float, float]:
+def balance_quantiles(outcomes: Sequence[Outcome]) -> dict[float, float]:
     """Quantiles of the energy balance's imbalance over tolerance, of finished runs; empty if there are none."""
     return _quantiles([o.imbalance / o.rtol for o in outcomes if o.status == "finished"])
 
@@ -147,11 +147,11 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "",
         "## Energy against tolerance",
         "",
-        _LEDGER,
+        _ENERGY_BALANCE,
         "",
         "| share of finished scenes | imbalance below, in tolerances |",
         "|---|---|",
-        *(f"| {100 * share:g} % | {ratio:.2g} |" for share, ratio in ledger_quantiles(outcomes).items()),
+        *(f"| {100 * share:g} % | {ratio:.2g} |" for share, ratio in balance_quantiles(outcomes).items()),
         "",
         "## Largest ratios",
         "",

@@ -25,11 +25,11 @@ __all__ = [
     "TRAVEL_BOUND",
     "Block",
     "Ending",
+    "EnergyBalance",
     "EventKind",
     "Events",
     "Extremes",
     "Flank",
-    "Ledger",
     "Solution",
     "Statistics",
     "Words",
@@ -210,7 +210,7 @@ class Statistics:
 
 
 @dataclass(frozen=True, slots=True)
-class Ledger:
+class EnergyBalance:
     """Where the energy of a run came from and went, kept by the engine at every step [J].
 
     Attributes
@@ -317,7 +317,7 @@ class Block:
     checkpoint : ndarray of 8-byte words, optional
         All that it takes to go on from the end of this block; present at checkpoints and at the end. Only the engine
         knows what the words mean, and checks them when it is to go on from there.
-    ledger : Ledger, optional
+    balance : EnergyBalance, optional
         The energy balance at the end of this block; missing where a block ends in the middle of a step.
     extremes : Extremes, optional
         Likewise.
@@ -327,7 +327,7 @@ class Block:
     events: NDArray[np.float64]
     time: float
     checkpoint: Words | None = None
-    ledger: Ledger | None = None
+    balance: EnergyBalance | None = None
     extremes: Extremes | None = None
 
 
@@ -412,8 +412,8 @@ class Solution:
         The status in a sentence; empty when finished.
     reached : float, optional
         Simulated time reached [s]; by default that of the last sample.
-    ledger : Ledger, optional
-        The energy ledger; None if the run produced nothing.
+    balance : EnergyBalance, optional
+        The energy balance; None if the run produced nothing.
     extremes : Extremes, optional
         Likewise.
     """
@@ -425,5 +425,5 @@ class Solution:
     status: str
     message: str
     reached: float | None = None
-    ledger: Ledger | None = None
+    balance: EnergyBalance | None = None
     extremes: Extremes | None = None

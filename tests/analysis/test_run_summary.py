@@ -117,7 +117,7 @@ def test_without_samples_and_of_rollers():
     told = account(gd.simulate(LOW.replace({"run.samples": "off"})))
     assert math.isnan(told.top_speed)
     assert told.as_plain()["largest_force"] is None
-    assert told.drive_work > 0.0  # the ledger needs no samples
+    assert told.drive_work > 0.0  # the balance needs no samples
     assert told.impacts > 0
     assert account(gd.simulate(gd.preset("roller_slow"))) is None
 
@@ -136,7 +136,7 @@ def test_the_energies_are_those_summed_over_the_samples(braking):
 
 def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
     partial = braking.copy()
-    del partial.attrs["ledger"]
+    del partial.attrs["energy_balance"]
     told, whole = account(partial).as_plain(), account(braking).as_plain()
     energies = {name for name, value in told.items() if value is None}
     assert energies == {

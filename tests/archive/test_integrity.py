@@ -121,7 +121,7 @@ WRONG = {
     "product_version": np.arange(2),
     "tabor_parameter_bare": "large",
     "account": "[1, 2]",
-    "ledger": '{"time": "<script>"}',
+    "balance": '{"time": "<script>"}',
     "swept": '{"coating.sam_fraction": 1}',
     "swept ": '{"surface.roughness": [1e-9]}',
     "scene": json.dumps({"surface": {"roughness": -1}}),

@@ -230,13 +230,13 @@ def test_energy_tables_hold_the_closed_forms(law):
     for joined in (-5.0, -0.3, 1.1, 4.2, 7.0):
         # what joining took of the asperities above the height that the joined height stands for
         assert loading_value(number, 0, joined)[0] == pytest.approx(above(joined - law.near), rel=1e-9, abs=0)
-        booked = -joining_energy(law) * above(joined - law.near)
+        adhered_energy = -joining_energy(law) * above(joined - law.near)
         for share in (0.0, 1e-3, 0.4, 0.999, 1.3):
             gap = joined + share * width
             potential, push = loading_value(table, HEADER, gap)
-            energy, slope = stretched_energy(table, booked, gap, joined)
+            energy, slope = stretched_energy(table, adhered_energy, gap, joined)
             wanted = closed_energy(law, gap, law.near + min(share, 1.0) * width)
-            size = abs(potential) + abs(energy) + abs(booked)
+            size = abs(potential) + abs(energy) + abs(adhered_energy)
             assert potential + energy == pytest.approx(wanted, rel=0, abs=1e-9 * size)
             value, _ = law_value(force, gap, joined)
             _, size = closed_pressure(law, gap, law.near + min(share, 1.0) * width)
@@ -293,15 +293,15 @@ def test_an_impact_on_springs_loses_what_they_cost(impact):
     by_hand = 0.5 * tip.pull_off / tip.stretch_limit * ((JOIN + tip.stretch_limit) ** 2 - JOIN**2)
     assert adhesion_loss_per_asperity(impact.surface, "spring") == pytest.approx(by_hand, rel=1e-12, abs=0)
     run = solve(impact)
-    ledger = run.ledger
+    balance = run.balance
     assert run.samples["height"][-1] > 15 * impact.surface.roughness  # it has come free
     lost = expected_loss(impact, run.samples["height"].min() / impact.surface.roughness)
     # the lowest sample lies near a turning point, so that its error enters squared
-    assert ledger.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
+    assert balance.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
     speed = run.samples["speed"]
     assert 0.5 * impact.roller.mass * (speed[0] ** 2 - speed[-1] ** 2) == pytest.approx(lost, rel=1e-6, abs=0)
-    assert abs(ledger.residual) <= ledger.bound(impact.run.rtol, roller=True)
-    assert abs(ledger.stored_change) < 1e-8 * lost
+    assert abs(balance.residual) <= balance.bound(impact.run.rtol, roller=True)
+    assert abs(balance.stored_change) < 1e-8 * lost
 
 
 def test_nothing_is_compiled_for_a_new_law(impact):

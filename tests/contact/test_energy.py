@@ -57,11 +57,11 @@ def test_the_potential_is_the_integral_over_the_asperities(limit, kernel):
         number_table(kernel),
     )
     for joined in (-6.0, -1.03, 0.2, 3.1, 5.7):
-        booked = -joining_energy(Jkr(limit)) * loading_value(number, 0, joined)[0]
+        adhered_energy = -joining_energy(Jkr(limit)) * loading_value(number, 0, joined)[0]
         for share in (1e-3, 0.2, 0.9, 0.9999, 1.4):
             gap = joined + share * limit
             potential, push = loading_value(table, HEADER, gap)
-            energy, slope = stretched_energy(table, booked, gap, joined)
+            energy, slope = stretched_energy(table, adhered_energy, gap, joined)
             # the table of the law is held to 1e-9, on the scale of what is added up
             expected = stored(gap, min(share, 1.0) * limit, limit, kernel)
             assert potential + energy == pytest.approx(expected, abs=1e-9 * (abs(potential) + abs(energy)))

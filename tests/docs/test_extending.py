@@ -15,7 +15,7 @@ import pytest
 from scipy import special
 
 import gearidae as gd
-from gearidae.archive.energy import ledger_of
+from gearidae.archive.energy import balance_of
 from gearidae.contact import asperity_of, register, rough_pressure, unregister
 from gearidae.contact.asperities import law_names
 
@@ -25,9 +25,9 @@ I1 = 1.5263e-20  # pinion of the preset
 START = 6.0  # rad/s, of the pinion
 
 
-def ledger(run) -> dict[str, float]:
+def balance(run) -> dict[str, float]:
     """Energy balance of a run [J]."""
-    numbers = ledger_of(run)
+    numbers = balance_of(run)
     assert numbers is not None
     return numbers
 
@@ -68,7 +68,7 @@ def test_the_impact_on_soft_tips_loses_nothing(page):
     impact = page["impact"]
     # ten tolerances of the run
     assert float(impact.speed[-1] / impact.speed[0]) == pytest.approx(-1.0, rel=1e-3, abs=0)
-    assert ledger(impact)["adhesion_loss"] == 0.0
+    assert balance(impact)["adhesion_loss"] == 0.0
 
 
 def test_springs_lose_the_energy_between_joining_and_letting_go(page):
@@ -92,14 +92,16 @@ def test_springs_press_as_their_closed_form(page):
 
 def test_the_impact_on_springs_takes_what_is_booked(page):
     lossy, mass = page["lossy"], page["sticky"].roller.mass
-    assert ledger(lossy)["adhesion_loss"] > 0.0
-    assert abs(ledger(lossy)["residual"]) <= ledger(lossy)["residual_bound"]
-    taken = -ledger(lossy)["kinetic_change"] - ledger(lossy)["stored_change"]
-    assert taken == pytest.approx(ledger(lossy)["adhesion_loss"], rel=0, abs=ledger(lossy)["residual_bound"])
-    assert ledger(lossy)["kinetic_change"] == pytest.approx(
+    assert balance(lossy)["adhesion_loss"] > 0.0
+    assert abs(balance(lossy)["residual"]) <= balance(lossy)["residual_bound"]
+    taken = -balance(lossy)["kinetic_change"] - balance(lossy)["stored_change"]
+    assert taken == pytest.approx(
+        balance(lossy)["adhesion_loss"], rel=0, abs=balance(lossy)["residual_bound"]
+    )
+    assert balance(lossy)["kinetic_change"] == pytest.approx(
         0.5 * mass * float(lossy.speed[-1] ** 2 - lossy.speed[0] ** 2),
         rel=0,
-        abs=2 * ledger(lossy)["residual_bound"],
+        abs=2 * balance(lossy)["residual_bound"],
     )
 
 
@@ -117,13 +119,13 @@ def test_the_brake_lets_the_speed_decay(page):
     speed = START * np.exp(-100.0 * run.time.to_numpy())
     np.testing.assert_allclose(run.pinion_speed, speed, rtol=1e-7)
     lost = 0.5 * I1 * (speed[0] ** 2 - speed[-1] ** 2)
-    assert ledger(run)["drive_work"] == pytest.approx(-lost, rel=1e-7, abs=0)
+    assert balance(run)["drive_work"] == pytest.approx(-lost, rel=1e-7, abs=0)
 
 
 def test_the_energy_balance_of_the_motor_closes(page):
     run = page["turned"]
-    assert abs(ledger(run)["residual"]) <= ledger(run)["residual_bound"]
-    assert ledger(run)["drive_work"] > 0.0
+    assert abs(balance(run)["residual"]) <= balance(run)["residual_bound"]
+    assert balance(run)["drive_work"] > 0.0
 
 
 # -- changes of the sources ------------------------------------------------------------------------------------------

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine.integrate import adams, native
-from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import ADAMS, MOST_ORDERS
+from gearidae.records import Statistics
 from gearidae_bench.error import run_error
 from gearidae_bench.reference import load_reference
 from gearidae_bench.scenes import SCENES
@@ -113,12 +113,12 @@ def test_the_same_tolerance_means_a_smaller_error(name, gain):
     reference = load_reference(REFERENCES / f"{name}.npz")
     errors, steps = {}, {}
     for as_ida in (False, True):
-        problem, tally = make_problem(SCENES[name].scene), Tally()
+        problem, statistics = make_problem(SCENES[name].scene), Statistics()
         samples = reference.time.size
-        rows = np.concatenate([b.rows for b in native.run(problem, 1e-7, samples, tally, as_ida=as_ida)])
+        rows = np.concatenate([b.rows for b in native.run(problem, 1e-7, samples, statistics, as_ida=as_ida)])
         speed, position = (rows[:, problem.columns.index(c)] for c in ("gear_speed", "transmission_error"))
         errors[as_ida] = run_error(reference.speed, reference.position, speed, position, reference.length)
-        steps[as_ida] = tally.steps
+        steps[as_ida] = statistics.steps
     assert gain * errors[False] < errors[True]
     assert steps[False] < 0.6 * steps[True]
 
@@ -140,8 +140,8 @@ def test_what_vibrates_at_the_tolerance_comes_to_rest(rtol):
             "run.duration": "20 ms",
         }
     )
-    problem, tally = make_problem(scene), Tally()
-    rows = np.concatenate([b.rows for b in native.run(problem, rtol, 2001, tally)])
+    problem, statistics = make_problem(scene), Statistics()
+    rows = np.concatenate([b.rows for b in native.run(problem, rtol, 2001, statistics)])
     late = rows[1800:, problem.columns.index("transmission_error")]
-    assert tally.steps < 200_000
+    assert statistics.steps < 200_000
     assert np.ptp(late) < rtol * 40e-9

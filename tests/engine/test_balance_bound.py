@@ -9,7 +9,14 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.energy.quadrature import error_of_square, integral, integral_of_cube
-from gearidae.records import GEAR_BOUND, QUADRATURE_BOUND, ROLLER_BOUND, ROUNDING_BOUND, TABLE_BOUND, Ledger
+from gearidae.records import (
+    GEAR_BOUND,
+    QUADRATURE_BOUND,
+    ROLLER_BOUND,
+    ROUNDING_BOUND,
+    TABLE_BOUND,
+    EnergyBalance,
+)
 
 HIGH, LOW = gd.preset("teodorescu2009"), gd.preset("teodorescu2009_low_speed")
 SCENES = {
@@ -20,21 +27,21 @@ SCENES = {
 }
 
 
-def bound(scene, ledger):
-    return ledger.bound(scene.run.rtol, roller=scene.roller is not None)
+def bound(scene, balance):
+    return balance.bound(scene.run.rtol, roller=scene.roller is not None)
 
 
 @pytest.fixture(scope="module")
-def ledgers():
-    return {name: solve(scene.replace({"run.samples": "off"})).ledger for name, scene in SCENES.items()}
+def balances():
+    return {name: solve(scene.replace({"run.samples": "off"})).balance for name, scene in SCENES.items()}
 
 
 # -- what it notices -------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_sound_run_is_not_warned_of(ledgers, name):
-    assert 0.0 < abs(ledgers[name].residual) <= bound(SCENES[name], ledgers[name])
+def test_a_sound_run_is_not_warned_of(balances, name):
+    assert 0.0 < abs(balances[name].residual) <= bound(SCENES[name], balances[name])
 
 
 @pytest.mark.parametrize(
@@ -50,20 +57,20 @@ def test_a_sound_run_is_not_warned_of(ledgers, name):
         ("roller", "adhesion_loss"),
     ],
 )
-def test_a_booking_that_is_a_hundredth_out_is_warned_of(ledgers, name, booking):
-    ledger = ledgers[name]
+def test_a_booking_that_is_a_hundredth_out_is_warned_of(balances, name, booking):
+    balance = balances[name]
     for factor in (0.99, 1.01, 2.0):
-        wrong = replace(ledger, **{booking: factor * getattr(ledger, booking)})
+        wrong = replace(balance, **{booking: factor * getattr(balance, booking)})
         assert abs(wrong.residual) > bound(SCENES[name], wrong)
 
 
 # -- what it is made of ----------------------------------------------------------------------------------------------
 
-NOTHING = dict.fromkeys(Ledger.__slots__, 0.0)
+NOTHING = dict.fromkeys(EnergyBalance.__slots__, 0.0)
 
 
 def test_the_bound_is_the_sum_of_its_parts():
-    moved = Ledger(**{**NOTHING, "throughput": 3.0, "largest": 2.0})
+    moved = EnergyBalance(**{**NOTHING, "throughput": 3.0, "largest": 2.0})
     assert moved.bound(1e-6, roller=False) == pytest.approx(
         5.0 * (GEAR_BOUND * 1e-6 + ROUNDING_BOUND), rel=1e-12
     )
@@ -79,17 +86,17 @@ def test_the_bound_is_the_sum_of_its_parts():
 
 def test_a_travel_that_is_rounded_is_not_warned_of():
     """A gear held at rest by a torque: a rounding of a pitch, times the torque, is all that moves."""
-    at_rest = Ledger(**{**NOTHING, "pitch_work": 1e-17, "drive_work": 1e-17 * np.finfo(float).eps})
+    at_rest = EnergyBalance(**{**NOTHING, "pitch_work": 1e-17, "drive_work": 1e-17 * np.finfo(float).eps})
     assert abs(at_rest.residual) <= at_rest.bound(1e-6, roller=False) < 1e-17 * 1e-13
 
 
-def test_the_largest_energies_are_those_of_the_motion(ledgers):
+def test_the_largest_energies_are_those_of_the_motion(balances):
     """A roller's kinetic energy is largest at its start or as it is pulled in; nothing is stored before."""
     scene = SCENES["roller"]
     run = solve(scene)
     fastest = 0.5 * scene.roller.mass * np.abs(run.samples["speed"]).max() ** 2
     # the peak is known at steps, the samples' at samples
-    assert run.ledger.largest == pytest.approx(fastest, rel=1e-2, abs=0)
+    assert run.balance.largest == pytest.approx(fastest, rel=1e-2, abs=0)
 
 
 # -- estimates of the quadratures' errors ----------------------------------------------------------------------------

@@ -8,9 +8,9 @@ from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate import driver, epilogue, native, portable, start
-from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import PHASE
+from gearidae.records import Statistics
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace(
     {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 301}
@@ -31,13 +31,13 @@ def backend(request):
 @pytest.mark.parametrize("room", [driver.BLOCK_EVENTS, EVENTS_AT_ONCE + 1])
 def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
     """Full of samples, or of events: the second has room for two, and for what may come at once."""
-    whole = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
+    whole = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Statistics()))
     monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(driver, "BLOCK_EVENTS", room)
     if backend == "native":
         monkeypatch.setattr(native, "BLOCK_STEPS", 13)
         monkeypatch.setattr(native, "FIRST_STEPS", 13)
-    pieces = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Tally()))
+    pieces = collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, Statistics()))
     assert len(pieces[2]) > 40
     assert max(len(block.rows) for block in pieces[2]) <= 7
     assert max(len(block.events) for block in pieces[2]) < len(whole[1])
@@ -48,36 +48,36 @@ def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
 def test_a_resumed_run_is_the_same_run(monkeypatch):
     """Through scikit-sundae, where the distance of checkpoints is not compiled in; one is taken every 500 steps."""
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 500)
-    tally = Tally()
-    rows, events, blocks = collect(run_blocks(make_problem(SCENE), 1e-6, 301, "sksundae", tally))
+    statistics = Statistics()
+    rows, events, blocks = collect(run_blocks(make_problem(SCENE), 1e-6, 301, "sksundae", statistics))
     stops = [i for i, b in enumerate(blocks) if b.checkpoint is not None][:-1]
     assert len(stops) >= 3
     for stop in stops:
-        again = Tally()
+        again = Statistics()
         rest = collect(run_blocks(make_problem(SCENE), 1e-6, 301, "sksundae", again, blocks[stop].checkpoint))
         before = blocks[: stop + 1]
         np.testing.assert_array_equal(np.concatenate([*(b.rows for b in before), rest[0]]), rows)
         np.testing.assert_array_equal(np.concatenate([*(b.events for b in before), rest[1]]), events)
-        assert again == tally
+        assert again == statistics
 
 
 def test_a_native_run_resumes_exactly():
     scene = FAST.replace({"coating.sam_fraction": 0.3, "run.duration": 4e-3, "run.samples": 2001})
-    tally = Tally()
-    rows, events, blocks = collect(run_blocks(make_problem(scene), 1e-6, 2001, "native", tally))
+    statistics = Statistics()
+    rows, events, blocks = collect(run_blocks(make_problem(scene), 1e-6, 2001, "native", statistics))
     (stop, *_) = [i for i, b in enumerate(blocks) if b.checkpoint is not None]
     assert stop < len(blocks) - 1
-    again = Tally()
+    again = Statistics()
     rest = collect(run_blocks(make_problem(scene), 1e-6, 2001, "native", again, blocks[stop].checkpoint))
     before = blocks[: stop + 1]
     np.testing.assert_array_equal(np.concatenate([*(b.rows for b in before), rest[0]]), rows)
     np.testing.assert_array_equal(np.concatenate([*(b.events for b in before), rest[1]]), events)
-    assert again == tally
+    assert again == statistics
 
 
 def test_a_foreign_checkpoint_is_refused():
     with pytest.raises(gd.SceneError, match="checkpoint"):
-        list(run_blocks(make_problem(SCENE), 1e-6, 301, "native", Tally(), np.zeros(5)))
+        list(run_blocks(make_problem(SCENE), 1e-6, 301, "native", Statistics(), np.zeros(5)))
 
 
 def test_phase_is_taken_back_without_a_trace(monkeypatch):

@@ -10,10 +10,11 @@ import pytest
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.integrate import portable
-from gearidae.engine.integrate.driver import Ending, Tally
+from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.checkpoint import HEADER, pack
 from gearidae.engine.model.state import STATE, U, V
+from gearidae.records import Statistics
 from reference.damaged import BUDGET, SCENES
 
 WORDS = STATE.itemsize // 8
@@ -39,7 +40,9 @@ def sound():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(portable, "CHECKPOINT_STEPS", 60)
         for name, scene in SCENES.items():
-            run = run_blocks(make_problem(scene), scene.run.rtol, scene.run.sample_count, "sksundae", Tally())
+            run = run_blocks(
+                make_problem(scene), scene.run.rtol, scene.run.sample_count, "sksundae", Statistics()
+            )
             taken = [block.checkpoint for block in run if block.checkpoint is not None]
             found[name] = next(c for c in taken[1:] if restored(name, c)[0].state.near.any())
     return found

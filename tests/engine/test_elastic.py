@@ -22,13 +22,13 @@ from gearidae.engine.elastic.block_jacobian import (
 from gearidae.engine.elastic.rows import JOINED, row_of
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.integrate import native, portable
-from gearidae.engine.integrate.driver import Ending, Tally
+from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model import build_contact
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.residual import mesh_forces, residual
 from gearidae.engine.model.state import PHASE, V
 from gearidae.engine.model.tooth_pairs import history_of
-from gearidae.records import EventKind
+from gearidae.records import EventKind, Statistics
 from gearidae_bench.random_scenes import random_scene
 
 
@@ -298,7 +298,7 @@ def test_run_changes_over_to_the_elastic_model(monkeypatch, backend):
     monkeypatch.setattr(build_contact, "rigid_limit", lambda *a: (limit(*a)[0], True))
     auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 1001})
     chosen = make_problem(auto)
-    blocks = list(run_blocks(chosen, 1e-6, 1001, backend, Tally()))
+    blocks = list(run_blocks(chosen, 1e-6, 1001, backend, Statistics()))
     assert chosen.skipped["elastic_deflection"] == 0
     rows = np.concatenate([block.rows for block in blocks])
     given = solve(roller("roller_fast", **{"run.samples": 1001})).samples
@@ -312,13 +312,13 @@ def test_run_resumes_from_before_and_after_the_change(monkeypatch):
     limit = elastic.rigid_limit
     monkeypatch.setattr(build_contact, "rigid_limit", lambda *a: (limit(*a)[0], True))
     auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 501})
-    blocks = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Tally()))
+    blocks = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Statistics()))
     rows = np.concatenate([block.rows for block in blocks])
     (stop, last) = [k for k, block in enumerate(blocks) if block.checkpoint is not None]
     assert last == len(blocks) - 1
-    rest = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Tally(), blocks[last].checkpoint))
+    rest = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Statistics(), blocks[last].checkpoint))
     assert sum(len(block.rows) for block in rest) == 0  # it was over
-    again = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Tally(), blocks[stop].checkpoint))
+    again = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Statistics(), blocks[stop].checkpoint))
     before = sum(len(block.rows) for block in blocks[: stop + 1])
     np.testing.assert_array_equal(np.concatenate([block.rows for block in again]), rows[before:])
 
@@ -354,9 +354,9 @@ def test_nodes_are_laid_out_anew_when_pressed_too_deep(monkeypatch, backend):
 def test_a_change_of_model_begins_in_equilibrium():
     """With asperities stretched, which goes with the gaps along the contact, and these with the pressures."""
     scene = random_scene(1, 1283)
-    rigid, tally = make_problem(scene), Tally()
-    resume = [block.checkpoint for block in native.run(rigid, scene.run.rtol, 0, tally)][-1]
-    assert tally.ending is Ending.DEFLECTION
+    rigid, statistics = make_problem(scene), Statistics()
+    resume = [block.checkpoint for block in native.run(rigid, scene.run.rtol, 0, statistics)][-1]
+    assert statistics.ending is Ending.DEFLECTION
     bodies = rigid.elastic()
     y = np.empty(bodies.start.size)
     resume = change_over(rigid, bodies, resume)
@@ -366,7 +366,7 @@ def test_a_change_of_model_begins_in_equilibrium():
     residual(m, time, y, np.zeros(y.size), out)
     assert np.abs(out[4:]).max() < 1e-11
     # and that is a start from which steps can be made
-    blocks = native.run(bodies, scene.run.rtol, 0, tally, resume)
+    blocks = native.run(bodies, scene.run.rtol, 0, statistics, resume)
     assert next(blocks).time > 1.001 * time * bodies.time_unit
     blocks.close()
 
@@ -386,7 +386,7 @@ def test_a_run_whose_nodes_are_laid_out_anew_can_be_resumed_before_and_after_tha
     scene = roller("roller_fast", **{"run.samples": 201})
 
     def blocks(resume=None):
-        return list(run_blocks(make_problem(scene), 1e-6, 201, "sksundae", Tally(), resume))
+        return list(run_blocks(make_problem(scene), 1e-6, 201, "sksundae", Statistics(), resume))
 
     whole = blocks()
     rows = np.concatenate([block.rows for block in whole])

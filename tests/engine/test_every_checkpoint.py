@@ -6,8 +6,8 @@ import pytest
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.integrate import portable
-from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.model.build import make_problem
+from gearidae.records import Statistics
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5, "run.duration": 5e-3})
 HIGH = gd.preset("teodorescu2009").replace({"coating.sam_fraction": 0.3, "run.duration": 1e-5})
@@ -26,7 +26,9 @@ def test_every_checkpoint_is_taken_back(name, rtol, monkeypatch):
     scene = SCENES[name].replace({"run.rtol": rtol, "run.samples": 57})
     problem = make_problem(scene)
     taken = [
-        b.checkpoint for b in run_blocks(problem, rtol, 57, "sksundae", Tally()) if b.checkpoint is not None
+        b.checkpoint
+        for b in run_blocks(problem, rtol, 57, "sksundae", Statistics())
+        if b.checkpoint is not None
     ]
     assert len(taken) >= 10
     again = make_problem(scene)

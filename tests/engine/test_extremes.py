@@ -126,21 +126,21 @@ def test_adhesion_loss_is_the_integral_of_the_contact_length():
         tip = asperity_of(surface)
         count = surface.asperity_density * scene.gears.face_width * np.sqrt(2 * radius * sigma)
         cost = 0.5 * JOINING * tip.pull_off * tip.stretch_limit
-        total, booked = joined_along(gap, tip.stretch_limit / sigma, count)
+        total, adhered_energy = joined_along(gap, tip.stretch_limit / sigma, count)
         lost += cost * total
-        at_last_length += cost * booked
+        at_last_length += cost * adhered_energy
     # four hundred thousand trapezoids over tens of oscillations: 1e-7
-    assert solution.ledger.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
+    assert solution.balance.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
     assert at_last_length != pytest.approx(lost, rel=2e-5, abs=0)
-    ledger = solution.ledger
-    assert abs(ledger.residual) <= ledger.bound(scene.run.rtol, roller=False)
+    balance = solution.balance
+    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=False)
 
 
 def joined_along(gap, limit, count):
     """Asperities joined over a motion: with the count at each instant, and with that of the turning points."""
     turns = np.flatnonzero(np.diff(np.sign(np.diff(gap)))) + 1
     edges = [0, *turns.tolist(), gap.size - 1]
-    joined, total, booked = gap[0], 0.0, 0.0
+    joined, total, adhered_energy = gap[0], 0.0, 0.0
     for first, last in pairwise(edges):
         if gap[last] > gap[first]:
             joined = max(joined, gap[last] - limit)
@@ -150,9 +150,9 @@ def joined_along(gap, limit, count):
         step = -np.diff(path)
         whole = count[first : last + 1] * density
         total += np.sum(0.5 * (whole[1:] + whole[:-1]) * step)
-        booked += count[last] * np.sum(0.5 * (density[1:] + density[:-1]) * step)
+        adhered_energy += count[last] * np.sum(0.5 * (density[1:] + density[:-1]) * step)
         joined = min(joined, gap[last])
-    return total, booked
+    return total, adhered_energy
 
 
 def test_the_force_holds_the_mesh_damping():

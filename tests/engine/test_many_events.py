@@ -6,11 +6,11 @@ import pytest
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENTS_AT_ONCE, record
-from gearidae.engine.integrate.driver import BLOCK_EVENTS, Ending, Output, Tally
+from gearidae.engine.integrate.driver import BLOCK_EVENTS, Ending, Output
 from gearidae.engine.integrate.epilogue import has_room
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
-from gearidae.records import EventKind
+from gearidae.records import EventKind, Statistics
 
 KNOTS = 20_500
 FLIGHT = gd.preset("teodorescu2009").replace(
@@ -56,9 +56,9 @@ def test_more_knots_than_a_block_has_room_for(backend):
     times = FLIGHT.run.duration * np.arange(1, KNOTS + 1) / (KNOTS + 1)
     schedule = [[float(t), 1e-16 * (k % 2)] for k, t in enumerate(times)]
     scene = FLIGHT.replace({"drive.schedule": schedule})
-    tally = Tally()
-    blocks = list(run_blocks(make_problem(scene), 1e-4, 3, backend, tally))
-    assert tally.ending is Ending.FINISHED
+    statistics = Statistics()
+    blocks = list(run_blocks(make_problem(scene), 1e-4, 3, backend, statistics))
+    assert statistics.ending is Ending.FINISHED
     assert KNOTS > BLOCK_EVENTS >= max(len(block.events) for block in blocks)
     events = np.concatenate([block.events for block in blocks])
     assert len(events) == KNOTS

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearidae.engine.integrate import native
-from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.integrate.root_finding import _inverse
 from gearidae.engine.model.build import make_problem
+from gearidae.records import Statistics
 from gearidae_bench.scenes import SCENES
 
 RTOL = 1e-6
@@ -28,19 +28,19 @@ def test_inverse_interpolation_is_exact_for_its_parabola(place, slope, bend, val
 
 
 def run(name, sharpness, monkeypatch):
-    """Events and tally of a benchmark scene, its first tenth."""
+    """Events and statistics of a benchmark scene, its first tenth."""
     monkeypatch.setattr(native, "SHARPNESS", sharpness)
     problem = make_problem(SCENES[name].scene)
     problem.model.scene.end *= 0.1
-    tally = Tally()
-    events = np.concatenate([block.events for block in native.run(problem, RTOL, 2, tally)])
-    return events, tally
+    statistics = Statistics()
+    events = np.concatenate([block.events for block in native.run(problem, RTOL, 2, statistics)])
+    return events, statistics
 
 
 @pytest.mark.parametrize("name", ["low_worn", "high_sam", "high_bare"])
 def test_roots_are_as_sharp_as_the_states(name, monkeypatch):
     """The same events come as with roots down to rounding, at the same times as far as the tolerance goes."""
-    events, tally = run(name, native.SHARPNESS, monkeypatch)
+    events, statistics = run(name, native.SHARPNESS, monkeypatch)
     sharp, _ = run(name, 0.0, monkeypatch)
     assert len(events) > 50
     # a hundredth of a step's tolerance, before two runs part as any two do that differ
@@ -49,4 +49,4 @@ def test_roots_are_as_sharp_as_the_states(name, monkeypatch):
     np.testing.assert_allclose(events[:20, 0], sharp[:20, 0], rtol=0, atol=0.01 * RTOL * unit)
     assert np.any(events[:20, 0] != sharp[:20, 0])
     # two to find it, one to go on from it, one at the step's end
-    assert (tally.guard_evaluations - tally.steps) / len(events) < 4.5
+    assert (statistics.guard_evaluations - statistics.steps) / len(events) < 4.5

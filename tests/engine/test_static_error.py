@@ -44,5 +44,5 @@ def test_energy_is_kept_on_a_ripple():
             "run.rtol": 1e-8,
         }
     )
-    ledger = solve(scene).ledger
-    assert abs(ledger.residual) <= ledger.bound(scene.run.rtol, roller=False)
+    balance = solve(scene).balance
+    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=False)

@@ -71,7 +71,7 @@ def law(name, *parameters):
 
 
 def assert_balanced(run, scene):
-    assert abs(run.ledger.residual) <= run.ledger.bound(scene.run.rtol, roller=False)
+    assert abs(run.balance.residual) <= run.balance.bound(scene.run.rtol, roller=False)
 
 
 # a hundred times the tolerance of 1e-9 per step
@@ -87,7 +87,7 @@ def test_a_law_of_time_in_flight(flight):
     np.testing.assert_allclose(run.samples["pinion_speed"], speed, **CLOSE)
     np.testing.assert_allclose(run.samples["gear_speed"], W0, **CLOSE)
     gained = 0.5 * I1 * (speed[-1] ** 2 - speed[0] ** 2)
-    assert run.ledger.drive_work == pytest.approx(gained, rel=1e-7, abs=0)
+    assert run.balance.drive_work == pytest.approx(gained, rel=1e-7, abs=0)
     assert_balanced(run, scene)
 
 
@@ -99,7 +99,7 @@ def test_a_law_of_speed_in_flight(flight, backend):
     speed = 4 * W0 * np.exp(-DECAY * run.time)
     np.testing.assert_allclose(run.samples["pinion_speed"], speed, **CLOSE)
     lost = 0.5 * I1 * (speed[0] ** 2 - speed[-1] ** 2)
-    assert run.ledger.drive_work == pytest.approx(-lost, rel=1e-7, abs=0)
+    assert run.balance.drive_work == pytest.approx(-lost, rel=1e-7, abs=0)
     assert_balanced(run, scene)
 
 
@@ -110,7 +110,7 @@ def test_a_law_of_the_load_resists_either_way(flight, sign):
     speed = sign * W0 * np.exp(-DECAY * run.time)
     np.testing.assert_allclose(run.samples["gear_speed"], speed, **CLOSE)
     lost = 0.5 * I2 * (speed[0] ** 2 - speed[-1] ** 2)
-    assert run.ledger.dry_loss == pytest.approx(lost, rel=1e-7, abs=0)
+    assert run.balance.dry_loss == pytest.approx(lost, rel=1e-7, abs=0)
     assert_balanced(run, scene)
 
 
@@ -136,8 +136,8 @@ def test_a_law_does_what_the_same_harmonic_does(shaft):
     for name in ("gear_speed", "pinion_speed"):
         # the two units of force differ by a harmonic's part, so that steps do; thirty times their errors
         np.testing.assert_allclose(named.samples[name], own.samples[name], rtol=1e-4, atol=0)
-    assert named.ledger.drive_work == pytest.approx(own.ledger.drive_work, rel=1e-5, abs=0)
-    assert named.ledger.dry_loss == pytest.approx(own.ledger.dry_loss, rel=1e-5, abs=0)
+    assert named.balance.drive_work == pytest.approx(own.balance.drive_work, rel=1e-5, abs=0)
+    assert named.balance.dry_loss == pytest.approx(own.balance.dry_loss, rel=1e-5, abs=0)
     assert np.count_nonzero(named.events.kind == EventKind.TURNING_POINT) > 3
     assert_balanced(named, scene)
 

@@ -12,10 +12,10 @@ import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.histories import begin
-from gearidae.engine.integrate.driver import Ending, Tally
+from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import PHASE
-from gearidae.records import EventKind
+from gearidae.records import EventKind, Statistics
 
 BASE = gd.preset("teodorescu2009").replace(
     {"contact.model": "asperity", "run.duration": 1e-5, "run.samples": 41, "run.rtol": 1e-8}
@@ -129,9 +129,9 @@ def test_which_pair_is_called_which_does_not_matter(pitches):
         problem = make_problem(BASE.replace({"initial.gap": 3e-8, "coating.sam_fraction": 0.5}))
         problem.start[PHASE] += shift
         begin(problem.model, 0.0, problem.start)
-        tally = Tally()
-        blocks = list(run_blocks(problem, 1e-8, 41, "native", tally))
-        assert tally.ending is Ending.FINISHED
+        statistics = Statistics()
+        blocks = list(run_blocks(problem, 1e-8, 41, "native", statistics))
+        assert statistics.ending is Ending.FINISHED
         runs.append(np.concatenate([block.events for block in blocks]))
     ours, theirs = runs
     assert np.count_nonzero(ours[:, 1] == EventKind.TURNING_POINT) > 5

@@ -15,7 +15,7 @@ from gearidae_bench import stress, stress_checks
 from gearidae_bench.__main__ import main
 from gearidae_bench.random_scenes import random_scene
 from gearidae_bench.stress import Outcome, run_one, run_stress
-from gearidae_bench.stress_report import counts, ledger_quantiles, page, quantiles, worst
+from gearidae_bench.stress_report import balance_quantiles, counts, page, quantiles, worst
 
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
 
@@ -107,7 +107,7 @@ def test_processes_share_the_scenes_and_one_that_does_not_come_back_is_a_defect(
 
 
 def test_an_unbalanced_ledger_is_a_complaint(monkeypatch):
-    monkeypatch.setattr(stress, "LEDGER_TOLERANCES", 0.0)
+    monkeypatch.setattr(stress, "BALANCE_TOLERANCES", 0.0)
     assert (
         "energy balance" in run_one(gd.preset("roller_slow").replace({"contact.model": "asperity"})).complaint
     )
@@ -133,7 +133,7 @@ def test_the_page_counts_and_lists():
     ]
     assert counts(outcomes) == {"finished": 2, "budget": 1, "refused": 1}
     assert quantiles(outcomes)[1.0] == pytest.approx(1000.0)
-    assert ledger_quantiles(outcomes)[1.0] == pytest.approx(3.0)
+    assert balance_quantiles(outcomes)[1.0] == pytest.approx(3.0)
     assert [o.number for o in worst(outcomes)] == [2, 1, 0]
     text = page(outcomes, 7, date(2026, 1, 2))
     assert "Failed checks: 1" in text

@@ -10,8 +10,8 @@ import numpy as np
 
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.model.build import make_problem
+from gearidae.records import Statistics
 
 __all__ = ["BUDGET", "SCENES"]
 
@@ -40,13 +40,13 @@ SCENES = {
 
 def ending(name, checkpoint):
     """Name of a run's ending."""
-    scene, tally = SCENES[name], Tally()
+    scene, statistics = SCENES[name], Statistics()
     blocks = run_blocks(
-        make_problem(scene), scene.run.rtol, scene.run.sample_count, "native", tally, checkpoint
+        make_problem(scene), scene.run.rtol, scene.run.sample_count, "native", statistics, checkpoint
     )
     if sum(1 for _ in itertools.islice(blocks, BUDGET)) == BUDGET and next(blocks, None) is not None:
         return f"{BUDGET}_blocks"
-    return tally.ending.status
+    return statistics.ending.status
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.energy import ledger_of
+from gearidae.archive.energy import balance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.records import EventKind, Extremes
@@ -77,11 +77,11 @@ class Account:
     contact_loss : float
         What is left of the work: lost to adhesion or stored in contacts, less the work of the changing radius.
     uncertainty : float
-        How far that can be trusted: the ledger's residual.
+        How far that can be trusted: the balance's residual.
     adhesion_loss, stored_change, radius_work, model_change : float
-        What it is made of, from the ledger; see `gearidae.records.Ledger`.
+        What it is made of, from the balance; see `gearidae.records.EnergyBalance`.
     residual_bound : float
-        What the ledger's residual stays below in a sound run.
+        What the balance's residual stays below in a sound run.
     """
 
     top_speed: float
@@ -145,7 +145,7 @@ def account(ds: xr.Dataset) -> Account | None:
         ds.sizes["time"],
         ds.sizes["event"],
         end,
-        ledger_of(ds),
+        balance_of(ds),
         extremes_of(ds),
     )
 
@@ -156,7 +156,7 @@ def account_of(
     samples: int,
     events: int,
     end: float,
-    ledger: Mapping[str, float] | None = None,
+    balance: Mapping[str, float] | None = None,
     extremes: Extremes | None = None,
 ) -> Account:
     """Give an account of a run that is kept anywhere.
@@ -171,8 +171,8 @@ def account_of(
         How many there are.
     end : float
         Time that the run is known to have reached [s], besides that of samples and events.
-    ledger : mapping, optional
-        The run's energy ledger, from `gearidae.archive.energy.ledger_of`.
+    balance : mapping, optional
+        The run's energy balance, from `gearidae.archive.energy.balance_of`.
     extremes : Extremes, optional
         The run's extremes, from `gearidae.archive.extremes.extremes_of`.
 
@@ -204,7 +204,7 @@ def account_of(
         impacts=incidents.counts[EventKind.ONSET],
         largest_force=force,
         largest_force_time=force_time,
-        **_energies(ledger),
+        **_energies(balance),
     )
 
 
@@ -215,16 +215,16 @@ def _largest_force(extremes: Extremes) -> tuple[float, float]:
     return -extremes.smallest_mesh_force, extremes.smallest_mesh_force_time
 
 
-def _energies(ledger: Mapping[str, float] | None) -> dict[str, float]:
+def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
     """Energies of the account from those of the energy balance; NaN without one."""
     own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
     parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
-    if ledger is None:
+    if balance is None:
         return dict.fromkeys((*own, *parts, "contact_loss", "uncertainty"), math.nan)
-    energies = {name: ledger[name] for name in (*own, *parts)}
-    contact = ledger["adhesion_loss"] + ledger["stored_change"]
-    contact -= ledger["radius_work"] + ledger["model_change"]
-    return energies | {"contact_loss": contact, "uncertainty": abs(ledger["residual"])}
+    energies = {name: balance[name] for name in (*own, *parts)}
+    contact = balance["adhesion_loss"] + balance["stored_change"]
+    contact -= balance["radius_work"] + balance["model_change"]
+    return energies | {"contact_loss": contact, "uncertainty": abs(balance["residual"])}
 
 
 def with_account(ds: xr.Dataset) -> xr.Dataset:

@@ -121,7 +121,8 @@ def _of_lists(table: Mapping[str, Any] | None) -> bool:
 
 
 _TABLES = (
-    ("ledger", _of_numbers, "a table of numbers as JSON"),
+    ("energy_balance", _of_numbers, "a table of numbers as JSON"),
+    ("ledger", _of_numbers, "a table of numbers as JSON"),  # its name in archives of version 0.1
     ("account", _of_values, "a table of numbers and words as JSON"),
     ("swept", _of_lists, "a table of lists as JSON"),
 )

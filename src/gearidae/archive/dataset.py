@@ -11,10 +11,19 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.energy import ledger_attribute, ledger_numbers
+from gearidae.archive.energy import balance_attribute, balance_numbers
 from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.provenance import provenance, surface_regimes
-from gearidae.archive.variables import EVENTS, LEDGER, RUN, SAM_FRACTION, SAMPLES, TIME, by_name, columns
+from gearidae.archive.variables import (
+    ENERGY_BALANCE,
+    EVENTS,
+    RUN,
+    SAM_FRACTION,
+    SAMPLES,
+    TIME,
+    by_name,
+    columns,
+)
 from gearidae.errors import SceneError
 from gearidae.records import Solution
 from gearidae.scene import Scene, describe_key
@@ -39,7 +48,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     -------
     xarray.Dataset
         Samples along ``time``, events along ``event``, scalar coordinate ``sam_fraction``; provenance, scene,
-        solver statistics, status and energy ledger (as JSON) as attributes. Everything in SI units.
+        solver statistics, status and energy balance (as JSON) as attributes. Everything in SI units.
     """
     fraction = scene.coating.sam_fraction
     variables: dict[Hashable, Any] = {
@@ -58,7 +67,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             "status": solution.status,
             "message": solution.message,
             **_totals([solution]),
-            **ledger_attribute(scene, solution),
+            **balance_attribute(scene, solution),
             **surface_regimes(scene),
         },
     )
@@ -94,7 +103,7 @@ def combine(
     xarray.Dataset
         As `to_dataset`, with one dimension per swept key in front of ``time``. Samples that a run did not
         reach are NaN. Events are ragged and therefore lie on one flat ``event`` dimension, labelled by
-        ``event_<dimension>``. Status, solver statistics and energy ledger are variables along the swept dimensions,
+        ``event_<dimension>``. Status, solver statistics and energy balance are variables along the swept dimensions,
         the statistics' totals attributes.
     """
     names = dimension_names(swept)
@@ -129,8 +138,8 @@ def combine(
         values = np.array([getattr(each, name) for each in source], dtype=variable.dtype)
         variables[name] = (dims, values.reshape(shape), variable.attributes)
     variables |= extreme_variables(scene, solutions, dims, shape)
-    kept = [ledger_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
-    for name, variable in LEDGER.items():
+    kept = [balance_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
+    for name, variable in ENERGY_BALANCE.items():
         values = np.array([numbers.get(name, math.nan) for numbers in kept])
         variables[name] = (dims, values.reshape(shape), variable.attributes)
 

@@ -1,4 +1,4 @@
-"""The energy ledger in a dataset: an attribute of a single run, variables along the swept dimensions of a sweep."""
+"""The energy balance in a dataset: an attribute of a single run, variables along the swept dimensions of a sweep."""
 
 from __future__ import annotations
 
@@ -8,34 +8,43 @@ from typing import Any
 
 import xarray as xr
 
-from gearidae.archive.variables import LEDGER
+from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.records import Solution
 from gearidae.scene import Scene
 
-__all__ = ["ledger_attribute", "ledger_numbers", "ledger_of"]
+__all__ = ["balance_attribute", "balance_in_attributes", "balance_numbers", "balance_of"]
 
 
-def ledger_numbers(scene: Scene, solution: Solution) -> dict[str, float]:
-    """Return a run's ledger by the names of `LEDGER` [J]; empty if it has none that is sound."""
-    ledger = solution.ledger
-    if ledger is None or not math.isfinite(ledger.residual + ledger.throughput):
+def balance_numbers(scene: Scene, solution: Solution) -> dict[str, float]:
+    """Return a run's balance by the names of `ENERGY_BALANCE` [J]; empty if it has none that is sound."""
+    balance = solution.balance
+    if balance is None or not math.isfinite(balance.residual + balance.throughput):
         return {}
-    bound = ledger.bound(scene.run.rtol, roller=scene.roller is not None)
-    return {name: getattr(ledger, name) for name in LEDGER if name != "residual_bound"} | {
+    bound = balance.bound(scene.run.rtol, roller=scene.roller is not None)
+    return {name: getattr(balance, name) for name in ENERGY_BALANCE if name != "residual_bound"} | {
         "residual_bound": bound
     }
 
 
-def ledger_attribute(scene: Scene, solution: Solution) -> dict[str, str]:
-    """Return the attribute ``ledger`` of a single run's dataset, with the time that it reaches to [s]."""
-    numbers = ledger_numbers(scene, solution)
-    if solution.ledger is None or not numbers:
+def balance_attribute(scene: Scene, solution: Solution) -> dict[str, str]:
+    """Return the attribute ``energy_balance`` of a single run's dataset, with the time that it reaches to [s]."""
+    numbers = balance_numbers(scene, solution)
+    if solution.balance is None or not numbers:
         return {}
-    return {"ledger": json.dumps({"time": solution.ledger.time, **numbers}, allow_nan=False)}
+    return {"energy_balance": json.dumps({"time": solution.balance.time, **numbers}, allow_nan=False)}
 
 
-def ledger_of(ds: xr.Dataset) -> dict[str, float] | None:
-    """Read the energy ledger of one run.
+def balance_in_attributes(ds: xr.Dataset) -> dict[str, Any]:
+    """Read a single run's energy balance, with the time that it reaches to; empty if it has none.
+
+    Archives of version 0.1 have it under the name ``ledger``.
+    """
+    numbers: dict[str, Any] = json.loads(ds.attrs.get("energy_balance", ds.attrs.get("ledger", "{}")))
+    return numbers
+
+
+def balance_of(ds: xr.Dataset) -> dict[str, float] | None:
+    """Read the energy balance of one run.
 
     Parameters
     ----------
@@ -45,12 +54,11 @@ def ledger_of(ds: xr.Dataset) -> dict[str, float] | None:
     Returns
     -------
     dict or None
-        By the names of `gearidae.archive.variables.LEDGER` [J]; None if there is none.
+        By the names of `gearidae.archive.variables.ENERGY_BALANCE` [J]; None if there is none.
     """
-    if "ledger" in ds.attrs:
-        numbers: dict[str, Any] = json.loads(ds.attrs["ledger"])
-        return {name: float(numbers[name]) for name in LEDGER}
-    if all(name in ds.variables and not ds[name].dims for name in LEDGER):
-        found = {name: float(ds[name]) for name in LEDGER}
+    if numbers := balance_in_attributes(ds):
+        return {name: float(numbers[name]) for name in ENERGY_BALANCE}
+    if all(name in ds.variables and not ds[name].dims for name in ENERGY_BALANCE):
+        found = {name: float(ds[name]) for name in ENERGY_BALANCE}
         return None if any(map(math.isnan, found.values())) else found
     return None

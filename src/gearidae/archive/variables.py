@@ -19,9 +19,9 @@ from gearidae.columns import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES
 from gearidae.records import EventKind, Flank, sampled_columns
 
 __all__ = [
+    "ENERGY_BALANCE",
     "EVENTS",
     "EXTREMES",
-    "LEDGER",
     "ROLLER_EXTREMES",
     "RUN",
     "SAMPLES",
@@ -115,7 +115,7 @@ _RUN = (
     Variable("guard_evaluations", (), "1", "evaluations of the event functions", np.int64),
     Variable("wall_time", (), "s", "wall time in the solver"),
 )
-_LEDGER = (
+_ENERGY_BALANCE = (
     Variable("drive_work", (), "J", "work of the drive"),
     Variable("radius_work", (), "J", "work of the changing radius of curvature"),
     Variable("model_change", (), "J", "jump of the stored energy where the contact model changed"),
@@ -126,7 +126,7 @@ _LEDGER = (
     Variable("stored_change", (), "J", "energy stored in contacts, at the end less at the start"),
     Variable("kinetic_change", (), "J", "kinetic energy, at the end less at the start"),
     Variable("throughput", (), "J", "all works and changes of kinetic energy without regard to sign"),
-    Variable("residual", (), "J", "what does not add up in the energy ledger"),
+    Variable("residual", (), "J", "what does not add up in the energy balance"),
     Variable("residual_bound", (), "J", "what the residual stays below in a sound run"),
 )
 _FORCE_EXTREMES = (
@@ -170,7 +170,7 @@ _GEAR_EXTREMES = (
     Variable("turned_back", (), "1", "pitches by which the gear has been turned back since it came to stand"),
     Variable("mesh_exits", (), "1", "mesh exits on the drive flank", np.int64),
 )
-LEDGER: Mapping[str, Variable] = {variable.name: variable for variable in _LEDGER}
+ENERGY_BALANCE: Mapping[str, Variable] = {variable.name: variable for variable in _ENERGY_BALANCE}
 ROLLER_EXTREMES: Mapping[str, Variable] = {variable.name: variable for variable in _FORCE_EXTREMES}
 EXTREMES: Mapping[str, Variable] = {
     variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES)
@@ -185,4 +185,12 @@ def columns(is_roller: bool, is_elastic: bool = False) -> tuple[str, ...]:
 
 def by_name() -> dict[str, Variable]:
     """Every variable of the catalogue by its name."""
-    return {"time": TIME, "sam_fraction": SAM_FRACTION, **SAMPLES, **EVENTS, **RUN, **LEDGER, **EXTREMES}
+    return {
+        "time": TIME,
+        "sam_fraction": SAM_FRACTION,
+        **SAMPLES,
+        **EVENTS,
+        **RUN,
+        **ENERGY_BALANCE,
+        **EXTREMES,
+    }

@@ -13,16 +13,17 @@ from rich.table import Table
 from rich.text import Text
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
+from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.select import swept_dims
 from gearidae.cli.output import show
 
 __all__ = ["label_text", "show_account", "show_outcomes", "show_rows"]
 
-_GEAR_HEADINGS = ("what it did", "min rad/s", "max rad/s", "impacts", "wall s")
-_ROLLER_HEADINGS = ("what it did", "peak uN", "pull-off uN", "restitution", "impacts", "wall s")
+_GEAR_HEADINGS = ("outcome", "min rad/s", "max rad/s", "impacts", "wall s")
+_ROLLER_HEADINGS = ("outcome", "peak uN", "pull-off uN", "restitution", "impacts", "wall s")
 
 
-_LEDGER_ROWS = (
+_BALANCE_ROWS = (
     ("drive_work", "input"),
     ("radius_work", "input, from the change of the radii of curvature along the path of contact"),
     ("model_change", "input, from the change to the elastic contact model"),
@@ -48,7 +49,7 @@ def show_outcomes(ds: xr.Dataset) -> None:
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
     table = Table(box=box.SIMPLE, pad_edge=False)
     for heading in (*dims, *headings):
-        table.add_column(heading, justify="left" if heading == "what it did" else "right", no_wrap=True)
+        table.add_column(heading, justify="left" if heading == "outcome" else "right", no_wrap=True)
     for outcome in judged:
         cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome)
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
@@ -65,13 +66,13 @@ def show_account(ds: xr.Dataset) -> None:
     """
     if "account" in ds.attrs:
         show_rows(_account_rows(json.loads(ds.attrs["account"])))
-    if "ledger" in ds.attrs:
-        show_rows(_ledger_rows(json.loads(ds.attrs["ledger"])))
+    if numbers := balance_in_attributes(ds):
+        show_rows(_balance_rows(numbers))
 
 
-def _ledger_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
+def _balance_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
     yield "Energy balance", "", ""
-    for name, remark in _LEDGER_ROWS:
+    for name, remark in _BALANCE_ROWS:
         if kept[name] != 0.0:
             yield name.replace("_", " "), f"{kept[name]:.5g} J", remark
     yield "residual", f"{kept['residual']:.2g} J", f"bound {kept['residual_bound']:.2g} J"

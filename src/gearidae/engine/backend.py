@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from gearidae.engine.changeover import change_over, deepen
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
-from gearidae.engine.integrate.driver import Block, Ending, Tally
+from gearidae.engine.integrate.driver import Block, Ending
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
-from gearidae.records import Events, Extremes, Ledger, Solution, Statistics, sampled_columns
+from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics, sampled_columns
 from gearidae.scene import Scene
 
 __all__ = [
@@ -70,10 +70,10 @@ def run_blocks(
     rtol: float,
     samples: int,
     backend: str,
-    tally: Tally,
+    statistics: Statistics,
     resume: NDArray[np.float64] | None = None,
 ) -> Iterator[Block]:
-    """Run a problem and yield its output block by block; `tally` is filled in on the way.
+    """Run a problem and yield its output block by block; `statistics` is filled in on the way.
 
     Parameters
     ----------
@@ -85,25 +85,25 @@ def run_blocks(
         Number of samples, ends included.
     backend : {"native", "sksundae"}
         From `choose_backend`.
-    tally : Tally
+    statistics : Statistics
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
     """
     driver = ready_driver(backend, problem)
     problem.prepare(rtol, samples)  # by which checkpoints are judged
-    tally.method = formulas(problem, backend)
+    statistics.method = formulas(problem, backend)
     if problem.elastic is None:
-        yield from _run_bodies(problem, rtol, samples, driver, tally, resume)
+        yield from _run_bodies(problem, rtol, samples, driver, statistics, resume)
         return
     bodies = problem if resume is None else problem.of_checkpoint(resume)
     rigid = bodies is problem
     if rigid and not (resume is not None and problem.outgrown(resume)):
-        for block in driver(problem, rtol, samples, tally, resume):
+        for block in driver(problem, rtol, samples, statistics, resume):
             resume = block.checkpoint
             yield block
-        if tally.ending is not Ending.DEFLECTION or resume is None:
+        if statistics.ending is not Ending.DEFLECTION or resume is None:
             return
-        tally.ending = Ending.FINISHED
+        statistics.ending = Ending.FINISHED
     if rigid:
         bodies = problem.elastic()
     problem.skipped["elastic_deflection"] = 0
@@ -112,7 +112,7 @@ def run_blocks(
             "the deflection of the bodies exceeds the asperity model's limit: continuing with the elastic model"
         )
         resume = change_over(problem, bodies, resume)
-    yield from _run_bodies(bodies, rtol, samples, driver, tally, resume)
+    yield from _run_bodies(bodies, rtol, samples, driver, statistics, resume)
 
 
 def _run_bodies(
@@ -120,7 +120,7 @@ def _run_bodies(
     rtol: float,
     samples: int,
     driver: Callable[..., Iterator[Block]],
-    tally: Tally,
+    statistics: Statistics,
     resume: NDArray[np.float64] | None,
 ) -> Iterator[Block]:
     """Run a problem that stays with its contact model; nodes that are pressed too deep are laid out anew."""
@@ -132,12 +132,12 @@ def _run_bodies(
             deeper = problem.deeper()
             resume = deepen(problem, deeper, resume)
             problem = deeper
-        for block in driver(problem, rtol, samples, tally, resume):
+        for block in driver(problem, rtol, samples, statistics, resume):
             resume = block.checkpoint
             yield block
-        if tally.ending is not Ending.TOO_DEEP or problem.deeper is None or resume is None:
+        if statistics.ending is not Ending.TOO_DEEP or problem.deeper is None or resume is None:
             return
-        tally.ending = Ending.FINISHED
+        statistics.ending = Ending.FINISHED
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +148,7 @@ class Start:
     ----------
     checkpoint : ndarray, optional
         From a `Block` of a run of the same scene by the same backend.
-    tally : Tally
+    statistics : Statistics
         The solver's counters there.
     time, wall_time : float
         Simulated time and wall time until there [s].
@@ -157,7 +157,7 @@ class Start:
     """
 
     checkpoint: NDArray[np.float64] | None = None
-    tally: Tally = field(default_factory=Tally)
+    statistics: Statistics = field(default_factory=Statistics)
     time: float = 0.0
     wall_time: float = 0.0
     events: int = 0
@@ -176,7 +176,7 @@ class Ended:
         The status in a sentence; empty when finished.
     reached : float
         Simulated time reached [s].
-    ledger : Ledger, optional
+    balance : EnergyBalance, optional
         The latest energy balance; None if the run did not begin.
     extremes : Extremes, optional
         The latest extremes, likewise.
@@ -186,13 +186,13 @@ class Ended:
     status: str
     message: str
     reached: float
-    ledger: Ledger | None = None
+    balance: EnergyBalance | None = None
     extremes: Extremes | None = None
 
 
 def follow(
     scene: Scene,
-    take: Callable[[Block, Tally, float], None],
+    take: Callable[[Block, Statistics, float], None],
     *,
     backend: str = "auto",
     on_progress: Callable[[float, int], None] | None = None,
@@ -223,9 +223,9 @@ def follow(
     """
     name = choose_backend(backend, scene.run.method)
     begin = begin or Start()
-    tally, reached, seen = replace(begin.tally), begin.time, begin.events
+    statistics, reached, seen = replace(begin.statistics), begin.time, begin.events
     status = message = ""
-    ledger: Ledger | None = None
+    balance: EnergyBalance | None = None
     extremes: Extremes | None = None
     skipped: dict[str, int] = {}
     started = time.perf_counter()
@@ -236,35 +236,39 @@ def follow(
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
         for block in run_blocks(
-            problem, scene.run.rtol, scene.run.sample_count, name, tally, begin.checkpoint
+            problem, scene.run.rtol, scene.run.sample_count, name, statistics, begin.checkpoint
         ):
-            take(block, tally, begin.wall_time + time.perf_counter() - started)
+            take(block, statistics, begin.wall_time + time.perf_counter() - started)
             reached = block.time
-            ledger, extremes = block.ledger or ledger, block.extremes or extremes
+            balance, extremes = block.balance or balance, block.extremes or extremes
             seen += len(block.events)
             if on_progress is not None:
                 on_progress(reached, seen)
-        status, message = tally.ending.status, tally.message
+        status, message = statistics.ending.status, statistics.message
     except KeyboardInterrupt:
         status, message = "interrupted", "interrupted by the user"
     wall_time = begin.wall_time + time.perf_counter() - started
-    return Ended(statistics_of(tally, wall_time, name, skipped), status, message, reached, ledger, extremes)
+    return Ended(
+        statistics_of(statistics, wall_time, name, skipped), status, message, reached, balance, extremes
+    )
 
 
-def statistics_of(tally: Tally, wall_time: float, backend: str, skipped: dict[str, int]) -> Statistics:
+def statistics_of(
+    statistics: Statistics, wall_time: float, backend: str, skipped: dict[str, int]
+) -> Statistics:
     """Turn a run's counters into what is kept of them."""
     return Statistics(
-        steps=tally.steps,
-        residual_evaluations=tally.residual_evaluations,
-        jacobian_evaluations=tally.jacobian_evaluations,
-        error_test_failures=tally.error_test_failures,
-        convergence_failures=tally.convergence_failures,
-        restarts=tally.restarts,
-        guard_evaluations=tally.guard_evaluations,
+        steps=statistics.steps,
+        residual_evaluations=statistics.residual_evaluations,
+        jacobian_evaluations=statistics.jacobian_evaluations,
+        error_test_failures=statistics.error_test_failures,
+        convergence_failures=statistics.convergence_failures,
+        restarts=statistics.restarts,
+        guard_evaluations=statistics.guard_evaluations,
         wall_time=wall_time,
         backend=backend,
-        skipped=skipped | {"flight_steps": tally.flight_steps},
-        method=tally.method,
+        skipped=skipped | {"flight_steps": statistics.flight_steps},
+        method=statistics.method,
     )
 
 
@@ -304,7 +308,7 @@ def solve(
     columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
 
-    def take(block: Block, tally: Tally, wall_time: float) -> None:
+    def take(block: Block, statistics: Statistics, wall_time: float) -> None:
         rows.append(block.rows)
         events.append(block.events)
 
@@ -318,7 +322,7 @@ def solve(
         status=ended.status,
         message=ended.message,
         reached=ended.reached,
-        ledger=ended.ledger,
+        balance=ended.balance,
         extremes=ended.extremes,
     )
 
@@ -355,7 +359,7 @@ def outlook(
     return problem.checkpoint(0.0, problem.start).size, problem.skipped, formulas(problem, backend)
 
 
-def kept_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> tuple[Ledger, Extremes]:
+def kept_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> tuple[EnergyBalance, Extremes]:
     """Return the energy balance and the extremes at a checkpoint of a run.
 
     Parameters

@@ -9,9 +9,10 @@ from importlib import import_module
 from types import ModuleType
 
 from gearidae.compiling import compiling
-from gearidae.engine.integrate.driver import Block, Tally
+from gearidae.engine.integrate.driver import Block
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import GEARS
+from gearidae.records import Statistics
 
 __all__ = ["ADAMS", "BDF", "formulas", "load_driver", "native_formulas", "ready_driver"]
 
@@ -89,7 +90,7 @@ def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block
     if kind not in _ready:
         bodies = "gear pairs" if kind[2] == GEARS else "rollers"
         with compiling(f"the solver for {bodies}{' in elastic contact' if kind[3] else ''}", "some seconds"):
-            for _ in run(problem.shortened(TINY), 1e-3, 2, Tally()):
+            for _ in run(problem.shortened(TINY), 1e-3, 2, Statistics()):
                 pass
         _ready.add(kind)
     return run

@@ -1,4 +1,4 @@
-"""One self-contained page about an archive: what it did, from what, and its time series to look into."""
+"""One self-contained page about an archive: outcome, scene, and its time series to look into."""
 
 from gearidae.report.page import build_report, write_report
 

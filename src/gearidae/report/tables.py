@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
+from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.pieces import pieces
 from gearidae.archive.select import runs, scene_of, swept_dims
 from gearidae.records import EventKind
@@ -20,9 +21,9 @@ from gearidae.scene import describe_keys
 
 __all__ = ["account_table", "event_table", "headline", "outcome_table", "parameter_tables", "provenance_list"]
 
-_GEAR_HEADINGS = ("what it did", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
+_GEAR_HEADINGS = ("outcome", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
 _ROLLER_HEADINGS = (
-    "what it did", "peak force (uN)", "pull-off force (uN)", "restitution", "impacts", "status"
+    "outcome", "peak force (uN)", "pull-off force (uN)", "restitution", "impacts", "status"
 )  # fmt: skip
 _PROVENANCE = (
     ("title", "title"),
@@ -55,7 +56,7 @@ _ACCOUNT = (
     ("largest_force", "largest force", "N"),
     ("largest_force_time", "time of the largest force", "s"),
 )
-_LEDGER = (
+_ENERGY_BALANCE = (
     ("drive_work", "work of the drive", "J"),
     ("radius_work", "work of the changing radius", "J"),
     ("model_change", "jump at the change of the contact model", "J"),
@@ -83,7 +84,7 @@ def headline(ds: xr.Dataset) -> str:
 
 
 def outcome_table(ds: xr.Dataset) -> str:
-    """Tell run by run what it did."""
+    """List the outcome of each run."""
     judged = outcomes(ds)
     dims = swept_dims(ds)
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
@@ -96,13 +97,13 @@ def outcome_table(ds: xr.Dataset) -> str:
 def account_table(ds: xr.Dataset) -> str:
     """Tell where time and energy of a single run went, of a roller energy only; nothing of a sweep."""
     told = json.loads(ds.attrs.get("account", "{}"))
-    kept = json.loads(ds.attrs.get("ledger", "{}"))
+    kept = balance_in_attributes(ds)
     rows = [
         (words, _number(float(told[name]) if isinstance(told[name], int) else told[name]), unit)
         for name, words, unit in _ACCOUNT
         if told.get(name) not in (None, "")
     ]
-    rows += [(words, _number(kept[name]), unit) for name, words, unit in _LEDGER if kept.get(name)]
+    rows += [(words, _number(kept[name]), unit) for name, words, unit in _ENERGY_BALANCE if kept.get(name)]
     if not rows:
         return ""
     return html.table(("quantity", "value", "unit"), rows, caption="Account of the run", numeric=(1,))
@@ -110,17 +111,17 @@ def account_table(ds: xr.Dataset) -> str:
 
 def event_table(ds: xr.Dataset) -> str:
     """Count the events of each run and name the first and the hardest contact."""
-    found = [(label, _tally(run)) for label, run in runs(ds)]
-    kinds = [kind for kind in EventKind if any(tally.counts[kind] for _, tally in found)]
+    found = [(label, _count_events(run)) for label, run in runs(ds)]
+    kinds = [kind for kind in EventKind if any(counted.counts[kind] for _, counted in found)]
     if not kinds:
         return html.paragraph("No events.")
     dims = swept_dims(ds)
     rows = []
-    for label, tally in found:
-        made = tally.counts[EventKind.ONSET]
-        first = f"{tally.first * 1e3:.6g}" if made else "-"
-        fastest = f"{max(tally.fastest, 0.0):.3g}" if made else "-"
-        counts = [str(tally.counts[each]) for each in kinds]
+    for label, counted in found:
+        made = counted.counts[EventKind.ONSET]
+        first = f"{counted.first * 1e3:.6g}" if made else "-"
+        fastest = f"{max(counted.fastest, 0.0):.3g}" if made else "-"
+        counts = [str(counted.counts[each]) for each in kinds]
         rows.append([*(_number(value) for value in label.values()), *counts, first, fastest])
     names = [each.name.lower().replace("_", " ") for each in kinds]
     headings = [*dims, *names, "first onset (ms)", "fastest closing at an onset (m/s)"]
@@ -128,7 +129,7 @@ def event_table(ds: xr.Dataset) -> str:
 
 
 @dataclass(slots=True)
-class _Tally:
+class _EventCounts:
     """Events of a run: how many of each kind, time of the first onset [s], fastest closing at one [m/s]."""
 
     counts: dict[EventKind, int]
@@ -136,17 +137,19 @@ class _Tally:
     fastest: float = -math.inf
 
 
-def _tally(run: xr.Dataset) -> _Tally:
-    tally = _Tally(dict.fromkeys(EventKind, 0))
+def _count_events(run: xr.Dataset) -> _EventCounts:
+    counted = _EventCounts(dict.fromkeys(EventKind, 0))
     for place, kinds in pieces(run["event_kind"]):
         for kind in EventKind:
-            tally.counts[kind] += int(np.count_nonzero(kinds == kind))
+            counted.counts[kind] += int(np.count_nonzero(kinds == kind))
         made = kinds == EventKind.ONSET
         if made.any():
             cut = slice(place, place + len(kinds))
-            tally.first = min(tally.first, float(run["event_time"].variable[cut].values[made].min()))
-            tally.fastest = max(tally.fastest, float(-run["event_gap_rate"].variable[cut].values[made].min()))
-    return tally
+            counted.first = min(counted.first, float(run["event_time"].variable[cut].values[made].min()))
+            counted.fastest = max(
+                counted.fastest, float(-run["event_gap_rate"].variable[cut].values[made].min())
+            )
+    return counted
 
 
 def parameter_tables(ds: xr.Dataset) -> str:

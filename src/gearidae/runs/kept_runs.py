@@ -17,7 +17,7 @@ import netCDF4
 import numpy as np
 
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
-from gearidae.records import Events, Extremes, Ledger, Solution, Statistics
+from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -149,7 +149,7 @@ def _write(path: Path, key: str, solution: Solution) -> None:
             "status": solution.status,
             "message": solution.message,
             "reached": solution.reached,
-            "ledger": None if solution.ledger is None else asdict(solution.ledger),
+            "balance": None if solution.balance is None else asdict(solution.balance),
             "extremes": None if solution.extremes is None else asdict(solution.extremes),
         },
         default=int,  # numpy's integers
@@ -196,7 +196,7 @@ def _read(path: Path, key: str) -> Solution:
         header["status"],
         header["message"],
         header["reached"],
-        None if header["ledger"] is None else Ledger(**header["ledger"]),
+        None if header["balance"] is None else EnergyBalance(**header["balance"]),
         None if header.get("extremes") is None else Extremes(**header["extremes"]),
     )
 

@@ -12,7 +12,7 @@ from gearidae import __version__, engine
 from gearidae.analysis.run_summary import account_of
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
 from gearidae.archive.disk import DiskError
-from gearidae.archive.energy import ledger_of
+from gearidae.archive.energy import balance_of
 from gearidae.archive.journal import Checkpoint
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
@@ -155,7 +155,7 @@ class _Run:
                 archive.samples,
                 archive.events,
                 end,
-                ledger_of(template),
+                balance_of(template),
                 ended.extremes,
             )
             template.attrs["account"] = told.as_json()
@@ -173,8 +173,8 @@ class _Run:
         _, skipped, method = engine.outlook(self._scene, self._backend, point.state)
         counted = replace(point.statistics, method=method)
         statistics = statistics_of(counted, point.wall_time, self._backend, skipped)
-        ledger, extremes = engine.kept_at(self._scene, point.state, self._backend)
-        return engine.Ended(statistics, "finished", "", point.time, ledger, extremes)
+        balance, extremes = engine.kept_at(self._scene, point.state, self._backend)
+        return engine.Ended(statistics, "finished", "", point.time, balance, extremes)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
         """Make the run's dataset, without samples and events."""
@@ -190,7 +190,7 @@ class _Run:
             status=ended.status,
             message=ended.message,
             reached=ended.reached,
-            ledger=ended.ledger,
+            balance=ended.balance,
             extremes=ended.extremes,
         )
         return to_dataset(self._scene, solution)

@@ -177,10 +177,10 @@ def test_an_impact_loses_what_its_asperities_cost(fraction):
         above = integrate.quad(psi, first, 16.0, epsabs=0, epsrel=1e-11, limit=200)[0]
         lost += share * count * above * gd.contact.adhesion_loss_per_asperity(surface, "maugis")
     # the lowest sample lies near a turning point, so that its error enters squared
-    assert run.ledger.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
+    assert run.balance.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
     speed = run.samples["speed"]
     assert 0.5 * roller.mass * (speed[0] ** 2 - speed[-1] ** 2) == pytest.approx(lost, rel=1e-5, abs=0)
-    assert abs(run.ledger.residual) <= run.ledger.bound(scene.run.rtol, roller=True)
+    assert abs(run.balance.residual) <= run.balance.bound(scene.run.rtol, roller=True)
 
 
 def test_gears_on_coated_teeth_run_as_an_independent_integrator_has_them():

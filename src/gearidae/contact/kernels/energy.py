@@ -200,14 +200,14 @@ def _stretch_integral(pieces: int) -> Floats:
 
 
 @compiled
-def stretched_energy(table: Floats, booked: float, gap: float, joined: float) -> tuple[float, float]:
+def stretched_energy(table: Floats, adhered_energy: float, gap: float, joined: float) -> tuple[float, float]:
     """What joined asperities store beyond the loading branch, and its slope while the joined height stays.
 
     Parameters
     ----------
     table : ndarray
         From `energy_table`.
-    booked : float
+    adhered_energy : float
         e(Z, 0) = E(0) Psi(Z) at the joined height.
     gap, joined : float
         G and Z over roughness [1]; Z is clipped to no less than G - D. Asperities that a closing contact joins below
@@ -218,8 +218,8 @@ def stretched_energy(table: Floats, booked: float, gap: float, joined: float) ->
         return 0.0, 0.0
     stretch = gap - joined
     if stretch <= 0.0:
-        return booked, 0.0
+        return adhered_energy, 0.0
     if stretch < limit and table[H_MODE] == MODE_INTEGRATED and joined < GAP_HIGH:
         work, slope = integrated_work(table, joined, stretch)
-        return booked - work, -slope
+        return adhered_energy - work, -slope
     return stretched_value(table, gap, joined)

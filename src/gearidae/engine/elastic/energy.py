@@ -27,7 +27,7 @@ from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.nodes import farthest_joined, node_force, pressure_shares
 from gearidae.engine.elastic.rows import (
-    BOOKED,
+    ADHERED_ENERGY,
     JOINED,
     PRESSURE,
     first_unknown,
@@ -65,12 +65,12 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
             continue
         table = m.tables[m.scene.material[material].energy_at :]
         scale = m.scene.material[material].force_scale
-        heights, booked = row(m, k, JOINED + material), row(m, k, BOOKED + material)
+        heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
         farthest = farthest_joined(heights[0])
         for i in range(gaps.size):
             if heights[i] > farthest:
                 break
-            stored = stretched_energy(table, booked[i], gaps[i], heights[i])[0]
+            stored = stretched_energy(table, adhered_energy[i], gaps[i], heights[i])[0]
             energy += scale * finer[i] * stored
     return energy
 
@@ -86,10 +86,10 @@ def nodes_joining_loss(m: Model, k: int, y: Floats, gap: float) -> float:
             continue
         own = m.scene.material[material]
         joining, scale, number = own.joining_energy, own.force_scale, own.number_at
-        heights, booked = row(m, k, JOINED + material), row(m, k, BOOKED + material)
+        heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
         for i in range(gaps.size):
             if gaps[i] < heights[i]:
-                more = joining * loading_value(m.tables, number, gaps[i])[0] + booked[i]
+                more = joining * loading_value(m.tables, number, gaps[i])[0] + adhered_energy[i]
                 loss += scale * finer[i] * more
     return loss
 

@@ -8,7 +8,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.rows import (
-    BOOKED,
+    ADHERED_ENERGY,
     GAP,
     JOINED,
     SHARE,
@@ -69,7 +69,9 @@ def join_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
 @compiled(makes_arrays=True)
 def book_points(m: Model, k: int, material: int) -> None:
     """Note the energy of what is joined at the points, which changes when the joined heights do."""
-    joined, booked = row(m, k, JOINED + material), row(m, k, BOOKED + material)
+    joined, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
     joining = m.scene.material[material].joining_energy
     for i in range(m.scene.points if joining != 0.0 else 0):
-        booked[i] = -joining * loading_value(m.tables, m.scene.material[material].number_at, joined[i])[0]
+        adhered_energy[i] = (
+            -joining * loading_value(m.tables, m.scene.material[material].number_at, joined[i])[0]
+        )

@@ -1,7 +1,7 @@
 """Rows of numbers of an elastic contact: one number per node, or per point between the nodes.
 
 Among the rows that change lie, pair by pair, gap, share, pressure and slope of every node, then joined heights,
-stiffness and booked energy of every point. Constants (profile, weights, influence coefficients, the points' shares of
+stiffness and adhered energy of every point. Constants (profile, weights, influence coefficients, the points' shares of
 the nodes) lie among the tables. Functions here hand out views of them, with their true lengths.
 """
 
@@ -16,7 +16,7 @@ from gearidae.contact.bulk import STENCIL
 from gearidae.engine.model.state import MATERIALS, ROLLER, Floats, Model
 
 __all__ = [
-    "BOOKED",
+    "ADHERED_ENERGY",
     "FINER",
     "GAP",
     "JOINED",
@@ -52,7 +52,7 @@ SLOPE: Final = 3  # slope of the loading branch in the node's gap
 _NODE_ROWS: Final = 4
 JOINED: Final = 4  # rows of points, one per material: joined height
 STIFFNESS: Final = JOINED + MATERIALS  # slope of what stretched asperities add, in the point's gap
-BOOKED: Final = STIFFNESS + 1  # one per material: energy of what is joined, when nothing is stretched
+ADHERED_ENERGY: Final = STIFFNESS + 1  # one per material: energy of what is joined, when nothing is stretched
 _POINT_ROWS: Final = 2 * MATERIALS + 1
 
 

@@ -1,4 +1,4 @@
-r"""The energy that asperities lose by joining, booked at the turning point of a closing contact.
+r"""The energy that asperities lose by joining, recorded at the turning point of a closing contact.
 
 Per length a closing contact loses :math:`q = |E(0)|\,(\Psi(g) - \Psi(\zeta))`, in closed form; but while it closes its
 length changes along the path of contact, so that it loses
@@ -57,7 +57,7 @@ def _book_before(m: Model, coast: int, pair: int, loss: float, length: float) ->
     was, rate, bend = length_and_rates(m, coast, pair, before, q.gear_speed, q.gear_acceleration)
     q.radius_power -= loss * rate
     q.radius_power_rate -= loss * bend
-    q.booked += loss * (length - was)
+    q.length_work += loss * (length - was)
 
 
 @compiled(inline=True)
@@ -125,7 +125,7 @@ def _loss(m: Model, k: int, y: Floats, gap: float) -> tuple[float, float]:
             number, slope = loading_value(m.tables, own.number_at, gap)
             joining = own.joining_energy * own.force_scale
             lost += joining * number
-            loss += joining * number + own.force_scale * m.state.history[k].booked[material]
+            loss += joining * number + own.force_scale * m.state.history[k].adhered_energy[material]
             change += joining * slope
     if m.scene.nodes > 0:
         loss = nodes_joining_loss(m, k, y, gap)

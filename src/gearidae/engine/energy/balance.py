@@ -78,7 +78,7 @@ def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Begin a quadrature at a start, where speeds and torques may jump."""
     q = m.work.quadrature
     q.steps = 0
-    q.booked = 0.0
+    q.length_work = 0.0
     q.time = t
     q.kinetic = kinetic_energy(m, y)
     if m.scene.kind == ROLLER:
@@ -126,10 +126,10 @@ def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> N
         exchange += dry
     q.gear_travel, q.gear_speed, q.gear_acceleration = gear, w, w_rate
     power, rate = radius_power(m, t, y, w_rate)
-    radius = integral(h, q.radius_power, power, q.radius_power_rate, rate) + q.booked
+    radius = integral(h, q.radius_power, power, q.radius_power_rate, rate) + q.length_work
     e = m.state.energy
     e.quadrature_error += error + error_estimate(h, q.radius_power, power, q.radius_power_rate, rate)
-    q.booked = 0.0
+    q.length_work = 0.0
     q.radius_power, q.radius_power_rate = power, rate
     e.radius_work += radius
     kinetic = 0.5 * speed * speed / m.scene.pinion_inverse_mass + 0.5 * w * w / m.scene.gear_inverse_mass

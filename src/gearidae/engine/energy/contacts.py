@@ -30,7 +30,7 @@ def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
         scale = m.scene.material[material].force_scale
         stretch = gap - m.state.history[k].joined[material]
         if stretch <= 0.0:
-            energy += scale * m.state.history[k].booked[material]
+            energy += scale * m.state.history[k].adhered_energy[material]
             continue
         table = m.tables[m.scene.material[material].energy_at :]
         joined = m.state.history[k].joined[material]
@@ -40,7 +40,7 @@ def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
                 set_branch(table, joined, branch)
             e, de = branch_value(branch, stretch)
         else:
-            e, de = stretched_energy(table, m.state.history[k].booked[material], gap, joined)
+            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap, joined)
         energy += scale * e
         slope += scale * de
     return energy, slope
@@ -91,5 +91,5 @@ def joining_loss(m: Model, k: int, gap: float) -> float:
         own = m.scene.material[material]
         if own.stretch_limit > 0.0 and gap < h.joined[material]:
             number = loading_value(m.tables, own.number_at, gap)[0]
-            loss += own.force_scale * (own.joining_energy * number + h.booked[material])
+            loss += own.force_scale * (own.joining_energy * number + h.adhered_energy[material])
     return loss

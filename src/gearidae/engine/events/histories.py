@@ -74,7 +74,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
     for material in range(MATERIALS):
         h.joined[material] = middle  # beyond the cut-off its branch does not matter
         if gap >= m.scene.cutoff:
-            h.booked[material] = 0.0
+            h.adhered_energy[material] = 0.0
         h.fully_stretched[material] = 0
     h.direction = h.lag = h.lag_power = h.lag_rate = 0.0
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
-from gearidae.records import Block, Ending, Extremes, Ledger, Statistics
+from gearidae.records import Block, Ending, EnergyBalance, Extremes, Statistics
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -22,10 +22,9 @@ __all__ = [
     "Block",
     "Ending",
     "Output",
-    "Tally",
     "ending_of_flag",
-    "fill_tally",
     "sample_time",
+    "update_statistics",
 ]
 
 COUNTERS = tuple(name for name in PROGRESS.names or () if name != "next_sample")
@@ -64,15 +63,11 @@ def ending_of_flag(flag: int, elastic: bool = False) -> Ending:
     return _FLAGS.get(flag, Ending.SOLVER_FAILURE)
 
 
-Tally = Statistics
-"""Solver statistics of a run under way."""
-
-
-def fill_tally(tally: Tally, progress: Record) -> None:
+def update_statistics(statistics: Statistics, progress: Record) -> None:
     """Take a driver's counters over."""
     for name, count in zip(PROGRESS.names or (), progress.item(), strict=True):
         if name in COUNTERS:
-            setattr(tally, name, count)
+            setattr(statistics, name, count)
 
 
 class Output(NamedTuple):
@@ -97,7 +92,7 @@ class Output(NamedTuple):
         m: Model,
         time: float,
         checkpoint: Floats | None = None,
-        kept: tuple[Ledger | None, Extremes | None] = (None, None),
+        kept: tuple[EnergyBalance | None, Extremes | None] = (None, None),
     ) -> Block:
         """Hand out what there is, and begin anew.
 
@@ -109,7 +104,7 @@ class Output(NamedTuple):
         checkpoint
             See `Block`.
         kept : tuple
-            Ledger and extremes, likewise; see `gearidae.engine.model.problem.Problem.kept`.
+            EnergyBalance and extremes, likewise; see `gearidae.engine.model.problem.Problem.kept`.
         """
         driver = m.work.driver
         rows, events = int(driver.rows), int(driver.events)

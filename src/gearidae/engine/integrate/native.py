@@ -26,10 +26,9 @@ from gearidae.engine.integrate.driver import (
     Block,
     Ending,
     Output,
-    Tally,
     ending_of_flag,
-    fill_tally,
     sample_time,
+    update_statistics,
 )
 from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.root_finding import SHARPNESS, Arrays, Stepper, next_time, start_search
@@ -51,6 +50,7 @@ from gearidae.engine.sundials.ida_memory import (
     open_solver,
 )
 from gearidae.engine.sundials.memory import model_at
+from gearidae.records import Statistics
 
 FIRST_STEPS = 1_000
 """Steps of the first block, before it is known what a step costs."""
@@ -195,7 +195,7 @@ def run(
     problem: Problem,
     rtol: float,
     total: int,
-    tally: Tally,
+    statistics: Statistics,
     resume: Floats | None = None,
     as_ida: bool = False,
 ) -> Iterator[Block]:
@@ -209,7 +209,7 @@ def run(
         Relative tolerance.
     total : int
         Number of samples, the first at time 0 and the last at the end; 0 for none.
-    tally : Tally
+    statistics : Statistics
         Filled in; complete once the last block is out.
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem, tolerance and sampling, to resume from.
@@ -235,14 +235,14 @@ def run(
     places = Places(sun.places(), sun.newton_places(), sun.vector_places())
     try:
         if open_solver(s.handles, place, functions, places, (s.y, s.yp, s.dky)) != 0:
-            tally.ending = Ending.SOLVER_FAILURE
+            statistics.ending = Ending.SOLVER_FAILURE
             return
-        yield from _blocks(problem, s, out, tally)
+        yield from _blocks(problem, s, out, statistics)
     finally:
         close_solver(s.handles)
 
 
-def _blocks(problem: Problem, s: Arrays, out: Output, tally: Tally) -> Iterator[Block]:
+def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) -> Iterator[Block]:
     """Run with an open solver, block by block."""
     m = problem.model
     driver, elastic = m.work.driver, bool(m.scene.nodes > 0)
@@ -251,10 +251,10 @@ def _blocks(problem: Problem, s: Arrays, out: Output, tally: Tally) -> Iterator[
         started = time.monotonic()
         advance_at(problem.located.place, s, out, budget)
         budget = _next_budget(budget, time.monotonic() - started)
-        fill_tally(tally, m.state.progress)
-        tally.ending = ending_of_flag(int(driver.error), elastic)
+        update_statistics(statistics, m.state.progress)
+        statistics.ending = ending_of_flag(int(driver.error), elastic)
         if driver.error < 0 and elastic:
-            tally.note_fold(fold_gap(m, m.state.time) * m.scene.length_unit)
+            statistics.note_fold(fold_gap(m, m.state.time) * m.scene.length_unit)
         if driver.error == BOUND_EXCEEDED:  # the run that continues from here restarts
             driver.error, driver.pending = 0, -1
             m.state.progress.restarts += 1

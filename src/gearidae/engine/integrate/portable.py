@@ -36,10 +36,9 @@ from gearidae.engine.integrate.driver import (
     Block,
     Ending,
     Output,
-    Tally,
     ending_of_flag,
-    fill_tally,
     sample_time,
+    update_statistics,
 )
 from gearidae.engine.integrate.epilogue import ROOT, STOP, has_room, prepare_restart
 from gearidae.engine.integrate.start import first_step, set_rates
@@ -47,6 +46,7 @@ from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.sundials.memory import Located
 from gearidae.errors import SceneError
+from gearidae.records import Statistics
 
 __all__ = ["run"]
 
@@ -57,7 +57,7 @@ _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third
 
 
 def run(
-    problem: Problem, rtol: float, total: int, tally: Tally, resume: Floats | None = None
+    problem: Problem, rtol: float, total: int, statistics: Statistics, resume: Floats | None = None
 ) -> Iterator[Block]:
     """Run a problem, block by block; see `gearidae.engine.integrate.native.run`."""
     m = problem.prepare(rtol, total)
@@ -94,26 +94,26 @@ def run(
             solver.count()
             if checkpoint:
                 driver.since = 0
-                yield _ready(problem, m, out, tally, y, yp)
+                yield _ready(problem, m, out, statistics, y, yp)
             solver.start(y)
         if time.monotonic() - handed_out > BLOCK_SECONDS:
-            fill_tally(tally, progress)
+            update_statistics(statistics, progress)
             yield out.block(m, float(driver.time), None, problem.kept(float(driver.time), y, yp))
             handed_out = time.monotonic()
     solver.count()
-    fill_tally(tally, progress)
-    tally.ending = solver.ending or ending_of_flag(int(driver.error), bool(m.scene.nodes > 0))
+    update_statistics(statistics, progress)
+    statistics.ending = solver.ending or ending_of_flag(int(driver.error), bool(m.scene.nodes > 0))
     if driver.error < 0 and m.scene.nodes > 0:
-        tally.note_fold(fold_gap(m, driver.time) * m.scene.length_unit)
+        statistics.note_fold(fold_gap(m, driver.time) * m.scene.length_unit)
     if driver.done != 0 or driver.error == BOUND_EXCEEDED:
-        yield _ready(problem, m, out, tally, y, yp)
+        yield _ready(problem, m, out, statistics, y, yp)
     else:
         yield out.block(m, driver.time, None, problem.kept(driver.time, y, yp))
 
 
-def _ready(problem: Problem, m: Model, out: Output, tally: Tally, y: Floats, yp: Floats) -> Block:
+def _ready(problem: Problem, m: Model, out: Output, statistics: Statistics, y: Floats, yp: Floats) -> Block:
     """Hand out a block with a checkpoint."""
-    fill_tally(tally, m.state.progress)
+    update_statistics(statistics, m.state.progress)
     reached = float(m.work.driver.time)
     return out.block(m, reached, problem.checkpoint(reached, y), problem.kept(reached, y, yp))
 

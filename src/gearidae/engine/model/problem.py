@@ -18,7 +18,7 @@ from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
 from gearidae.engine.sundials.memory import Located
 from gearidae.errors import SceneError
-from gearidae.records import Extremes, Ledger
+from gearidae.records import EnergyBalance, Extremes
 
 __all__ = ["Problem"]
 
@@ -113,7 +113,7 @@ class Problem:
         harmonics = self.model.tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
         return fastest_harmonic(harmonics, felt)
 
-    def ledger(self, time: float, state: Floats, rates: Floats) -> Ledger:
+    def balance(self, time: float, state: Floats, rates: Floats) -> EnergyBalance:
         """The energy balance at an accepted time.
 
         Parameters
@@ -128,14 +128,14 @@ class Problem:
         # steps still to be gathered are not to be split by a look
         kept, now = [part.copy() for part in parts], np.empty(BALANCE)
         balance_at(self.located.place, time, state, rates, now)
-        ledger = self._in_joules(time, *now.tolist())
+        balance = self._in_joules(time, *now.tolist())
         for part, before in zip(parts, kept, strict=True):
             assign(part, before)
-        return ledger
+        return balance
 
-    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[Ledger, Extremes]:
-        """Return all that is kept of the run up to an accepted time: `ledger` and `extremes`."""
-        return self.ledger(time, state, rates), self.extremes(time, state)
+    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance, Extremes]:
+        """Return all that is kept of the run up to an accepted time: `balance` and `extremes`."""
+        return self.balance(time, state, rates), self.extremes(time, state)
 
     def extremes(self, time: float, state: Floats) -> Extremes:
         """The extremes of the run up to an accepted time.
@@ -155,13 +155,13 @@ class Problem:
         assign(m.state.extremes, kept)
         return found
 
-    def _in_joules(self, time: float, stored: float, pending: float, kinetic: float) -> Ledger:
+    def _in_joules(self, time: float, stored: float, pending: float, kinetic: float) -> EnergyBalance:
         # one look at all sums: a record's fields cost microseconds each outside compiled code
         e = dict(zip(ENERGY.names or (), self.model.state.energy.item(), strict=True))
         scene = self.model.scene
         unit = float(scene.force_unit * scene.length_unit)
         lag = joining_lag(self.model)
-        return Ledger(
+        return EnergyBalance(
             time=time * self.time_unit,
             drive_work=unit * e["drive_work"],
             radius_work=unit * (e["radius_work"] - lag),

@@ -204,7 +204,7 @@ HISTORY: Final = _record(
     ),  # height above which asperities were in contact at the last turning point
     ("fully_stretched", _INT, (MATERIALS,)),  # 1 once full stretch has been reached on the way apart
     (
-        "booked",
+        "adhered_energy",
         _REAL,
         (MATERIALS,),
     ),  # adhesion loss of the asperities above `joined` (asperity model)
@@ -317,7 +317,7 @@ QUADRATURE: Final = _record(  # inputs of the powers at the last sample of the e
     ("load_rate", _REAL),
     ("radius_power", _REAL),
     ("radius_power_rate", _REAL),
-    ("booked", _REAL),  # work of the radius on the adhesion losses added since then
+    ("length_work", _REAL),  # work of the radius on the adhesion losses added since then
 )
 
 RESISTANCE: Final = _record(  # the same of drag and damping, which are integrated at every step

@@ -230,7 +230,7 @@ def set_joined(m: Model, k: int, material: int, joined: float) -> None:
     """Store the joined height of a turning point, and work out the branch that starts from it."""
     h, own = m.state.history[k], m.scene.material[material]
     h.joined[material] = joined
-    h.booked[material] = -own.joining_energy * loading_value(m.tables, own.number_at, joined)[0]
+    h.adhered_energy[material] = -own.joining_energy * loading_value(m.tables, own.number_at, joined)[0]
     set_branches(m, k, material)
 
 

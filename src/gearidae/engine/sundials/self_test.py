@@ -25,10 +25,9 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import cache_folder, is_cached
 from gearidae.engine.integrate import native
-from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
-from gearidae.records import EventKind
+from gearidae.records import EventKind, Statistics
 from gearidae.scene import Scene
 
 __all__ = ["examine", "failure"]
@@ -169,17 +168,17 @@ def _scene() -> Scene:
 
 def _run(way: str, rtol: float) -> Seen:
     """Run the motion, and compare it with the closed form."""
-    scene, tally = _scene(), Tally()
+    scene, statistics = _scene(), Statistics()
     problem = make_problem(scene)
     options: dict[str, Any] = {"as_ida": True} if way == "bdf" else {}
-    blocks = list(native.run(problem, rtol, SAMPLES, tally, **options))
+    blocks = list(native.run(problem, rtol, SAMPLES, statistics, **options))
     rows = np.concatenate([block.rows for block in blocks])
     events = np.concatenate([block.events for block in blocks])
     order = int(problem.model.work.adams.order_used)
-    if tally.ending.status != "finished" or len(rows) != SAMPLES:
-        return Seen(tally.ending.status, math.inf, math.inf, tally.steps, order)
+    if statistics.ending.status != "finished" or len(rows) != SAMPLES:
+        return Seen(statistics.ending.status, math.inf, math.inf, statistics.steps, order)
     error = _error(scene, problem, rows) / rtol
-    return Seen("finished", error, _mark_error(scene, events) / rtol, tally.steps, order)
+    return Seen("finished", error, _mark_error(scene, events) / rtol, statistics.steps, order)
 
 
 def _error(scene: Scene, problem: Problem, rows: NDArray[np.float64]) -> float:

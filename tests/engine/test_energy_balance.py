@@ -1,4 +1,4 @@
-"""The energy ledger against formulas, against an independent quadrature, and against itself."""
+"""The energy balance against formulas, against an independent quadrature, and against itself."""
 
 import json
 import math
@@ -16,9 +16,9 @@ from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
 from gearidae.engine.energy.quadrature import Ends, integral_of_cube, torque_work
 from gearidae.engine.integrate import native as native_driver
-from gearidae.engine.integrate.driver import Tally
 from gearidae.engine.model.build import make_problem
 from gearidae.mesh import curvature_radii
+from gearidae.records import Statistics
 
 CASES = Path(__file__).parents[2] / "cases"
 HIGH, LOW = gd.preset("teodorescu2009"), gd.preset("teodorescu2009_low_speed")
@@ -27,10 +27,10 @@ I1, I2 = 1.5263e-20, 6.1052e-20
 
 def check(scene, solution):
     """The residual lies within the stated bound."""
-    ledger = solution.ledger
-    assert ledger.throughput > 0.0
-    assert abs(ledger.residual) <= ledger.bound(scene.run.rtol, roller=scene.roller is not None)
-    return ledger
+    balance = solution.balance
+    assert balance.throughput > 0.0
+    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=scene.roller is not None)
+    return balance
 
 
 def tail(y):
@@ -58,19 +58,19 @@ def test_an_impact_loses_what_its_asperities_cost(fraction):
     )
     scene = scene.replace({"run.duration": 3e-5, "run.samples": 80_001})
     run = solve(scene)
-    ledger = check(scene, run)
+    balance = check(scene, run)
     deepest = run.samples["height"].min() / scene.surface.roughness
     lost = 0.0
     for surface, share in ((scene.surface, 1 - fraction), (scene.coated_surface, fraction)):
         count, cost = numbers(surface, scene.roller.width, scene.roller.radius)
         lost += share * count * cost * tail(deepest)
     # the lowest sample lies near a turning point, so that its error enters squared
-    assert ledger.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
+    assert balance.adhesion_loss == pytest.approx(lost, rel=1e-6, abs=0)
     speed = run.samples["speed"]
     kinetic = 0.5 * scene.roller.mass * (speed[-1] ** 2 - speed[0] ** 2)
-    assert ledger.kinetic_change == pytest.approx(kinetic, rel=1e-9, abs=0)
+    assert balance.kinetic_change == pytest.approx(kinetic, rel=1e-9, abs=0)
     assert -kinetic == pytest.approx(lost, rel=1e-6, abs=0)
-    assert abs(ledger.stored_change) < 1e-8 * lost  # it has come free
+    assert abs(balance.stored_change) < 1e-8 * lost  # it has come free
 
 
 def test_free_flight_under_torque_and_quadratic_drag():
@@ -84,14 +84,14 @@ def test_free_flight_under_torque_and_quadratic_drag():
             "run.samples": "off",
         }
     )
-    ledger = check(scene, solve(scene))
+    balance = check(scene, solve(scene))
     gear = 1.5 / (1 + 8e-18 * 1.5 * 0.008 / I2)
     pinion = 6.0 + scene.drive.torque * 0.008 / I1
     # a hundred times the tolerance of 1e-9 per step
-    assert ledger.drive_work == pytest.approx(0.5 * I1 * (pinion**2 - 36.0), rel=1e-7, abs=0)
-    assert ledger.drag_loss == pytest.approx(0.5 * I2 * (2.25 - gear**2), rel=1e-7, abs=0)
-    assert (ledger.dry_loss, ledger.damping_loss, ledger.adhesion_loss) == (0.0, 0.0, 0.0)
-    assert (ledger.radius_work, ledger.stored_change, ledger.model_change) == (0.0, 0.0, 0.0)
+    assert balance.drive_work == pytest.approx(0.5 * I1 * (pinion**2 - 36.0), rel=1e-7, abs=0)
+    assert balance.drag_loss == pytest.approx(0.5 * I2 * (2.25 - gear**2), rel=1e-7, abs=0)
+    assert (balance.dry_loss, balance.damping_loss, balance.adhesion_loss) == (0.0, 0.0, 0.0)
+    assert (balance.radius_work, balance.stored_change, balance.model_change) == (0.0, 0.0, 0.0)
 
 
 def test_a_gear_that_dry_resistance_stops():
@@ -110,10 +110,10 @@ def test_a_gear_that_dry_resistance_stops():
         }
     )
     run = solve(scene)
-    ledger = check(scene, run)
-    assert ledger.dry_loss == pytest.approx(0.5 * I2 * 2.25, rel=1e-6, abs=0)
-    assert ledger.dry_loss == pytest.approx(3e-17 * np.ptp(run.samples["gear_angle"]), rel=1e-6, abs=0)
-    assert ledger.drive_work == 0.0
+    balance = check(scene, run)
+    assert balance.dry_loss == pytest.approx(0.5 * I2 * 2.25, rel=1e-6, abs=0)
+    assert balance.dry_loss == pytest.approx(3e-17 * np.ptp(run.samples["gear_angle"]), rel=1e-6, abs=0)
+    assert balance.drive_work == 0.0
 
 
 def test_work_of_torques_that_change():
@@ -132,20 +132,20 @@ def test_work_of_torques_that_change():
             "run.samples": "off",
         }
     )
-    ledger = check(scene, solve(scene))
+    balance = check(scene, solve(scene))
     turns = 2 * math.pi * frequency
     impulse = amplitude * (math.sin(turns * duration + 0.4) - math.sin(0.4)) / turns
     impulse += 0.5 * 3e-17 * 1e-3 + 3e-17 * (duration - 1e-3)
     pinion = 6.0 + impulse / I1
-    assert ledger.drive_work == pytest.approx(0.5 * I1 * (pinion**2 - 36.0), rel=1e-6, abs=0)
+    assert balance.drive_work == pytest.approx(0.5 * I1 * (pinion**2 - 36.0), rel=1e-6, abs=0)
 
 
 def test_gears_without_adhesion_lose_nothing():
     scene = HIGH.replace({"contact.asperity": "hertz", "contact.model": "asperity", "run.duration": 1e-4})
-    ledger = check(scene, solve(scene.replace({"run.samples": "off"})))
-    assert ledger.adhesion_loss == 0.0
+    balance = check(scene, solve(scene.replace({"run.samples": "off"})))
+    assert balance.adhesion_loss == 0.0
     # without the work of the changing radius the books would not balance by far
-    assert abs(ledger.radius_work) > 100 * abs(ledger.residual)
+    assert abs(balance.radius_work) > 100 * abs(balance.residual)
 
 
 # -- an independent quadrature ---------------------------------------------------------------------------------------
@@ -165,7 +165,7 @@ def test_energies_of_the_sampled_motion():
         }
     )
     run = solve(scene)
-    ledger, times = check(scene, run), run.time
+    balance, times = check(scene, run), run.time
     geometry, sigma = scene.geometry, scene.surface.roughness
     u, angle, speed, pinion = (
         run.samples[name] for name in ("transmission_error", "gear_angle", "gear_speed", "pinion_speed")
@@ -187,10 +187,10 @@ def test_energies_of_the_sampled_motion():
     kinetic = 0.5 * I2 * speed**2 + 0.5 * I1 * pinion**2
     drag = np.sum(0.5 * (speed[1:] ** 3 + speed[:-1] ** 3)) * 8e-18 * (times[1] - times[0])
     # six thousand trapezoids over some tens of oscillations, turning points met to half a sample
-    assert ledger.adhesion_loss == pytest.approx(adhesion_loss, rel=1e-3, abs=0)
-    assert ledger.radius_work == pytest.approx(radius_work, rel=1e-3, abs=0)
-    assert ledger.drag_loss == pytest.approx(drag, rel=1e-6, abs=0)
-    assert ledger.kinetic_change == pytest.approx(kinetic[-1] - kinetic[0], rel=1e-4, abs=0)
+    assert balance.adhesion_loss == pytest.approx(adhesion_loss, rel=1e-3, abs=0)
+    assert balance.radius_work == pytest.approx(radius_work, rel=1e-3, abs=0)
+    assert balance.drag_loss == pytest.approx(drag, rel=1e-6, abs=0)
+    assert balance.kinetic_change == pytest.approx(kinetic[-1] - kinetic[0], rel=1e-4, abs=0)
 
 
 def energies(delta, limit):
@@ -200,7 +200,7 @@ def energies(delta, limit):
 
 
 def walk(gap, limit, energy):
-    """Stored energy and booked losses along a path of gaps, per asperity and psi."""
+    """Stored energy and joining losses along a path of gaps, per asperity and psi."""
     x, w = np.polynomial.legendre.leggauss(160)
     joined, opening = gap[0], False
     stored, lost = np.zeros(gap.size), np.zeros(gap.size)
@@ -218,7 +218,7 @@ def walk(gap, limit, energy):
         e = 0.5 * (high - low) * x + 0.5 * (high + low)
         delta = limit * (e**2 - 1)
         stored[k] = np.sum(0.5 * (high - low) * w * 2 * limit * e * energy(delta) * psi(g + delta))
-        # what a closing contact joins is booked at its turning point
+        # what a closing contact joins is recorded at its turning point
         stored[k] += JOINING * (tail(g) - tail(joined)) if g < joined else 0.0
     return stored, lost
 
@@ -272,24 +272,24 @@ def test_residual_stays_within_its_bound(name):
     scene = CASES_OF_ALL_KINDS[name].replace({"run.samples": "off"})
     run = solve(scene)
     assert run.status == "finished"
-    ledger = check(scene, run)
-    assert ledger.time == pytest.approx(scene.run.duration, rel=1e-12, abs=0)
-    assert ledger.adhesion_loss > 0.0
+    balance = check(scene, run)
+    assert balance.time == pytest.approx(scene.run.duration, rel=1e-12, abs=0)
+    assert balance.adhesion_loss > 0.0
 
 
 @pytest.mark.parametrize("name", ["high bare", "slow roller"])
 def test_residual_falls_with_the_tolerance(name):
     scene = CASES_OF_ALL_KINDS[name].replace({"run.samples": "off"})
-    coarse, fine = (solve(scene, rtol=rtol).ledger for rtol in (1e-5, 1e-10))
+    coarse, fine = (solve(scene, rtol=rtol).balance for rtol in (1e-5, 1e-10))
     # five decades of tolerance; the residual's sign and size change from run to run by a factor of some
     assert fine.imbalance < 3e-3 * coarse.imbalance
 
 
-def test_both_backends_keep_the_same_ledger(monkeypatch):
+def test_both_backends_keep_the_same_balance(monkeypatch):
     """With IDA's own formulas, which the portable driver has to do with."""
     monkeypatch.setattr(native_driver, "run", partial(native_driver.run, as_ida=True))
     scene = HIGH.replace({"run.duration": 1e-6, "coating.sam_fraction": 0.5})
-    native, portable = (solve(scene, backend=backend).ledger for backend in ("native", "sksundae"))
+    native, portable = (solve(scene, backend=backend).balance for backend in ("native", "sksundae"))
     for name in native.__slots__:
         # the same steps but for rounding, on the scale of all that has moved
         assert getattr(portable, name) == pytest.approx(
@@ -301,7 +301,7 @@ def test_both_backends_keep_the_same_ledger(monkeypatch):
 
 
 def error_of_cubes(deviation, h):
-    """Error of the ledger's integral over h of the cube of a speed about 3, root mean square over where it starts."""
+    """Error of the balance's integral over h of the cube of a speed about 3, root mean square over where it starts."""
     x, w = np.polynomial.legendre.leggauss(12)
     errors = []
     for start in np.linspace(0.0, 2.0 * math.pi, 9)[:-1]:
@@ -369,21 +369,21 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
     sure = check(scene, solve(scene))
     monkeypatch.setattr("gearidae.engine.model.problem.ERRORS", math.inf)
     # over six steps at once, whatever comes of it, it would be out by 30 and 80 tolerances
-    assert abs(sure.residual) < 0.1 * abs(solve(scene).ledger.residual)
+    assert abs(sure.residual) < 0.1 * abs(solve(scene).balance.residual)
 
 
 def test_pairs_that_turn_round_between_two_looks():
-    """Steps and losses are the same wherever the ledger looks, and the work of the radius nearly so."""
+    """Steps and losses are the same wherever the balance looks, and the work of the radius nearly so."""
     scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.model": "asperity"})
     often, seldom = make_problem(scene), make_problem(scene)
     often.model.scene.balance_span = 0.0  # at every step and every root
-    ledgers = [
-        [block.ledger for block in native_driver.run(problem, 1e-8, 2, Tally())][-1]
+    balances = [
+        [block.balance for block in native_driver.run(problem, 1e-8, 2, Statistics())][-1]
         for problem in (often, seldom)
     ]
-    assert ledgers[0].adhesion_loss == ledgers[1].adhesion_loss
-    # 3e-8 if a loss were booked at the turning point, and taken from the power no sooner than the next look
-    assert abs(ledgers[0].radius_work - ledgers[1].radius_work) < 1e-9 * ledgers[0].throughput
+    assert balances[0].adhesion_loss == balances[1].adhesion_loss
+    # 3e-8 if a loss were recorded at the turning point, and taken from the power no sooner than the next look
+    assert abs(balances[0].radius_work - balances[1].radius_work) < 1e-9 * balances[0].throughput
 
 
 # -- a long run in pieces ---------------------------------------------------------------------------------------------
@@ -393,14 +393,14 @@ def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
     scene = HIGH.replace({"run.duration": 2e-3, "coating.sam_fraction": 0.0, "run.samples": "off"})
     starts = []
 
-    def take(block, tally, wall_time):
+    def take(block, statistics, wall_time):
         if block.checkpoint is not None and not starts:
-            starts.append(Start(block.checkpoint, tally, block.time))
+            starts.append(Start(block.checkpoint, statistics, block.time))
 
     whole = engine.follow(scene, take, backend="native")
     rest = engine.follow(scene, lambda *_: None, backend="native", begin=starts[0])
     assert 0.0 < starts[0].time < 2e-3
-    assert rest.ledger == whole.ledger
+    assert rest.balance == whole.balance
     at_checkpoint = engine.kept_at(scene, starts[0].checkpoint, "native")[0]
     assert at_checkpoint.time == pytest.approx(starts[0].time, rel=1e-12, abs=0)
     assert abs(at_checkpoint.residual) <= at_checkpoint.bound(scene.run.rtol, roller=False)
@@ -412,15 +412,15 @@ def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
     scene = gd.preset("roller_slow")
     run = solve(scene, backend=backend)
     assert run.statistics.skipped["elastic_deflection"] == 0
-    ledger = check(scene, run)
+    balance = check(scene, run)
     # the bodies give way: at the same height less is stored
-    assert ledger.model_change < -3 * abs(ledger.residual)
+    assert balance.model_change < -3 * abs(balance.residual)
 
 
 def test_looking_does_not_disturb():
     problem = make_problem(HIGH)
     before = [part.copy() for part in problem.model]
-    problem.ledger(1e-3, problem.start, np.zeros_like(problem.start))
+    problem.balance(1e-3, problem.start, np.zeros_like(problem.start))
     for part, was in zip(problem.model, before, strict=True):
         np.testing.assert_array_equal(part, was)
 
@@ -431,22 +431,22 @@ def test_looking_does_not_disturb():
 def test_the_ledger_is_in_the_dataset(tmp_path):
     scene = LOW.replace({"run.duration": 2e-3, "run.samples": 11})
     ds = gd.simulate(scene)
-    kept = json.loads(ds.attrs["ledger"])
+    kept = json.loads(ds.attrs["energy_balance"])
     given = kept["drive_work"] + kept["radius_work"] + kept["model_change"]
     lost = kept["drag_loss"] + kept["dry_loss"] + kept["damping_loss"] + kept["adhesion_loss"]
     left = given - lost - kept["stored_change"] - kept["kinetic_change"]
     assert kept["residual"] == pytest.approx(left, abs=1e-12 * kept["throughput"])
-    bound = solve(scene).ledger.bound(scene.run.rtol, roller=False)
+    bound = solve(scene).balance.bound(scene.run.rtol, roller=False)
     assert kept["residual_bound"] == pytest.approx(bound, rel=1e-12, abs=0)
     assert bound >= 10 * scene.run.rtol * kept["throughput"]
     archived = gd.simulate(scene, archive=tmp_path / "run.nc")
-    assert archived.attrs["ledger"] == ds.attrs["ledger"]
+    assert archived.attrs["energy_balance"] == ds.attrs["energy_balance"]
 
 
 def test_the_ledger_of_a_sweep(tmp_path):
     scene = LOW.replace({"run.duration": 2e-3, "run.samples": 11})
     swept = gd.sweep(scene, {"coating.sam_fraction": [0.5, 1.0]})
-    single = json.loads(gd.simulate(scene.replace({"coating.sam_fraction": 0.5})).attrs["ledger"])
+    single = json.loads(gd.simulate(scene.replace({"coating.sam_fraction": 0.5})).attrs["energy_balance"])
     for name in ("adhesion_loss", "residual", "throughput"):
         assert swept[name].attrs["units"] == "J"
         assert swept[name].sel(sam_fraction=0.5) == single[name]
