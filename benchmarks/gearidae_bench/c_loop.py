@@ -22,7 +22,7 @@ from gearidae.engine.integrate.root_finding import SHARPNESS
 from gearidae.engine.model.observe import observe
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.sundials.memory import POINTERS, note_addresses
-from gearidae.engine.sundials.names import newton_places, places, vector_places
+from gearidae.engine.sundials.names import newton_places, places
 from gearidae_bench.contender import BROKEN, Contender, Outcome
 from gearidae_bench.reference import end_of
 
@@ -95,7 +95,7 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     events, steps, calls = np.empty((BLOCK_EVENTS, 5)), np.zeros(1, np.int64), addresses()
     m.work.search.sharpness = SHARPNESS * tolerance
     observe(m, 0.0, y, rows[0])
-    where = opened.Places(places(), newton_places(), vector_places())
+    where = opened.Places(places(), newton_places())
     try:
         if opened.open_solver(handles, problem.located.place, callbacks(n, False), where, (y, yp, dky)) != 0:
             return BROKEN

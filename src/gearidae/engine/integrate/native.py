@@ -232,7 +232,7 @@ def run(
     place = problem.located.place
     elastic = bool(m.scene.nodes > 0)
     functions = callbacks(s.y.size, elastic, as_ida)
-    places = Places(sun.places(), sun.newton_places(), sun.vector_places())
+    places = Places(sun.places(), sun.newton_places())
     try:
         if open_solver(s.handles, place, functions, places, (s.y, s.yp, s.dky)) != 0:
             statistics.ending = Ending.SOLVER_FAILURE

@@ -15,7 +15,6 @@ from gearidae.engine.model.residual import jacobian, residual
 from gearidae.engine.sundials import memory as ptr
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import Functions
-from gearidae.engine.sundials.vectors import vector_operations
 
 __all__ = ["callbacks"]
 
@@ -164,18 +163,14 @@ def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Functions:
     """
     steps: tuple[Any, ...] = ()
     newton: tuple[Any, ...] = ()
-    vectors: tuple[Any, ...] = ()
     if elastic:
         slopes, set_up, solve = _bodies()
         model, steps = (_residual(), slopes, _weights), (set_up, solve)
     elif as_ida:
         model = (_residual(), _dense(), _weights)
     else:
-        newton, vectors = _newton(n), vector_operations(n)
+        newton = _newton(n)
         model = (_unasked, None, _weights)
     return Functions(
-        *(
-            np.array([f.address if f else 0 for f in part], np.int64)
-            for part in (model, steps, newton, vectors)
-        )
+        *(np.array([f.address if f else 0 for f in part], np.int64) for part in (model, steps, newton))
     )

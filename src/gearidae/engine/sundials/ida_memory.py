@@ -34,25 +34,21 @@ class Functions(NamedTuple):
     newton : ndarray, shape (3,) or (0,)
         Functions of the package's own nonlinear solver, see `gearidae.engine.integrate.newton`; none where SUNDIALS
         iterates.
-    vectors : ndarray, shape (4,) or (0,)
-        Operations on vectors, see `gearidae.engine.sundials.vectors`; none where SUNDIALS has its own.
     """
 
     model: Ints
     steps: Ints
     newton: Ints
-    vectors: Ints
 
 
 class Places(NamedTuple):
-    """Where SUNDIALS keeps the functions of linear solvers, nonlinear solvers and vectors.
+    """Where SUNDIALS keeps the functions of linear and nonlinear solvers.
 
-    See `gearidae.engine.sundials.names.places`, `newton_places` and `vector_places`.
+    See `gearidae.engine.sundials.names.places` and `newton_places`.
     """
 
     linear: Ints
     newton: Ints
-    vector: Ints
 
 
 @compiled(makes_arrays=True)
@@ -83,9 +79,6 @@ def open_solver(
     handles[YP] = sun.N_VMake_Serial(n, yp.ctypes.data, context)
     handles[DKY] = sun.N_VMake_Serial(n, dky.ctypes.data, context)
     sun.N_VEnableFusedOps_Serial(handles[Y], 1)  # the clones that IDA makes inherit them
-    if functions.vectors.size > 0:
-        for vector in (Y, YP, DKY):
-            memory.replace(handles[vector], places.vector, functions.vectors)
     solver = sun.IDACreate(context)
     handles[IDA] = solver
     flag |= sun.IDAInit(solver, functions.model[0], m.state.time, handles[Y], handles[YP])

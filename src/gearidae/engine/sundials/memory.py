@@ -182,7 +182,7 @@ OPERATIONS: Final = 64
 
 @compiled
 def replace(record: int, where: Ints, functions: Ints) -> None:
-    """Give a solver or a vector other functions.
+    """Give a solver other functions.
 
     Parameters
     ----------

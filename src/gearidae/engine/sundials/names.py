@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.sundials.memory import STEP, SYSTEM
 
-__all__ = ["newton_places", "places", "unavailable", "vector_places"]
+__all__ = ["newton_places", "places", "unavailable"]
 
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
@@ -44,13 +44,12 @@ def unavailable() -> str:
         binding.load_library_permanently(_cy_ida.__file__)
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
-    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, *OF_VECTORS, "SUNNonlinSol_Newton", SYSTEM, STEP)
+    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, STEP)
     if missing := [name for name in wanted if binding.address_of_symbol(name) is None]:
         return f"the SUNDIALS library lacks {', '.join(missing)}"
     try:
         places()
         newton_places()
-        vector_places()
     except RuntimeError as error:
         return str(error)
     return ""
@@ -65,14 +64,6 @@ OF_NEWTON: Final = (
     "SUNNonlinSolSetSysFn_Newton",
 )
 """Operations of the Newton iteration, in whose place the driver puts its own."""
-
-OF_VECTORS: Final = (
-    "N_VWrmsNorm_Serial",
-    "N_VLinearSum_Serial",
-    "N_VLinearCombination_Serial",
-    "N_VLinearSumVectorArray_Serial",
-)
-"""Operations of a vector that the driver replaces where there are few numbers."""
 
 
 @cache
@@ -124,27 +115,6 @@ def newton_places() -> NDArray[np.int64]:
         table = _table_place(newton, context)
         functions = _operations(newton, table, 13, OF_NEWTON, "nonlinear solvers")
         _call("SUNNonlinSolFree_Newton", _address(newton))
-    return np.array([table, *functions], dtype=np.int64)
-
-
-@cache
-def vector_places() -> NDArray[np.int64]:
-    """Where SUNDIALS keeps the functions of a vector, found like `places`.
-
-    Returns
-    -------
-    ndarray of int64, shape (5,)
-        Place of the table in a vector's record, those of `OF_VECTORS` in the table.
-
-    Raises
-    ------
-    RuntimeError
-        If anything is not where it could be.
-    """
-    with _bench() as (context, vector, _):
-        _call("N_VEnableFusedOps_Serial", vector, ctypes.c_int(1))
-        table = _table_place(vector.value, context)
-        functions = _operations(vector.value, table, 45, OF_VECTORS, "vectors")
     return np.array([table, *functions], dtype=np.int64)
 
 
