@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -248,6 +249,7 @@ def place_nodes(reach: float, nodes: int) -> tuple[Array, Array]:
     return x, weights
 
 
+@lru_cache(maxsize=16)
 def between_nodes(nodes: int, finer: int) -> Array:
     """Interpolation of an even function of u from nodes to points between them, by polynomials of degree seven.
 
@@ -261,7 +263,8 @@ def between_nodes(nodes: int, finer: int) -> Array:
     Returns
     -------
     ndarray, shape (finer * (nodes - 1) + 1, STENCIL)
-        Point m's shares of the nodes from ``min(max(m // finer - STENCIL // 2 + 1, 0), nodes - STENCIL)`` on.
+        Read-only. Point m's shares of the nodes from
+        ``min(max(m // finer - STENCIL // 2 + 1, 0), nodes - STENCIL)`` on.
     """
     matrix = np.zeros((finer * (nodes - 1) + 1, STENCIL))
     for m in range(matrix.shape[0]):
@@ -270,4 +273,5 @@ def between_nodes(nodes: int, finer: int) -> Array:
         for k in stencil:  # left of the middle lie the same values as right of it
             others = stencil[stencil != k]
             matrix[m, abs(k) - max(first, 0)] += np.prod((m / finer - others) / (k - others))
+    matrix.setflags(write=False)
     return matrix

@@ -175,9 +175,7 @@ def pair_contact(scene: Scene) -> PairContact:
     SceneError
         If the gears of the scene cannot mesh.
     """
-    fraction = scene.coating.sam_fraction
-    shares = ((fraction, scene.coated_surface), (1.0 - fraction, scene.surface))
-    parts = tuple((share, surface) for share, surface in shares if share > 0.0)
+    parts = tuple((share, surface) for surface, share in scene.materials() if share > 0.0)
     if scene.roller is not None:
         return PairContact(parts, scene.contact.asperity, scene.roller.radius, scene.roller.width)
     if scene.gears is None:

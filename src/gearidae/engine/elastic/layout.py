@@ -156,9 +156,7 @@ def node_grid(
 
 def _stretch(scene: Scene) -> float:
     """How far asperities stretch at most, in roughnesses."""
-    fraction = scene.coating.sam_fraction
-    shares = ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction))
-    return max(law_of(scene.contact.asperity, s).detach for s, share in shares if share > 0.0)
+    return max(law_of(scene.contact.asperity, s).detach for s, share in scene.materials() if share > 0.0)
 
 
 def deepest_gap(scene: Scene, bounds: ContactBounds) -> float:
@@ -216,7 +214,7 @@ def _static(
     scene: Scene, bounds: ContactBounds, deepest: float
 ) -> tuple[NodeGrid, Floats, list[tuple[Floats, float]]]:
     """Nodes of the widest contact in newtons, its influence coefficients, and its surfaces' laws with their scales."""
-    sigma, fraction = scene.surface.roughness, scene.coating.sam_fraction
+    sigma = scene.surface.roughness
     grid = node_grid(scene, bounds, 1.0, deepest, NODES)
     n = grid.nodes
     powers = grid.body[2 * n : (2 + grid.orders * n) * n].reshape(grid.orders, n, n)
@@ -224,7 +222,7 @@ def _static(
     kappa = np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
     unit = bounds.width * math.sqrt(2.0 * bounds.radius * sigma)
     surfaces = []
-    for surface, share in ((scene.surface, 1.0 - fraction), (scene.coated_surface, fraction)):
+    for surface, share in scene.materials():
         if share > 0.0:
             tip = asperity_of(surface)
             # a copy: numba compiles everything a second time for arrays that are read-only
