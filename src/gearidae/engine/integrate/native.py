@@ -123,19 +123,22 @@ def _sample(s: Stepper, rows: Floats) -> bool:
 
 
 @compiled
-def advance(s: Stepper, out: Output, budget: int) -> None:
+def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     """Run until a block of output is full, `budget` steps are done or the run is over.
 
     Parameters
     ----------
-    s : Stepper
-        ``s.m.work.driver`` says where the run stands.
+    place : int
+        Where the model lies, from `Located`; its ``work.driver`` says where the run stands.
+    arrays : Arrays
     out : Output
         Rows and events of this block.
     budget : int
         Steps to do at most.
     """
-    m, driver = s.m, s.m.work.driver
+    m = model_at(place)
+    s = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
+    driver = m.work.driver
     flag = driver.pending - 1
     if driver.pending < 0:  # a fresh start
         m.work.adams.wanted = m.work.adams.own
@@ -166,14 +169,6 @@ def advance(s: Stepper, out: Output, budget: int) -> None:
             driver.error = restart(s, next_stop(m))
     if driver.done != 0 or driver.error != 0:
         _count(s)
-
-
-@compiled
-def advance_at(place: int, arrays: Arrays, out: Output, budget: int) -> None:
-    """`advance`, told where the model lies."""
-    m = model_at(place)
-    stepper = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
-    advance(stepper, out, budget)
 
 
 def _next_budget(budget: int, seconds: float) -> int:
@@ -249,7 +244,7 @@ def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) ->
     beyond, budget = False, FIRST_STEPS
     while driver.done == 0 and driver.error == 0 and not beyond:
         started = time.monotonic()
-        advance_at(problem.located.place, s, out, budget)
+        advance(problem.located.place, s, out, budget)
         budget = _next_budget(budget, time.monotonic() - started)
         update_statistics(statistics, m.state.progress)
         statistics.ending = ending_of_flag(int(driver.error), elastic)
