@@ -136,7 +136,7 @@ class Ending(Enum):
     )
     DEFLECTION = (
         "deflection",
-        "the bodies give way too much for the asperity model; set contact.model to elastic",
+        "tooth-body deflection exceeds the limit of the asperity model; set contact.model to elastic",
     )
     TOO_DEEP = (
         "too_deep",

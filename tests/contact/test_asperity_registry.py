@@ -1,4 +1,4 @@
-"""A law of one's own: springs that join before they touch and let go farther out, registered and simulated with."""
+"""A law of one's own: springs that join before they touch and detach farther out, registered and simulated with."""
 
 import math
 from dataclasses import dataclass

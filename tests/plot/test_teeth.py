@@ -214,7 +214,7 @@ def test_untold_states_are_shown_as_such(run):
     coarse = run.isel(time=slice(None, None, 200), event=slice(0, 0))
     untold = next(state for state in tooth_contacts(coarse, coarse.time.values) if not state.told)
     figure = gd.plot.teeth(coarse, time=untold.time)
-    assert "not told by the record" in " ".join(ax.get_title(loc="left") for ax in figure.axes)
+    assert "not recoverable from the archive" in " ".join(ax.get_title(loc="left") for ax in figure.axes)
 
 
 def test_asperities_are_a_sample_of_the_model():

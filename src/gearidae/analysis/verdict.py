@@ -120,7 +120,7 @@ class RollerOutcome:
     status : str
         ``finished``, or why the solver ended early.
     verdict : str
-        ``rebounds`` if the roller has let go of the plane at the end and flies away; ``sticks`` if it
+        ``rebounds`` if the roller has detached from the plane at the end and flies away; ``sticks`` if it
         touched and is still in touch; ``flies`` if it has not touched; ``unfinished`` if the solver ended
         early.
     peak_force : float

@@ -44,7 +44,7 @@ def draw(
     picture : str or None
         Name of a function of `gearidae.plot`; None for the overview, or the map.
     output : Path or None
-        Image to write, its kind told by its ending; None for the archive's name with ``.png``, or ``.gif`` for a moving
+        Image to write, its format by its extension; None for the archive's name with ``.png``, or ``.gif`` for a moving
         picture.
     select : sequence of str
         ``dimension=value``: which run of a sweep.

@@ -1,7 +1,7 @@
 """Physics of one contact, plain numbers in SI units in and out.
 
 `asperity` is the law of one asperity (`register` adds another), `rough_pressure` two rough planes, `line_force` two
-teeth whose asperities alone give way, `elastic_line_force` two teeth whose bodies give way too. A surface is anything
+teeth of which only the asperities deform, `elastic_line_force` two teeth with elastic bodies. A surface is anything
 with the properties of `Surface`, such as ``scene.surface`` (bare) or ``scene.coated_surface``.
 
 Names are loaded on first use, so that a caller of one law does not pay for the others.

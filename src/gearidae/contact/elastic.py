@@ -1,4 +1,4 @@
-r"""Two teeth whose bodies give way too: the static curve of a rough roller on a rough half-space.
+r"""Two teeth with elastic bodies: the static curve of a rough roller on a rough half-space.
 
 At every node of a `LineGrid` the mean gap is that of the rigid shapes plus the deflection of both bodies,
 
@@ -115,7 +115,7 @@ def elastic_line_force(
     """Static force between two rough elastic teeth along a path of gaps, loading and unloading.
 
     The path starts from bodies far apart with nothing joined, closes to the first gap and then visits the others in
-    their order; asperities join, stretch and let go on the way, so that the same gap has another force on the way back.
+    their order; asperities join, stretch and detach on the way, so that the same gap has another force on the way back.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def elastic_line_force(
     nodes : int, optional
         Nodes on one side of the contact. For silicon teeth 24 bring the force to 1e-7 of its converged value while
         loading, and to 1e-5 of the loading force at the same gap while unloading, when the place where asperities
-        begin to let go travels across the nodes. A contact close to a fold wants more.
+        begin to detach travels across the nodes. A contact close to a fold wants more.
 
     Returns
     -------
@@ -244,7 +244,7 @@ def _fitted_grid(
     tail = _TAIL * layer.roughness + layer.reach
     least = math.sqrt(2.0 * radius * tail)
     reach = math.sqrt(2.0 * radius * (tail + max(-lowest_gap, 0.0)))
-    # Bodies that give way leave the contact narrower than the rigid shapes would: see on a coarse grid how much.
+    # Elastic bodies leave the contact narrower than the rigid shapes would: see on a coarse grid how much.
     for _ in range(4):
         if reach <= least:
             break

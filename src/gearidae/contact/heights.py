@@ -127,7 +127,7 @@ def heights_of(surface: Surface, law: str) -> Heights:
 def checked_gap_and_stretch(gap: ArrayLike, stretch: ArrayLike, heights: Heights) -> tuple[Array, Array]:
     """Broadcast gap and stretch [m] to one shape and return them in roughnesses.
 
-    A stretch below the distance of joining counts as that, one above the distance of letting go as that.
+    A stretch below the distance of joining counts as that, one above the distance of detachment as that.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """What a contact remembers: the height above which its asperities are joined.
 
-Asperities join when they touch, stretch when the surfaces part, and let go at the stretch limit dc. Let zeta be the
+Asperities join when they touch, stretch when the surfaces part, and detach at the stretch limit dc. Let zeta be the
 height above which they are joined. Along any monotone stretch of motion that began with zeta_k,
 
     zeta = min(max(zeta_k, h - dc), h),

@@ -1,4 +1,4 @@
-r"""Two teeth whose asperities alone give way: a rough roller on a rough plane.
+r"""Two teeth of which only the asperities deform: a rough roller on a rough plane.
 
 The gap opens as :math:`g + x^2/(2R)` along the contact, and with no bulk deflection every point moves in parallel, so
 that one stretch serves all of them. Adding the pressure up over x before the heights leaves one integral,

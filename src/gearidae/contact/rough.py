@@ -7,7 +7,7 @@ r"""Two rough planes: Fuller and Tabor's adhesion of Gaussian asperities, with a
 
 for asperities of density N and heights of standard deviation sigma at a mean gap h, each with the load P at its
 displacement delta. S is how far the most stretched asperity still in contact is extended: to the distance of joining
-while the surfaces approach (0 for laws whose asperities join when they touch), up to the distance of letting go while
+while the surfaces approach (0 for laws whose asperities join when they touch), up to the distance of detachment while
 they part (dc for JKR).
 
 References
@@ -179,7 +179,7 @@ def adhesion_loss_per_asperity(surface: Surface, asperity: str = "jkr") -> float
     Returns
     -------
     float
-        Minus the integral of the load from letting go to joining [J]; for JKR ``4/45 (1 + 6 * 4^(1/3)) P_c dc``.
+        Minus the integral of the load from detachment to joining [J]; for JKR ``4/45 (1 + 6 * 4^(1/3)) P_c dc``.
 
     Raises
     ------

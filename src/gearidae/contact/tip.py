@@ -182,7 +182,7 @@ def tabor_regime(mu: float) -> Literal["jkr", "transition", "dmt"]:
     -------
     {"jkr", "transition", "dmt"}
         JKR from 5 up and DMT up to 0.1, as in Johnson and Greenwood's adhesion map; the transition between. The map's
-        bounds have one digit, and `mu` is held against them at that: JKR begins at 4.5, DMT ends below 0.15.
+        bounds have one digit, and `mu` is compared with them at that: JKR begins at 4.5, DMT ends below 0.15.
 
     References
     ----------

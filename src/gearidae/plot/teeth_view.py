@@ -23,7 +23,7 @@ from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 __all__ = ["STATE_WORDS", "TeethView", "mesh_states", "nearest_pairs", "pairs_at_most", "teeth"]
 
 STATE_WORDS = {
-    ContactState.UNTOLD: "not told by the record",
+    ContactState.UNTOLD: "not recoverable from the archive",
     ContactState.OPEN: "open",
     ContactState.LOADING: "loading",
     ContactState.PARTLY_STRETCHED: "partly stretched",
@@ -282,7 +282,7 @@ def _caption(ax: Axes, one: ToothContact, factor: float, joined: float, *, narro
     lines = [
         f"Pair {one.pair}, {flank} flank",
         parted.join([f"gap {_quantity(one.gap, 'm')}", _force(one)]),
-        *([] if math.isnan(joined) else [f"joined asperities {joined:.2g}"]),
+        *([] if math.isnan(joined) else [f"expected asperities in contact {joined:.2g}"]),
         parted.join(_states(one)),
     ]
     size = "x-small" if narrow else "small"
@@ -298,7 +298,7 @@ def _caption(ax: Axes, one: ToothContact, factor: float, joined: float, *, narro
 
 def _force(one: ToothContact) -> str:
     if not math.isfinite(one.force):
-        return "force not told by the record"
+        return "force not recoverable from the archive"
     if one.force == 0.0:
         return "no force"
     return f"{'pushes' if one.force > 0.0 else 'pulls'} with {_quantity(abs(one.force), 'N')}"

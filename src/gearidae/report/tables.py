@@ -51,7 +51,7 @@ _ACCOUNT = (
     ("top_speed", "highest speed of the gear", "rad/s"),
     ("time_to_speed", "time until 95 % of it", "s"),
     ("time_at_rest", "held by dry resistance", "s"),
-    ("time_adhering", "held by adhesion", "s"),
+    ("time_adhering", "trapped by adhesion", "s"),
     ("held_by", "held at the end by", ""),
     ("largest_force", "largest force", "N"),
     ("largest_force_time", "time of the largest force", "s"),

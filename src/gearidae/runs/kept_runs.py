@@ -46,7 +46,7 @@ class KeptRuns:
     Each run is a netCDF file named by the hash of all that its result depends on: the scene (with its
     duration, samples and tolerance), the driver of the solver, and the versions of the software. It appears
     under its name only when it is complete. It is not forced onto the disk, which would take longer than many
-    a run; what a power failure leaves of it is told by its checksum. Nothing in a file is ever executed.
+    a run; what a power failure leaves of it is found by its checksum. Nothing in a file is ever executed.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """The contact that a scene's estimates are made for: its force at a gap, where it rests, how stiff it is there.
 
 For gears this is one pair of teeth that touch at the pitch point under the mean torque of the drive. For a roller it
-is the impact's closest approach, with bodies that do not give way.
+is the impact's closest approach, with rigid bodies.
 """
 
 from __future__ import annotations

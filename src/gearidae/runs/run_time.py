@@ -131,7 +131,7 @@ def _passages(scene: Scene) -> float:
 
 
 def _is_elastic(scene: Scene, contact: PairContact, load: float) -> bool:
-    """Whether the bodies give way, or in ``auto`` will: by more than a fiftieth of the roughness under the load."""
+    """Whether the bodies deflect, or in ``auto`` will: by more than a fiftieth of the roughness under the load."""
     if scene.contact.model != "auto":
         return scene.contact.model == "elastic"
     modulus = asperity_of(contact.surface).modulus

@@ -69,7 +69,7 @@ def validity(scene: Scene) -> pd.DataFrame:
     ----------
     scene : Scene
         A gear pair (its contact at the pitch point, at rest under the mean torque of the drive) or a roller (at its
-        closest approach, with bodies that do not give way).
+        closest approach, with rigid bodies).
 
     Returns
     -------

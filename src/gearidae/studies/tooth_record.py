@@ -9,7 +9,7 @@ relief s:
     g_i = b - u + s(\xi_i), \quad \xi_i = R_2 \varphi_2 - i p_b \qquad
     g_i^c = b + u + s(\xi_i^c), \quad \xi_i^c = 2 l_a - (R_2 \varphi_2 - (i + \tfrac12) p_b)
 
-Where a gap turned round between two samples is told by the recorded events.
+Where a gap turned round between two samples follows from the recorded events.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ class ContactState(IntEnum):
     PARTLY_STRETCHED = 2
     """Some are stretched, none has come to its limit."""
     FULLY_STRETCHED = 3
-    """The most stretched are letting go."""
+    """The most stretched are detaching."""
 
 
 @dataclass(frozen=True, slots=True)

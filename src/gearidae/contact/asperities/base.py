@@ -93,7 +93,7 @@ class AsperityLaw(ABC):
     def nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
         """Lay a quadrature rule of the load between two displacements.
 
-        The rule is laid out in a variable in which the load is smooth up to the displacement of letting go: here
+        The rule is laid out in a variable in which the load is smooth up to the displacement of detachment: here
         ``sqrt(displacement + detach)``, which serves any law that ends in a fold there.
 
         Parameters
@@ -115,7 +115,7 @@ class AsperityLaw(ABC):
         return displacement, 0.5 * span * w * 2.0 * root * self.load(displacement)
 
     def energy(self, displacement: ArrayLike) -> Floats:
-        """Energy that an asperity in contact stores: the integral of its load from letting go on.
+        """Energy that an asperity in contact stores: the integral of its load from detachment on.
 
         Parameters
         ----------

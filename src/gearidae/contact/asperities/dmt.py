@@ -43,7 +43,7 @@ class Dmt(AsperityLaw):
 
     @property
     def detach(self) -> float:
-        """Distance of letting go: none."""
+        """Distance of detachment: none."""
         return 0.0
 
     @property

@@ -34,7 +34,7 @@ class Hertz(AsperityLaw):
 
     @property
     def detach(self) -> float:
-        """Distance of letting go: none."""
+        """Distance of detachment: none."""
         return 0.0
 
     @property

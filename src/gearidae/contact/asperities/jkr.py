@@ -189,7 +189,7 @@ class Jkr(AsperityLaw):
 
     @property
     def detach(self) -> float:
-        """Distance of letting go: the stretch limit."""
+        """Distance of detachment: the stretch limit."""
         return self.limit
 
     @property

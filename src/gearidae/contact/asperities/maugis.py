@@ -164,7 +164,7 @@ class Maugis(AsperityLaw):
 
     @property
     def detach(self) -> float:
-        """Distance of letting go, at the fold."""
+        """Distance of detachment, at the fold."""
         return -self.length * self._marks[2]
 
     @property

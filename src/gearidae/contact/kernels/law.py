@@ -15,7 +15,7 @@ Hertz's is :math:`\Delta^{3/2}`. The law has three branches that join continuous
 Stretched asperities add :math:`t(Z, S) = \int_{-S}^0 \hat p\,\psi(Z + S + \Delta)\,d\Delta` to the loading branch,
 with t(Z, D) a function of one variable again.
 
-**Asperities that join before they touch**, at a distance :math:`d_\mathrm{on}`, and let go at :math:`d_\mathrm{off}`,
+**Asperities that join before they touch**, at a distance :math:`d_\mathrm{on}`, and detach at :math:`d_\mathrm{off}`,
 change nothing for those who use a table: Z is the joined height *plus* :math:`d_\mathrm{on}`, so that it lies in
 [G - D, G] with :math:`D = d_\mathrm{off} - d_\mathrm{on}`; S = G - Z is what an asperity is stretched beyond joining,
 and
@@ -128,7 +128,7 @@ def check_reach(law: AsperityLaw, roughness: float) -> None:
     Raises
     ------
     SceneError
-        If asperities join beyond `JOIN_HIGH` or let go beyond `STRETCH_HIGH` roughnesses.
+        If asperities join beyond `JOIN_HIGH` or detach beyond `STRETCH_HIGH` roughnesses.
     """
     for what, reach, limit in (("stretch", law.detach, STRETCH_HIGH), ("join over", law.join, JOIN_HIGH)):
         if reach > limit:

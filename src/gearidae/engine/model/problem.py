@@ -125,7 +125,7 @@ class Problem:
         """
         m = self.model
         parts = (m.state.energy, m.work.quadrature, m.work.resistance)
-        # steps still to be gathered are not to be split by a look
+        # the quadrature interval is not to be split by a look at it
         kept, now = [part.copy() for part in parts], np.empty(BALANCE)
         balance_at(self.located.place, time, state, rates, now)
         balance = self._in_joules(time, *now.tolist())
