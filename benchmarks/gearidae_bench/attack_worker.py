@@ -142,7 +142,7 @@ def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: 
 
             faulthandler.register(signal.SIGUSR1, file)
         limit_memory()
-        extreme = extreme_scene(seed, number)
+        extreme = extreme_scene(seed, number, lambda: reports.send("drawing"))
         reports.send("begun")
         outcome = judge(extreme.scene, extreme.backend, budget, lambda: reports.send("alive"))
         reports.send(replace(outcome, number=number))

@@ -116,14 +116,11 @@ def current_pairs(m: Model, state: Record, y: Floats) -> NDArray[np.bool_]:
 
 def _within_reach(m: Model, h: Record, coast: int, y: Floats) -> bool:
     """Whether a pair is on the path of contact or so near that there is a force: its history is that of the state."""
-    if h.gap >= m.scene.cutoff:
-        return False
     if m.scene.kind != GEARS:
         return True
     along = m.scene.coast_phase + h.pair - y[PHASE] if coast else y[PHASE] - h.pair
-    return bool(
-        0.0 <= along <= m.scene.contact_ratio or gap_and_rate(m, coast, h.pair, y)[0] < m.scene.cutoff
-    )
+    on_path = 0.0 <= along <= m.scene.contact_ratio
+    return bool(on_path or gap_and_rate(m, coast, int(h.pair), y)[0] < m.scene.cutoff)
 
 
 # -- the run ---------------------------------------------------------------------------------------------------------
@@ -276,6 +273,8 @@ def _check_current(m: Model, s: Record, h: Record, coast: int, y: Floats) -> Non
     fastest = math.sqrt(2.0 * s.energy.peak_kinetic * _inverse_mass(m))
     slack_rate = (_SLACK_RATE + _SLACK_TOLERANCES * m.scene.rtol) * (1.0 + abs(rate) + fastest)
     require(abs(rate - h.gap_rate) <= slack_rate, "gap_rate", "that of its pair")
+    if gap >= m.scene.cutoff:
+        return
     require(rate * h.direction >= -slack_rate, "direction", "that of the gap's rate")
     # the elastic model has contact begin where deflected bodies do, and takes flags over from a model without
     other = slack + (_TAKEN_OVER if m.scene.nodes > 0 else 0.0)
