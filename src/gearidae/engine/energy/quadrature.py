@@ -84,9 +84,12 @@ def integral_of_cube(
     # of the cube of mean and deviation, the deviation itself leaves nothing
     f0, f1 = (3.0 * mean + a) * a * a, (3.0 * mean + b) * b * b
     start, end = 3.0 * (2.0 * mean + a) * a * rate0, 3.0 * (2.0 * mean + b) * b * rate1
-    share = 3.0 * abs(mean) + max(abs(a), abs(b))
-    # the second where steps are too long for the drag: their rates may be out at both ends alike
-    error = max(share * error_of_square(h, rate0, rate1), error_estimate(h, f0, f1, start, end))
+    error = (3.0 * abs(mean) + max(abs(a), abs(b))) * error_of_square(h, rate0, rate1)
+    corrected = abs(correction(h, start, end))
+    if corrected > 0.5 * h * (abs(f0) + abs(f1)):
+        error = max(
+            error, corrected
+        )  # the step is too long for the drag: rates may be out at both ends alike
     return abs(mean * mean * travel + integral(h, f0, f1, start, end)), error
 
 
