@@ -61,7 +61,7 @@ def bench(
         ),
     ] = False,
     kills: Annotated[
-        bool, Parameter(help="Kill runs and sweeps at random moments instead, resume them and compare.")
+        bool, Parameter(help="Kill runs, sweeps and maps at random moments instead, resume them and compare.")
     ] = False,
 ) -> int:
     """Measure run time against error on this machine, and compare it with other integrators."""

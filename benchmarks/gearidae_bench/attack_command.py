@@ -122,7 +122,7 @@ def _check_runs(runs: int, seed: int) -> None:
 
 
 def bench_kills(kills: int, seed: int) -> int:
-    """Kill runs and sweeps at random moments, resume them, and compare with undisturbed ones.
+    """Kill runs, sweeps and maps at random moments, resume them, and compare with undisturbed ones.
 
     Parameters
     ----------

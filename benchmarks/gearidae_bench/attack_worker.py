@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import gearidae as gd
 from gearidae import engine
 from gearidae.errors import SceneError
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EnergyBalance, EventKind
+from gearidae.records import EnergyBalance, EventKind, sampled_columns
 from gearidae.scene import Scene
 from gearidae_bench.extreme_scenes import extreme_scene
 
@@ -142,7 +142,7 @@ def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: 
 
             faulthandler.register(signal.SIGUSR1, file)
         limit_memory()
-        extreme = extreme_scene(seed, number)
+        extreme = extreme_scene(seed, number, lambda: reports.send("drawing"))
         reports.send("begun")
         outcome = judge(extreme.scene, extreme.backend, budget, lambda: reports.send("alive"))
         reports.send(replace(outcome, number=number))
@@ -208,7 +208,7 @@ def run_scene(
     -------
     Followed
     """
-    columns = GEAR_COLUMNS if scene.roller is None else ROLLER_COLUMNS
+    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
     found = Followed(rows[0], events[0])
     started = time.perf_counter()

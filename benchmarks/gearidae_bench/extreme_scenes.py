@@ -52,13 +52,15 @@ class Extreme:
     backend: str
 
 
-def extreme_scene(seed: int, number: int) -> Extreme:
+def extreme_scene(seed: int, number: int, alive: Callable[[], None] | None = None) -> Extreme:
     """Draw one scene and its driver; the same numbers give the same scene as long as the models' limits stay.
 
     Parameters
     ----------
     seed, number : int
         Of the run, and of the scene in it.
+    alive : callable, optional
+        Called before every try: thousands with 20,000 knots each take a minute on a busy machine.
 
     Returns
     -------
@@ -74,6 +76,8 @@ def extreme_scene(seed: int, number: int) -> Extreme:
     rolls = bool(rng.random() < _ROLLERS)  # once: gears are refused more often than rollers
     refused: SceneError | None = None
     for attempt in range(_TRIES):
+        if alive is not None:
+            alive()
         if attempt % _TRIES_EACH == 0:
             draw = _Draw(rng, float(rng.choice(FREE)))
         try:

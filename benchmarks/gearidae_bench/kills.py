@@ -1,7 +1,4 @@
-"""Kills at random moments: ``run`` and ``sweep`` are ended by SIGKILL, resumed, and compared with undisturbed ones.
-
-A coating map keeps nothing until it is whole, so that there is nothing of it to resume.
-"""
+"""Kills at random moments: run, sweep and coating-map are ended by SIGKILL, resumed, and compared with whole ones."""
 
 from __future__ import annotations
 
@@ -25,6 +22,10 @@ _COMMANDS = {
     "sweep": (
         "sweep", "teodorescu2009_low_speed", "--over", "coating.sam_fraction=1:0.5:-0.1",
         "--set", "run.duration=40 ms", "run.samples=2001", "--jobs", "1",
+    ),
+    "coating-map": (
+        "coating-map", "teodorescu2009_low_speed", "--jobs", "1", "--set", "run.samples=4001",
+        "--over", "coating.sam_fraction=1:0.8:-0.1", "drive.torque=4e-18,5e-18",
     ),
 }  # fmt: skip
 """Each takes a few seconds, of which its start is one."""
@@ -111,7 +112,8 @@ def _one(
     if process.returncode != 0:
         complaint = f"exit code {process.returncode}: {message[-300:]}"
     else:
-        complaint = difference(gd.open_archive(expected), gd.open_archive(target))
+        read = gd.analysis.open_map if command == "coating-map" else gd.open_archive
+        complaint = difference(read(expected), read(target))
     left = [
         path.name for path in target.parent.iterdir() if path.name.startswith(target.name) and path != target
     ]

@@ -242,6 +242,9 @@ class EnergyBalance:
     pitch_work : float
         Work of the reference load on both gears over one base pitch. Travels are counted within a pitch, so that their
         rounding errors cost this work times that of a double, however small the energies are; 0 of a roller.
+    speed_work : float
+        Kinetic energy that the speed to which the tolerance refers makes of the largest momenta: speeds are held to
+        absolute tolerances, which of a gear that is very much heavier than the other are much energy. 0 of a roller.
     """
 
     time: float
@@ -258,6 +261,7 @@ class EnergyBalance:
     quadrature_error: float = 0.0
     largest: float = 0.0
     pitch_work: float = 0.0
+    speed_work: float = 0.0
 
     @property
     def residual(self) -> float:
@@ -278,8 +282,8 @@ class EnergyBalance:
 
             (a \max(\mathrm{rtol}, a_t) + a_r)\, E + a_q D + a_p P
 
-        with E the energy that has moved: `throughput`, `largest`, `adhesion_loss` and the size of `stored_change`; D,
-        `quadrature_error`; and P, `pitch_work`. The
+        with E the energy that has moved: `throughput`, `largest`, `adhesion_loss` and the size of `stored_change`, with
+        `speed_work`; D, `quadrature_error`; and P, `pitch_work`. The
         first term is what errors of the motion leave: speeds and gaps are held to rtol, step by step, and the tables
         of force and energy agree no better than :math:`a_t`. The others are what the balance itself adds, by its
         quadratures and by rounding.
@@ -298,7 +302,9 @@ class EnergyBalance:
             `QUADRATURE_BOUND` and :math:`a_p` `TRAVEL_BOUND`.
         """
         of_motion = (ROLLER_BOUND if roller else GEAR_BOUND) * max(rtol, TABLE_BOUND) + ROUNDING_BOUND
-        moved = self.throughput + self.largest + self.adhesion_loss + abs(self.stored_change)
+        moved = (
+            self.throughput + self.largest + self.adhesion_loss + abs(self.stored_change) + self.speed_work
+        )
         return of_motion * moved + QUADRATURE_BOUND * self.quadrature_error + TRAVEL_BOUND * self.pitch_work
 
 

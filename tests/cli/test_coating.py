@@ -42,6 +42,15 @@ def test_map_over_torque(folder, capfd):
     assert gd.analysis.open_map("map.nc").characteristic_frequency.dims == ("torque", "sam_fraction")
 
 
+def test_a_map_without_impacts_says_so(folder, capfd):
+    over = ["coating.sam_fraction=1,0.8", "drive.torque=4e-18,5e-18 N m"]
+    arguments = ["coating-map", CASE, "--over", *over, "-o", "map.nc", "--set", "run.duration=5 ms"]
+    assert main(arguments) == 0
+    printed = capfd.readouterr().out
+    assert "SAM 80 %" in printed
+    assert "Hz" not in printed
+
+
 def test_assess_a_record_from_a_file(chart, folder, capfd):
     ds = gd.simulate(gd.preset(CASE).replace({"coating.sam_fraction": 0.72}))
     rows = np.column_stack([ds.time, ds.gear_speed])

@@ -9,6 +9,7 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.energy.quadrature import error_of_square, integral, integral_of_cube
+from gearidae.engine.model.build import make_problem
 from gearidae.records import (
     GEAR_BOUND,
     QUADRATURE_BOUND,
@@ -80,6 +81,9 @@ def test_the_bound_is_the_sum_of_its_parts():
     assert replace(moved, quadrature_error=7.0).bound(1e-6, roller=False) - moved.bound(
         1e-6, roller=False
     ) == pytest.approx(7.0 * QUADRATURE_BOUND, rel=1e-12)
+    assert replace(moved, speed_work=4.0).bound(1e-6, roller=False) == pytest.approx(
+        9.0 * (GEAR_BOUND * 1e-6 + ROUNDING_BOUND), rel=1e-12
+    )
     # no tolerance makes the tables any better
     assert moved.bound(1e-12, roller=False) == moved.bound(TABLE_BOUND, roller=False)
 
@@ -88,6 +92,28 @@ def test_a_travel_that_is_rounded_is_not_warned_of():
     """A gear held at rest by a torque: a rounding of a pitch, times the torque, is all that moves."""
     at_rest = EnergyBalance(**{**NOTHING, "pitch_work": 1e-17, "drive_work": 1e-17 * np.finfo(float).eps})
     assert abs(at_rest.residual) <= at_rest.bound(1e-6, roller=False) < 1e-17 * 1e-13
+
+
+def test_a_heavy_gear_is_known_no_better_than_its_speed():
+    """A flywheel on the pinion's shaft: the tolerance of its speed is worth more energy than contacts have."""
+    scene = HIGH.replace(
+        {
+            "gears.pinion_inertia": 1e-10,
+            "initial.gear_speed": 1e-2,
+            "contact.model": "asperity",
+            "run.rtol": 1e-8,
+            "run.duration": "1 ms",
+            "run.samples": "off",
+        }
+    )
+    heavy = solve(scene).balance
+    mass = scene.gears.pinion_inertia / scene.geometry.base_radius_pinion**2
+    momentum = math.sqrt(2.0 * heavy.largest * mass)
+    speed = heavy.speed_work / momentum  # the gear's share is next to nothing
+    problem = make_problem(scene)
+    unit = problem.model.scene.length_unit / problem.model.scene.time_unit
+    assert speed == pytest.approx(unit, rel=1e-3)
+    assert bound(scene, replace(heavy, speed_work=0.0)) < abs(heavy.residual) <= bound(scene, heavy)
 
 
 def test_the_largest_energies_are_those_of_the_motion(balances):
@@ -121,6 +147,14 @@ def test_the_error_of_a_square_is_as_estimated(h):
         errors.append(rule - exact)
         estimates.append(error_of_square(h, ends[2], ends[3]))
     assert 1.0 < mean_square(estimates) / mean_square(errors) < QUADRATURE_BOUND
+
+
+def test_drag_over_too_long_a_step_is_known_to_be_unknown():
+    """Rates that are out at both ends alike: the correction is many times the integral, and so is its error."""
+    value, estimate = integral_of_cube(1.0, 0.75, 1.0, -30.0, 0.5, -30.0)
+    at_most, at_least = 1.0, 0.5**3  # of a speed between those at the ends
+    assert value > at_most
+    assert 0.5 * (value - at_most) < estimate < 3.0 * (value - at_least)
 
 
 @pytest.mark.parametrize(("mean", "deviation"), [(3.0, 0.3), (3.0, 0.03), (1.0, 0.9), (0.3, 1.0)])

@@ -37,6 +37,23 @@ def test_an_extreme_scene_ends_with_a_name(number):
     assert reports or outcome.status == "refused"
 
 
+@pytest.mark.parametrize("law", ["roller", "gears"])
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_elastic_contacts_are_attacked_too(law, backend):
+    """They have one column more than others: a run that is cut short before its first sample has it as well."""
+    preset = gd.preset("roller_slow") if law == "roller" else LOW.replace({"run.duration": "1 ms"})
+    scene = preset.replace({"contact.model": "elastic", "run.samples": 101})
+    outcome = judge(scene, backend, STEPS, lambda: None)
+    assert outcome.status in ("finished", "budget"), outcome.message
+
+
+def test_drawing_a_scene_is_reported():
+    """Thousands of tries with 20,000 knots each are not to count as a hang."""
+    tries = []
+    assert extreme_scene(3, 17, lambda: tries.append(0)) == extreme_scene(3, 17)
+    assert tries
+
+
 def test_the_same_numbers_give_the_same_scene():
     assert extreme_scene(3, 17) == extreme_scene(3, 17)
     assert extreme_scene(3, 17) != extreme_scene(3, 18)

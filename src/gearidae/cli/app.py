@@ -173,12 +173,18 @@ def coating_map(
     output: Output = None,
     settings: Settings = None,
     jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    resume: Annotated[
+        bool, Parameter(help="Resume an interrupted map; its finished runs are reused.")
+    ] = False,
     overwrite: Overwrite = False,
 ) -> int:
-    """Map the frequency of the impact response against the SAM fraction."""
+    """Map the frequency of the impact response against the SAM fraction.
+
+    Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
+    """
     from gearidae.cli.coating import map_case
 
-    return map_case(str(case), over or [], output, settings or [], jobs, overwrite=overwrite)
+    return map_case(str(case), over or [], output, settings or [], jobs, resume=resume, overwrite=overwrite)
 
 
 @app.command

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import gearidae as gd
-from gearidae.archive import check_target, save
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import is_quiet, say
@@ -35,6 +34,7 @@ def map_case(
     settings: Sequence[str],
     jobs: int | None,
     *,
+    resume: bool,
     overwrite: bool,
 ) -> int:
     """Make a coating map of a case, keep it, show some of it.
@@ -52,6 +52,8 @@ def map_case(
         ``key=value`` pairs.
     jobs : int or None
         Runs at a time; None for one per core.
+    resume : bool
+        Whether to reuse the finished runs of an interrupted map.
     overwrite : bool
         Whether the map may replace a file.
 
@@ -69,9 +71,16 @@ def map_case(
     further = _TORQUE if usual_torques else values
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    check_target(target, overwrite=overwrite)
-    chart = gd.analysis.coating_map(scene, fractions, over=further, jobs=workers, progress=not is_quiet())
-    save(chart, target, overwrite=overwrite)
+    chart = gd.analysis.coating_map(
+        scene,
+        fractions,
+        over=further,
+        jobs=workers,
+        progress=not is_quiet(),
+        archive=target,
+        overwrite=overwrite,
+        resume=resume,
+    )
     show_rows(_rows(chart))
     say(f"Map: {target}")
     return DONE
@@ -101,6 +110,8 @@ def assess_signal(signal: Path, chart: Path, history: str) -> int:
 
 def _rows(chart: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     """Frequencies at some of the fractions, line by line."""
+    # without the impacts, of which there may be none
+    chart = chart[["characteristic_frequency", "uncertainty", "min_gear_speed"]]
     frequency = chart["characteristic_frequency"]
     further = [dim for dim in frequency.dims if dim != "sam_fraction"]
     lines = chart.stack(line=further) if further else chart.expand_dims("line")

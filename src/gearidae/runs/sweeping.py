@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["sweep"]
+__all__ = ["prepare_archive", "run_plan", "sweep"]
 
 
 def sweep(
@@ -106,26 +106,21 @@ def sweep(
     """
     base = prepare(scene, rtol=rtol, t_end=t_end, samples=samples, backend=backend)
     plan = plan_sweep(base, over, zipped=zipped)
-    workers = check_jobs(jobs)
+    check_jobs(jobs)
     check_executor(executor)
-    kept, whole = _prepare_archive(archive, plan, backend, overwrite=overwrite, resume=resume)
+    kept, whole = prepare_archive(
+        archive,
+        plan.scenes,
+        backend,
+        partial(_whole, plan=plan, backend=backend),
+        overwrite=overwrite,
+        resume=resume,
+    )
     if whole is not None:
         return whole
-    releases_gil = runs_in_threads(backend)
-    if not releases_gil and jobs is None:
-        workers = 1
-    with sweep_progress(progress, len(plan.scenes)) as report:
-        batch = _Batch(plan.scenes, backend, report, kept)
-        if resume:
-            batch.take_kept()
-        if executor is not None:
-            interrupted = batch.run(executor, in_process=False)
-        else:
-            with own_executor(workers, batch.left, releases_gil=releases_gil) as own:
-                interrupted = batch.run(own, in_process=releases_gil)
-                if interrupted and own is not None:
-                    stop(own)
-    ds = plan.stack(batch.solutions())
+    ds, interrupted = run_plan(
+        plan, kept if resume else None, kept, executor, backend=backend, jobs=jobs, progress=progress
+    )
     if archive is not None:
         save(ds, archive, overwrite=overwrite or resume)
     if interrupted:
@@ -138,31 +133,104 @@ def sweep(
     return ds
 
 
-def _prepare_archive(
-    archive: str | os.PathLike[str] | None, plan: SweepPlan, backend: str, *, overwrite: bool, resume: bool
+def run_plan(
+    plan: SweepPlan,
+    former: KeptRuns | None,
+    kept: KeptRuns | None,
+    executor: Executor | None,
+    *,
+    backend: str,
+    jobs: int | None,
+    progress: bool | SweepProgress,
+) -> tuple[xr.Dataset, bool]:
+    """Compute the runs of a sweep.
+
+    Parameters
+    ----------
+    plan : SweepPlan
+    former, kept : KeptRuns, optional
+        Where to take finished runs from, and where to keep those that finish.
+    executor, backend, jobs, progress
+        As for `sweep`.
+
+    Returns
+    -------
+    Dataset
+        As from `sweep`.
+    bool
+        Whether Ctrl-C ended it early.
+    """
+    workers, releases_gil = check_jobs(jobs), runs_in_threads(backend)
+    if not releases_gil and jobs is None:
+        workers = 1
+    with sweep_progress(progress, len(plan.scenes)) as report:
+        batch = _Batch(plan.scenes, backend, report, kept)
+        if former is not None:
+            batch.take(former)
+        if executor is not None:
+            interrupted = batch.run(executor, in_process=False)
+        else:
+            with own_executor(workers, batch.left, releases_gil=releases_gil) as own:
+                interrupted = batch.run(own, in_process=releases_gil)
+                if interrupted and own is not None:
+                    stop(own)
+    return plan.stack(batch.solutions()), interrupted
+
+
+def prepare_archive(
+    archive: str | os.PathLike[str] | None,
+    scenes: Sequence[Scene],
+    backend: str,
+    whole: Callable[[Path], xr.Dataset | None],
+    *,
+    overwrite: bool,
+    resume: bool,
 ) -> tuple[KeptRuns | None, xr.Dataset | None]:
-    """Where to keep finished runs, and the whole sweep if it is there already."""
+    """Find out where to keep finished runs, and whether all is done already.
+
+    Parameters
+    ----------
+    archive, backend, overwrite, resume
+        As for `sweep`.
+    scenes : sequence of Scene
+        All runs.
+    whole : callable
+        Told the archive that is there: its content if it holds all of these runs, None if some are missing; raises
+        `SceneError` if it is of others.
+
+    Returns
+    -------
+    KeptRuns, optional
+        None without an archive.
+    Dataset, optional
+        What is there, if it is all.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be written, or is there and may not be replaced.
+    """
     if archive is None:
         if resume:
             raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
         return None, None
     target = check_target(archive, overwrite=True)
-    kept = KeptRuns(target, plan.base, choose_backend(backend))
+    kept = KeptRuns(target, scenes[0], choose_backend(backend))
     count = kept.count()
     if resume:
         if count:
-            kept.note_strangers(plan.scenes)
+            kept.note_strangers(scenes)
         elif target.exists():
-            whole = _whole(target, plan, backend)
-            if whole is not None or overwrite:
-                return kept, whole
+            found = whole(target)
+            if found is not None or overwrite:
+                return kept, found
     elif count and overwrite:
         kept.remove()
     elif count:
         raise SceneError(
             "archive",
             archive,
-            f"is of a sweep that was cut off, {count} of its runs are in {kept.folder.name}: "
+            f"was cut off, {count} of its runs are in {kept.folder.name}: "
             "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)",
         )
     else:
@@ -213,11 +281,10 @@ class _Batch:
         """Number of runs that are to be computed."""
         return len(self._scenes) - len(self._done)
 
-    def take_kept(self) -> None:
+    def take(self, former: KeptRuns) -> None:
         """Read the runs that an unfinished sweep has kept."""
-        assert self._kept is not None
         for number, scene in enumerate(self._scenes):
-            solution = self._kept.take(scene)
+            solution = former.take(scene)
             if solution is not None:
                 self._done[number] = solution
                 self._reached[number] = 1.0

@@ -9,6 +9,7 @@ import itertools
 import os
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,21 +17,23 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from gearidae.analysis.impacts import WIDTH
+from gearidae.analysis.impacts import WIDTH, check_width
 from gearidae.analysis.map_model import require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
-from gearidae.archive import dimension_names
+from gearidae.archive import dimension_names, save
 from gearidae.archive.provenance import provenance
-from gearidae.errors import SceneError
+from gearidae.errors import Interrupted, SceneError
 from gearidae.scene import describe_key
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
+    from gearidae.runs.sweep_plan import SweepPlan
     from gearidae.scene import Scene
 
 __all__ = ["coating_map", "open_map", "require_map"]
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
+_FRACTION = "coating.sam_fraction"
 _TORQUE = "drive.torque"
 _PARTS_OF_TORQUE = (0.7, 0.85, 1.0, 1.15, 1.3)
 _HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
@@ -57,8 +60,14 @@ def coating_map(
     jobs: int | None = None,
     backend: str = "auto",
     progress: bool | SweepProgress = False,
+    archive: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
 ) -> xr.Dataset:
     """Characteristic frequency against SAM fraction (Teodorescu et al. 2009, Fig. 10).
+
+    With `archive`, every finished run is kept in a folder beside it (``MAP.nc.runs``) until the map is written, so that
+    a map that was cut off can be resumed.
 
     Parameters
     ----------
@@ -74,6 +83,13 @@ def coating_map(
         Of the impact windows, in pitches, see `impact_windows`.
     executor, jobs, backend, progress
         As for `sweep`.
+    archive : path-like, optional
+        File to write the map to.
+    overwrite : bool, optional
+        Whether `archive` may replace a file, and the runs of an unfinished map beside it be discarded.
+    resume : bool, optional
+        Take the runs that an unfinished map into `archive` has kept, and compute the others only. A file that holds
+        this very map already is returned as it is.
 
     Returns
     -------
@@ -86,7 +102,10 @@ def coating_map(
     Raises
     ------
     SceneError
-        If the scene is a roller, or a key, a value or a setting is not allowed.
+        If the scene is a roller, a key, a value or a setting is not allowed, or the archive cannot be written.
+    Interrupted
+        On Ctrl-C: a `KeyboardInterrupt` that carries the runs of the line under way as its ``dataset``. Finished runs
+        stay beside `archive`.
 
     Examples
     --------
@@ -94,28 +113,78 @@ def coating_map(
     >>> scene = gd.preset("teodorescu2009_low_speed")
     >>> chart = gd.analysis.coating_map(scene, [1.0, 0.8, 0.6, 0.5])  # doctest: +SKIP
     """
-    from gearidae.runs.sweeping import sweep  # reading and drawing maps must not wait for the solver
+    # reading and drawing maps must not wait for the solver
+    from gearidae.runs.executors import check_executor, check_jobs
+    from gearidae.runs.sweeping import prepare_archive, run_plan
 
     if getattr(scene, "gears", None) is None:
         raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
     fractions = _fractions(sam_fraction)
+    width = check_width(width)
     keys = _further_keys(scene, over)
+    check_jobs(jobs)
+    check_executor(executor)
+    plans = _plans(scene, fractions, keys, backend)
+    scenes = [one for plan in plans for one in plan.scenes]
+    held = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
+    expected = _attributes(scene, (_FRACTION, *keys), {}), {_FRACTION: fractions, **held}, width
+    kept, whole = prepare_archive(
+        archive, scenes, backend, partial(_whole, expected), overwrite=overwrite, resume=resume
+    )
+    if whole is not None:
+        return whole
     lines: list[xr.Dataset] = []
+    for plan in plans:
+        # one line at a time: what is kept of a run is a few numbers of some megabytes
+        runs, interrupted = run_plan(
+            plan, kept if resume else None, kept, executor, backend=backend, jobs=jobs, progress=progress
+        )
+        if interrupted:
+            where = "" if kept is None else f"the finished runs are in {kept.folder}; go on with --resume"
+            raise Interrupted(where, runs)
+        lines.append(_line(runs, width))
+    chart = _assembled(lines, held).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
+    if archive is not None and kept is not None:
+        save(chart, archive, overwrite=overwrite or resume)
+        kept.remove(scenes)
+    return chart
+
+
+def _plans(
+    scene: Scene, fractions: list[float], keys: Mapping[str, list[Any]], backend: str
+) -> list[SweepPlan]:
+    """Plan the runs of each line of the map, before any of them is run."""
+    from gearidae.runs.running import prepare
+    from gearidae.runs.sweep_plan import plan_sweep
+
+    plans = []
     for values in itertools.product(*keys.values()):
         changes = dict(zip(keys, values, strict=True))
-        # one line at a time: what is kept of a run is a few numbers of some megabytes
-        runs = sweep(
-            scene.replace(changes) if changes else scene,
-            {"coating.sam_fraction": fractions},
-            executor,
-            jobs=jobs,
-            backend=backend,
-            progress=progress,
+        base = prepare(
+            scene.replace(changes) if changes else scene, rtol=None, t_end=None, samples=None, backend=backend
         )
-        lines.append(_line(runs, width))
-    held = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
-    chart = _assembled(lines, held)
-    return chart.assign_attrs(_attributes(scene, ("coating.sam_fraction", *keys), lines[0].attrs))
+        plans.append(plan_sweep(base, {_FRACTION: fractions}))
+    return plans
+
+
+def _whole(expected: tuple[dict[str, Any], dict[str, list[Any]], float], target: Path) -> xr.Dataset:
+    """Return the map in a file if it is this one; refuse any other file."""
+    attributes, values, width = expected
+    chart = open_map(target)
+    names = dimension_names(tuple(values))
+    same = all(chart.attrs.get(name) == attributes[name] for name in ("scene", "source"))
+    same &= float(chart.attrs["width"]) == width
+    same &= all(
+        name in chart.coords and chart[name].values.tolist() == values[key] for key, name in names.items()
+    )
+    if not same:
+        raise SceneError(
+            "archive",
+            target,
+            "exists and is of another map, other settings or another version: name another, or allow "
+            "--overwrite (overwrite=True)",
+        )
+    return chart
 
 
 def open_map(path: str | os.PathLike[str]) -> xr.Dataset:
@@ -184,8 +253,8 @@ def _further_keys(scene: Scene, over: object) -> dict[str, list[Any]]:
             over,
             'must be "drive.torque" or a table of keys and values, {"drive.torque": [4e-18, 5e-18]}',
         )
-    if "coating.sam_fraction" in over:
-        raise SceneError("over", "coating.sam_fraction", "is the map's own axis: give it as sam_fraction")
+    if _FRACTION in over:
+        raise SceneError("over", _FRACTION, "is the map's own axis: give it as sam_fraction")
     keys: dict[str, list[Any]] = {}
     for key, values in over.items():
         if isinstance(values, str | Mapping) or not isinstance(values, Iterable):

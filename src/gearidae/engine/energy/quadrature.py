@@ -82,15 +82,15 @@ def integral_of_cube(
         return integral(h, q0 * w0, q1 * w1, start, end), error_estimate(h, q0 * w0, q1 * w1, start, end)
     a, b = w0 - mean, w1 - mean
     # of the cube of mean and deviation, the deviation itself leaves nothing
-    rest = integral(
-        h,
-        (3.0 * mean + a) * a * a,
-        (3.0 * mean + b) * b * b,
-        3.0 * (2.0 * mean + a) * a * rate0,
-        3.0 * (2.0 * mean + b) * b * rate1,
-    )
-    share = 3.0 * abs(mean) + max(abs(a), abs(b))
-    return abs(mean * mean * travel + rest), share * error_of_square(h, rate0, rate1)
+    f0, f1 = (3.0 * mean + a) * a * a, (3.0 * mean + b) * b * b
+    start, end = 3.0 * (2.0 * mean + a) * a * rate0, 3.0 * (2.0 * mean + b) * b * rate1
+    error = (3.0 * abs(mean) + max(abs(a), abs(b))) * error_of_square(h, rate0, rate1)
+    corrected = abs(correction(h, start, end))
+    if corrected > 0.5 * h * (abs(f0) + abs(f1)):
+        error = max(
+            error, corrected
+        )  # the step is too long for the drag: rates may be out at both ends alike
+    return abs(mean * mean * travel + integral(h, f0, f1, start, end)), error
 
 
 @compiled

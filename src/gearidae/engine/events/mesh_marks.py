@@ -11,10 +11,11 @@ from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model
 from gearidae.engine.model.tooth_pairs import gap_and_rate
 from gearidae.records import EventKind
 
-__all__ = ["cross_mark", "crossed_mark", "mark_guard", "set_marks"]
+__all__ = ["MARKS", "cross_mark", "crossed_mark", "first_mark", "mark_guard", "set_marks"]
 
 _MESH_ENTRY, _MESH_EXIT = float(EventKind.MESH_ENTRY), float(EventKind.MESH_EXIT)
-_KINDS: Final = 4
+MARKS: Final = 4
+"""Kinds of marks in each pitch."""
 
 
 @compiled(inline=True)
@@ -30,7 +31,7 @@ def crossed_mark(m: Model, y: Floats) -> bool:
 
 
 @compiled
-def _mark(m: Model, k: int) -> float:
+def first_mark(m: Model, k: int) -> float:
     """Phase of the first mark of each kind: drive entry and exit, coast exit and entry (it runs the other way)."""
     if k == 0:
         return 0.0
@@ -45,8 +46,8 @@ def _mark(m: Model, k: int) -> float:
 def set_marks(m: Model, phase: float) -> None:
     """Bracket the phase by the nearest mesh entries and exits of either flank."""
     low, high = -math.inf, math.inf
-    for k in range(_KINDS):
-        mark = _mark(m, k)
+    for k in range(MARKS):
+        mark = first_mark(m, k)
         whole = math.floor(phase - mark)
         low, high = max(low, whole + mark), min(high, whole + 1 + mark)
     m.state.mark_low, m.state.mark_high = low, high
@@ -58,8 +59,8 @@ def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int
     forward = y[PHASE] >= m.state.mark_high
     crossed = m.state.mark_high if forward else m.state.mark_low
     low, high = -math.inf, math.inf
-    for k in range(_KINDS):
-        mark = _mark(m, k)
+    for k in range(MARKS):
+        mark = first_mark(m, k)
         whole = math.floor(crossed - mark + 0.5)
         here = mark + whole
         if abs(crossed - here) < 1e-9:

@@ -13,7 +13,18 @@ from gearidae.engine.energy.balance import BALANCE, balance_at
 from gearidae.engine.extremes.follow import note_present
 from gearidae.engine.extremes.units import extremes_in_si
 from gearidae.engine.model import checkpoint as checkpoints
-from gearidae.engine.model.state import DRIVE, ENERGY, GEARS, LOAD, MATERIALS, Floats, Model, V, assign
+from gearidae.engine.model.state import (
+    DRIVE,
+    ENERGY,
+    GEARS,
+    LOAD,
+    MATERIALS,
+    Floats,
+    Model,
+    V,
+    assign,
+    blank_work,
+)
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
 from gearidae.engine.sundials.memory import Located
@@ -177,6 +188,16 @@ class Problem:
             largest=unit * (e["peak_kinetic"] + abs(e["start_stored"]) + abs(e["model_change"])),
             # both shafts' torques are at most the unit of force
             pitch_work=unit * float(2.0 / scene.phase_rate) if scene.kind == GEARS else 0.0,
+            speed_work=unit * self._momenta(e["peak_kinetic"]),
+        )
+
+    def _momenta(self, kinetic: float) -> float:
+        """Sum of what the momenta of both gears can be at a kinetic energy, scaled; 0 of a roller."""
+        s = self.model.scene
+        if s.kind != GEARS:
+            return 0.0
+        return sum(
+            math.sqrt(2.0 * kinetic / float(one)) for one in (s.pinion_inverse_mass, s.gear_inverse_mass)
         )
 
     def checkpoint(self, time: float, state: Floats) -> Floats:
@@ -212,6 +233,8 @@ class Problem:
     def restore(self, checkpoint: Floats, state: Floats) -> float:
         """Take a checkpoint of this problem back, in place, and return its time over tau.
 
+        Nothing is left of a run of this problem before: its work records are blank as for a start.
+
         Raises
         ------
         SceneError
@@ -219,6 +242,7 @@ class Problem:
         """
         m = self.model
         checkpoints.unpack(m, checkpoint, state)
+        blank_work(m.work)
         for k in range(m.scene.histories):
             for material in range(MATERIALS):
                 set_branches(m, k, material)

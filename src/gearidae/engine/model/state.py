@@ -47,6 +47,8 @@ __all__ = [
     "W",
     "assign",
     "blank_model",
+    "blank_work",
+    "empty_history",
 ]
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -432,6 +434,24 @@ class Model(NamedTuple):
 def assign(record: Record, other: Record) -> None:
     """Copy all fields of a record into another of the same kind."""
     record.setfield(other, record.dtype)
+
+
+def blank_work(work: Record) -> None:
+    """Forget what a run has left in the work records; how a driver searches and where compiled code lies stay."""
+    fresh = np.zeros(1, WORK)[0]
+    for name in ("elastic_service", "torque_law"):
+        fresh[name] = work[name]
+    for name in ("as_ida", "sharpness"):
+        fresh.search[name] = work.search[name]
+    fresh.driver.pending = -1  # the driver is to start
+    assign(work, fresh)
+
+
+def empty_history() -> Record:
+    """History that is about no pair."""
+    empty = np.zeros(1, HISTORY)[0]
+    empty.pair = EMPTY
+    return empty
 
 
 def blank_model(scene: Record, tables: Floats, rows: int) -> Model:

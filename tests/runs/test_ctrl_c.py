@@ -1,0 +1,118 @@
+"""Ctrl-C: a program ends within about a second wherever it is, and keeps what it has computed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import gearidae as gd
+from gearidae.scene import dump_case
+
+pytestmark = pytest.mark.skipif(
+    not Path("/proc/self/stat").exists(), reason="reads a process's time from /proc"
+)
+
+LOW = gd.preset("teodorescu2009_low_speed")
+SCENES = {
+    "rigid": gd.preset("teodorescu2009").replace({"run.duration": 1.0, "run.samples": 100_001}),
+    # thirty pairs a flank with nodes each: more than a thousand states
+    "wide": LOW.replace({"contact.model": "elastic", "mesh.tip_relief_radius": 0.04, "run.samples": 100_001}),
+}
+CPU = 3.0
+"""Seconds of the program's own time from the signal to its end: below 1 on an idle machine, more on a busy one,
+whose caches others use. A good half is what closing the archive imports."""
+
+PROGRAM = """
+import importlib, signal, sys
+
+from gearidae.cli import main
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
+place, name = sys.argv[1].split(":")
+module = importlib.import_module(place)
+real = getattr(module, name)
+
+def marked(*arguments, **options):
+    print("there", flush=True)
+    return real(*arguments, **options)
+
+setattr(module, name, marked)
+sys.exit(main(sys.argv[2:]))
+"""
+BUILD, CONTACT = "gearidae.engine.model.build", "gearidae.engine.model.build_contact"
+
+
+def cpu_of(pid):
+    """Time of a process [s], its system calls included."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def interrupted(scene, stage, calls, folder):
+    """Send SIGINT as a stage is entered for so many times: exit code, own time until the end, standard error."""
+    case, out = folder / "case.toml", folder / "out.nc"
+    case.write_text(dump_case(scene))
+    command = [sys.executable, "-c", PROGRAM, stage, "--quiet", "run", str(case), "-o", str(out)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        for _ in range(calls):
+            assert process.stdout.readline() == "there\n", process.communicate()[1]
+        before = cpu_of(process.pid)
+        process.send_signal(signal.SIGINT)
+        process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        assert process.stderr is not None
+        return process.returncode, usage.ru_utime + usage.ru_stime - before, process.stderr.read()
+    finally:
+        if process.returncode is None:
+            process.kill()
+            process.wait()
+        for stream in (process.stdout, process.stderr):
+            stream.close()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def warm():
+    """Compile what the scenes need: the time of that is none of the program's."""
+    for scene in SCENES.values():
+        gd.simulate(scene, t_end=1e-9, samples=11)
+
+
+@pytest.mark.parametrize(
+    ("scene", "stage", "calls"),
+    [
+        pytest.param("rigid", f"{CONTACT}:law_table", 1, id="tables"),
+        pytest.param("wide", f"{CONTACT}:deepest_gap", 1, id="layout of elastic nodes"),
+        pytest.param("wide", f"{CONTACT}:node_grid", 2, id="influence coefficients"),
+        pytest.param("wide", f"{BUILD}:settle_nodes", 1, id="settling of elastic nodes"),
+        pytest.param("wide", f"{BUILD}:settle_nodes", 2, id="settling for the run itself"),
+        pytest.param("rigid", "gearidae.engine.backend:run_blocks", 1, id="before the first step"),
+        pytest.param("wide", "gearidae.engine.backend:run_blocks", 1, id="before the first elastic step"),
+    ],
+)
+def test_before_the_first_block(scene, stage, calls, tmp_path):
+    code, spent, said = interrupted(SCENES[scene], stage, calls, tmp_path)
+    assert code == 130
+    assert spent < CPU
+    assert len(said.splitlines()) == 1, said
+    if (tmp_path / "out.nc").exists():
+        assert gd.open_archive(tmp_path / "out.nc").attrs["status"] == "interrupted"
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_between_blocks_what_is_computed_is_kept(scene, tmp_path):
+    stage = "gearidae.engine.integrate.native:update_statistics"
+    code, spent, said = interrupted(SCENES[scene], stage, 8, tmp_path)
+    assert code == 130
+    assert spent < CPU
+    assert len(said.splitlines()) == 1, said
+    with gd.open_archive(tmp_path / "out.nc") as part:
+        assert part.attrs["status"] == "interrupted"
+        assert part.sizes["time"] > 1
