@@ -185,9 +185,12 @@ def _check_extremes(e: Record, time: float) -> None:
     _require(
         e.lowest_speed <= e.highest_speed and e.smallest_force <= e.largest_force, "extremes", "in order"
     )
-    counts = (e.reversals, e.mesh_exits, e.held_exits)
+    counts = (e.reversals, e.mesh_exits, e.held_exits, e.turn_backs)
     _require(min(counts) >= 0 and e.held_exits <= e.mesh_exits, "counts of the extremes", "positive")
-    times = (e.largest_force_time, e.smallest_force_time, e.held_time, *e.part["time"])
+    times = (
+        *(e.largest_force_time, e.smallest_force_time, e.held_time, e.turn_back_time, e.adhering),
+        *e.part["time"],
+    )
     _require(all(0.0 <= one <= time for one in times), "times of the extremes", "in the past")
     for part in e.part:
         _require(part.begun in _FLAGS and part.lowest <= part.highest, "parts of the extremes", "in order")
