@@ -366,6 +366,11 @@ class Extremes:
         Mesh exits until then; all of them if it has not come to stand.
     turned_back : float
         How far it has been turned back since, in pitches; 0 if it has not.
+    turn_backs : int
+        How often the drive flank's adhesion has turned it back there; 0 unless it has come to stand.
+    time_adhering : float
+        How long adhesion has held it, there and elsewhere: from one turning back to the next within half a pitch, and
+        to where the run stands [s].
     mesh_exits : int
         Pairs of the drive flank that have left the path of contact.
     largest_mesh_force, smallest_mesh_force : float
@@ -391,6 +396,8 @@ class Extremes:
     stick_time: float
     stick_exits: int
     turned_back: float
+    turn_backs: int
+    time_adhering: float
     mesh_exits: int
     largest_mesh_force: float
     largest_mesh_force_time: float

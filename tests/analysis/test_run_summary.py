@@ -100,6 +100,11 @@ def test_adhesion_holds_a_worn_gear_and_lets_a_coated_one_go():
     assert worn.held_by == "adhesion"
     assert worn.time_at_rest == 0.0
     assert 0.1 < worn.time_adhering < 0.3
+    rocking = gd.simulate(LOW.replace({"coating.sam_fraction": 0.4, "run.samples": 300_001}))
+    speed, place = rocking.gear_speed.values, rocking.gear_angle.values * 76 / (2.0 * math.pi)
+    back = np.flatnonzero((speed[:-1] > 0.0) & (speed[1:] < 0.0))  # turned back, a microsecond apart
+    assert (np.abs(np.diff(place[back])) < 0.5).all()
+    assert worn.time_adhering == pytest.approx(0.3 - rocking.time[back[0]].item(), abs=1e-6)
     coated = account(gd.simulate(LOW))
     assert (coated.held_by, coated.time_adhering) == ("", 0.0)
 
@@ -114,10 +119,13 @@ def test_pieces_do_not_matter(braking, monkeypatch):
 
 
 def test_without_samples_and_of_rollers():
-    told = account(gd.simulate(LOW.replace({"run.samples": "off"})))
-    assert math.isnan(told.top_speed)
-    assert told.as_plain()["largest_force"] is None
-    assert told.drive_work > 0.0  # the balance needs no samples
+    worn = LOW.replace({"coating.sam_fraction": 0.4})
+    told, sampled = (account(gd.simulate(worn.replace({"run.samples": n}))) for n in ("off", 301))
+    assert math.isnan(told.time_to_speed)  # that of a sample
+    for name, value in sampled.as_plain().items():  # all else is kept by the solver
+        if name != "time_to_speed":
+            assert told.as_plain()[name] == value, name
+    assert told.drive_work > 0.0
     assert told.impacts > 0
     assert account(gd.simulate(gd.preset("roller_slow"))) is None
 

@@ -1,9 +1,10 @@
 """The account of a run: how long it took to speed, stood still and adhered, what forces it met, where energy went.
 
 Read from a dataset of any length in pieces; it stands beside the other readers of datasets, because the report needs it
-as well as the runs do. Times at rest come from the stick and slip events and are as exact as these. Energies are those
-of the energy balance that the engine kept at its own steps; of a run without one (which has been interrupted) nothing
-is said of energies.
+as well as the runs do. Times at rest come from the stick and slip events and are as exact as these. Extremes, the time
+held by adhesion and energies are those that the engine kept at its own steps; a run that is not at its end has none of
+them: its extremes and times are those of its samples, and nothing is said of energies. `Account.time_to_speed` always
+is that of a sample.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ Read = Callable[[str, slice], NDArray[Any]]
 PIECE = 2**18
 """Samples, or events, looked at together."""
 AT_SPEED = 0.95
-"""Share of its largest speed from which a gear counts as up to speed."""
+"""Share of its largest sampled speed from which a gear counts as up to speed."""
 _HELD_WITHIN = 0.5
 """Tooth pitches that a gear held by adhesion stays within."""
 _COLUMNS = (
@@ -54,13 +55,15 @@ class Account:
     top_speed : float
         Largest speed of the gear [rad/s].
     time_to_speed : float
-        When it first had `AT_SPEED` of that.
+        Time of the first sample with `AT_SPEED` of the largest sampled speed. NaN without samples, and of a gear that
+        never turns. An impact shorter than the interval between samples has no part in it.
     sticks, slips : int
         How often dry resistance took hold of the gear, and gave way.
     time_at_rest : float
         Held at rest by dry resistance.
     time_adhering : float
         Held by adhesion: turned back by teeth that cling to each other, again and again within half a pitch.
+        Counted from one turning back to the next there, and to the end if the gear is there still.
     held_by : str
         What holds the gear at the end: ``dry resistance``, ``adhesion``, or nothing.
     impacts : int
@@ -193,9 +196,11 @@ def account_of(
         force, force_time = _largest_force(extremes)
     at_rest, resting = incidents.rest(end, moved=top > 0.0)
     adhering, clinging = fine.adhering()
+    if extremes is not None:
+        adhering, clinging = extremes.time_adhering, extremes.turn_backs > 1
     return Account(
         top_speed=top,
-        time_to_speed=_time_to_speed(read, samples, top),
+        time_to_speed=_time_to_speed(read, samples, fine.top_speed),
         sticks=incidents.counts[EventKind.STICK],
         slips=incidents.counts[EventKind.SLIP],
         time_at_rest=at_rest,

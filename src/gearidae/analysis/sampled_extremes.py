@@ -35,7 +35,7 @@ def extremes_of_samples(run: xr.Dataset) -> Extremes | None:
         "smallest_mesh_force": force.low,
         "final_speed": float(speed[end - 1]),
     }
-    counts: dict[str, Any] = dict.fromkeys(("reversals", "stick_exits", "mesh_exits"), 0)
+    counts: dict[str, Any] = dict.fromkeys(("reversals", "turn_backs", "stick_exits", "mesh_exits"), 0)
     return Extremes(**shown, **counts) if roller else Extremes(**(shown | _of_gear(run, end)), **counts)
 
 
@@ -51,6 +51,7 @@ _FLOATS = (
     "last_min_gear_speed",
     "stick_time",
     "turned_back",
+    "time_adhering",
     "largest_mesh_force",
     "largest_mesh_force_time",
     "smallest_mesh_force",

@@ -168,6 +168,8 @@ _GEAR_EXTREMES = (
     ),
     Variable("stick_exits", (), "1", "mesh exits on the drive flank until then", np.int64),
     Variable("turned_back", (), "1", "pitches by which the gear has been turned back since it came to stand"),
+    Variable("turn_backs", (), "1", "how often adhesion has turned the gear back where it stands", np.int64),
+    Variable("time_adhering", (), "s", "time held by adhesion, from one turning back to the next"),
     Variable("mesh_exits", (), "1", "mesh exits on the drive flank", np.int64),
 )
 ENERGY_BALANCE: Mapping[str, Variable] = {variable.name: variable for variable in _ENERGY_BALANCE}

@@ -188,6 +188,28 @@ def coating_map(
 
 
 @app.command
+def threshold(
+    case: Case,
+    *,
+    over: Annotated[
+        str,
+        Parameter(help="Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7."),
+    ],
+    exits: Annotated[int, Parameter(help="Mesh exits to wait for.")] = 100,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    overwrite: Overwrite = False,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished search in the output file.")] = False,
+) -> int:
+    """Search where the gear begins to stick, against the number of mesh exits waited for."""
+    from gearidae.cli.threshold import search_threshold
+
+    given = settings or []
+    return search_threshold(str(case), over, exits, output, given, jobs, overwrite=overwrite, resume=resume)
+
+
+@app.command
 def assess(
     signal: Annotated[
         Path, Parameter(help="Gear speed over time: CSV (time [s], gear_speed [rad/s]) or netCDF.")

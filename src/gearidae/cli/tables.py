@@ -83,7 +83,7 @@ def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
         return "-" if told[name] is None else f"{told[name] * scale:.4g}"
 
     yield "Run summary", "", ""
-    yield "time to speed", f"{number('time_to_speed', 1e3)} ms", f"95 % of {number('top_speed')} rad/s"
+    yield "time to speed", f"{number('time_to_speed', 1e3)} ms", "first sample with 95 % of the largest"
     held = f"held by {told['held_by']} at the end" if told["held_by"] else ""
     times = "once" if told["sticks"] == 1 else f"{told['sticks']} times"
     yield (

@@ -33,7 +33,10 @@ def roller_force(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
 
 def roller_gap(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """Draw the height of the roller above the plane over time (Teodorescu et al. 2009, Fig. 3).
+    """Draw the separation of the roller and the plane over time (Teodorescu et al. 2009, Fig. 3).
+
+    Of elastic bodies it is ``min_separation``, the smallest distance of the deflected surfaces, as in the paper; of the
+    asperity model, whose bodies do not deflect, ``height``.
 
     Parameters
     ----------
@@ -51,6 +54,8 @@ def roller_gap(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset has no samples of it.
     """
+    if "min_separation" in ds and "time" in ds["min_separation"].dims:
+        return _draw(ds, ax, "min_separation", "m", "smallest separation")
     return _draw(ds, ax, "height", "m", "gap")
 
 

@@ -49,7 +49,7 @@ _PROVENANCE = (
 
 _ACCOUNT = (
     ("top_speed", "highest speed of the gear", "rad/s"),
-    ("time_to_speed", "time until 95 % of it", "s"),
+    ("time_to_speed", "first sample with 95 % of the largest", "s"),
     ("time_at_rest", "held by dry resistance", "s"),
     ("time_adhering", "trapped by adhesion", "s"),
     ("held_by", "held at the end by", ""),

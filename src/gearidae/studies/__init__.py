@@ -1,7 +1,8 @@
 """Studies: simulations, or the static contact, used to answer a question.
 
-`coating_map`, `starting_torque` and `static_starting_torque`, what the teeth did (`tooth_contacts`), and estimates on
-paper. The older names are those of `gearidae.analysis` too. Names are loaded on first use.
+`coating_map`, `sticking_threshold`, `starting_torque` and `static_starting_torque`, what the teeth did
+(`tooth_contacts`), and estimates on paper. The older names are those of `gearidae.analysis` too. Names are loaded on
+first use.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from gearidae.studies.coating_map import coating_map, open_map
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
+    from gearidae.studies.sticking_threshold import sticking_threshold
     from gearidae.studies.tooth_contacts import tooth_contacts
 
 __all__ = [
@@ -28,6 +30,7 @@ __all__ = [
     "starting_torque",
     "static_starting_torque",
     "steady_speed",
+    "sticking_threshold",
     "tooth_contacts",
     "validity",
 ]
@@ -42,6 +45,7 @@ _HOME = {
     "starting_torque": "starting_torque",
     "static_starting_torque": "starting_torque",
     "steady_speed": "gearidae.runs.estimates",
+    "sticking_threshold": "sticking_threshold",
     "tooth_contacts": "tooth_contacts",
     "validity": "gearidae.runs.validity",
 }

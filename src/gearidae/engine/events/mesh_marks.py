@@ -66,7 +66,7 @@ def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int
         if abs(crossed - here) < 1e-9:
             coast = COAST if k >= 2 else DRIVE
             begins = (k == 0 or k == 3) == forward
-            if coast == DRIVE and not begins:
+            if k < 2 and not begins:
                 m.state.extremes.mesh_exits += 1
             _, rate = gap_and_rate(m, coast, whole, y)
             count = record(m, events, count, t, _MESH_ENTRY if begins else _MESH_EXIT, whole, coast, rate)

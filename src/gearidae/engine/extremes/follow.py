@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.extremes.forces import first_force, follow_force
+from gearidae.engine.extremes.forces import first_force, follow_force, force_of_motion, note_corner
 from gearidae.engine.extremes.separation import follow_separation, note_separation, separation
 from gearidae.engine.extremes.speeds import follow_speed, next_part, note_speed, stand
 from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, U, V, W
@@ -12,7 +12,7 @@ __all__ = ["follow_extremes", "note_present", "note_rest", "restart_extremes"]
 
 
 @compiled(inline=True)
-def follow_extremes(m: Model, t: float, y: Floats, yp: Floats, event: bool) -> None:
+def follow_extremes(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) -> None:
     """Follow the extremes to an accepted time, before its events are handled.
 
     Parameters
@@ -23,24 +23,35 @@ def follow_extremes(m: Model, t: float, y: Floats, yp: Floats, event: bool) -> N
     y, yp : ndarray, shape (n,)
         State and rates there.
     event : bool
-        Whether something happens there.
+        Whether something happens there: the force may have a corner, over which no polynomial is laid.
+    spare : ndarray, shape (n,)
+        Work space.
     """
-    if t > m.work.track.time:
+    k = m.work.track
+    if t > k.time:
+        here = k.last + 1 if k.last < 2 else 0
+        _set_point(m, here, t, y, yp)
+        last, now = k.point[k.last], k.point[here]
         if m.scene.kind == GEARS:
-            follow_speed(m, t, y, yp)
-        follow_separation(m, t, y)
-        follow_force(m, t, y, yp, event)
-        _note_state(m, t, y, yp)
+            follow_speed(m, last, now)
+        follow_separation(m, last, now, y)
+        if k.smooth > 1:
+            follow_force(m, k.point[k.last - 1 if k.last > 0 else 2], last, now, spare)
+        k.time, k.last = t, here
+        k.smooth += 1
     if event:
+        k.smooth = 1
+        note_corner(m, k.point[k.last], y)
         note_present(m, y)
 
 
 @compiled(inline=True)
-def _note_state(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    k = m.work.track
-    k.time, k.travel, k.travel_rate = t, y[U], y[V]
+def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats) -> None:
+    p = m.work.track.point[i]
+    p.time, p.force = t, force_of_motion(m, t, y, yp)
+    p.travel, p.travel_rate, p.travel_bend = y[U], y[V], yp[V]
     if m.scene.kind == GEARS:
-        k.speed, k.speed_rate, k.place = y[W], yp[W], y[PHASE] + m.state.turns
+        p.speed, p.speed_rate, p.place = y[W], yp[W], y[PHASE] + m.state.turns
 
 
 @compiled
@@ -56,21 +67,21 @@ def note_present(m: Model, y: Floats) -> None:
 @compiled
 def note_rest(m: Model, t: float, y: Floats) -> None:
     """Note that an event has brought the gear to rest."""
-    k = m.work.track
-    if m.scene.kind == GEARS and y[W] <= 0.0 < k.speed:
+    p = m.work.track.point[m.work.track.last]
+    if m.scene.kind == GEARS and y[W] <= 0.0 < p.speed:
         stand(m, t, y[PHASE] + m.state.turns)
-        k.speed = y[W]
+        p.speed = y[W]
 
 
 @compiled
 def restart_extremes(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Go on from a start, where forces and accelerations may have jumped."""
-    e = m.state.extremes
+    e, k = m.state.extremes, m.work.track
     if e.begun == 0:
         e.lowest_speed = e.highest_speed = y[V] if m.scene.kind == ROLLER else y[W]
         e.separation = separation(m, y)
-    first_force(m, t, y, yp)
+    k.time, k.last, k.smooth, k.next_part = t, 0, 1, next_part(m)
+    _set_point(m, 0, t, y, yp)
+    first_force(m, t, k.point[0].force)
     e.begun = 1
     note_present(m, y)
-    _note_state(m, t, y, yp)
-    m.work.track.next_part = next_part(m)

@@ -7,7 +7,7 @@ import math
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.elastic.rows import first_unknown
-from gearidae.engine.model.state import ROLLER, Floats, Model, U, V
+from gearidae.engine.model.state import ROLLER, Floats, Model, Record, U
 from gearidae.engine.model.tooth_pairs import all_pairs, gap_and_rate, history_of, pair_at
 
 __all__ = ["follow_separation", "note_separation", "separation"]
@@ -40,13 +40,16 @@ def rigid_separation(m: Model, u: float) -> float:
 
 
 @compiled(inline=True)
-def follow_separation(m: Model, t: float, y: Floats) -> None:
-    """Follow the separation to an accepted time; elastic contacts turn round at events, which are accepted times."""
-    k = m.work.track
+def follow_separation(m: Model, last: Record, now: Record, y: Floats) -> None:
+    """Follow the separation to an accepted time, given as ``POINT`` beside the one before.
+
+    Elastic contacts turn round at events, which are accepted times.
+    """
     if m.scene.nodes > 0:
         note_separation(m, separation(m, y))
-    elif y[V] * k.travel_rate <= 0.0 and y[V] != k.travel_rate:
-        extreme = extreme_gap(t - k.time, k.travel, k.travel_rate, y[U], y[V])
+    elif now.travel_rate * last.travel_rate <= 0.0 and now.travel_rate != last.travel_rate:
+        h = now.time - last.time
+        extreme = extreme_gap(h, last.travel, last.travel_rate, now.travel, now.travel_rate)
         note_separation(m, rigid_separation(m, extreme))
 
 

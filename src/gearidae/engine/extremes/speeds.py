@@ -11,7 +11,8 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
-from gearidae.engine.model.state import PARTS, PHASE, Floats, Model, W
+from gearidae.engine.extremes.interpolation import cubic, cubic_slope
+from gearidae.engine.model.state import PARTS, Model, Record
 
 __all__ = ["follow_speed", "next_part", "note_speed", "stand"]
 
@@ -44,34 +45,29 @@ def next_part(m: Model) -> float:
 
 
 @compiled(inline=True)
-def follow_speed(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Follow the gear's speed from the last accepted time to this one."""
-    k = m.work.track
-    w, rate = y[W], yp[W]
-    if t >= k.next_part:
-        _begin_parts(m, t, y, yp)
-    turned = rate * k.speed_rate <= 0.0 and rate != k.speed_rate
-    if turned or (w <= 0.0 < k.speed):
-        _look_inside(m, t, w, rate, turned)
-    if m.state.extremes.held != 0 and _free(m, y):
-        m.state.extremes.held = 0
+def follow_speed(m: Model, last: Record, now: Record) -> None:
+    """Follow the gear's speed from the last accepted time to this one, given as ``POINT``."""
+    if now.time >= m.work.track.next_part:
+        _begin_parts(m, last, now)
+    turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
+    if turned or (now.speed <= 0.0 < last.speed):
+        _look_inside(m, last, now, turned)
+    if m.state.extremes.held != 0 and now.place - m.state.extremes.held_place > HELD_WITHIN:
+        m.state.extremes.held = 0  # it has turned on
 
 
 @compiled
-def _free(m: Model, y: Floats) -> bool:
-    """Whether a gear that had come to stand has turned on."""
-    return bool(y[PHASE] + m.state.turns - m.state.extremes.held_place > HELD_WITHIN)
-
-
-@compiled
-def _look_inside(m: Model, t: float, w: float, rate: float, turned: bool) -> None:
+def _look_inside(m: Model, last: Record, now: Record, turned: bool) -> None:
     """Locate an extremum of the speed within a step, and where it falls to zero."""
-    k = m.work.track
-    h = t - k.time
-    extreme = extreme_gap(h, k.speed, k.speed_rate, w, rate) if turned else w
-    if k.speed > 0.0 and min(w, extreme) <= 0.0:
-        share = _falls_to_zero(h, k.speed, k.speed_rate, w, rate)
-        stand(m, k.time + share * h, k.place + share * h * 0.5 * k.speed * m.scene.phase_rate)
+    h, extreme = now.time - last.time, now.speed
+    if turned:
+        extreme = extreme_gap(h, last.speed, last.speed_rate, now.speed, now.speed_rate)
+    if last.speed > 0.0 and min(now.speed, extreme) <= 0.0:
+        share = _falls_to_zero(h, last.speed, last.speed_rate, now.speed, now.speed_rate)
+        time = last.time + share * h
+        stand(m, time, last.place + share * h * 0.5 * last.speed * m.scene.phase_rate)
+        if last.travel > 0.0:  # the drive flank is the nearer
+            _turn_back(m, time)
     if turned:
         note_speed(m, extreme)
 
@@ -83,7 +79,7 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
     if w1 > 0.0:  # it rises again within the step: look before its minimum
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
-            if _slope(middle, h, w0, rate0, w1, rate1) < 0.0:
+            if cubic_slope(middle, h, w0, rate0, w1, rate1) < 0.0:
                 low = middle
             else:
                 high = middle
@@ -98,19 +94,6 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
 
 
 @compiled
-def cubic(s: float, h: float, f0: float, rate0: float, f1: float, rate1: float) -> float:
-    """Cubic with given values and rates at both ends, at a share of the way between them."""
-    return f0 + s * s * (3.0 - 2.0 * s) * (f1 - f0) + s * (1.0 - s) * h * ((1.0 - s) * rate0 - s * rate1)
-
-
-@compiled
-def _slope(s: float, h: float, f0: float, rate0: float, f1: float, rate1: float) -> float:
-    """Its slope there."""
-    ends = (1.0 - s) * (1.0 - 3.0 * s) * rate0 - s * (2.0 - 3.0 * s) * rate1
-    return 6.0 * s * (1.0 - s) * (f1 - f0) + h * ends
-
-
-@compiled
 def stand(m: Model, t: float, place: float) -> None:
     """Note that the speed has fallen to zero."""
     e = m.state.extremes
@@ -118,25 +101,34 @@ def stand(m: Model, t: float, place: float) -> None:
     note_speed(m, 0.0)
     if e.held == 0:
         e.held, e.held_time, e.held_place, e.held_exits = 1, t, place, e.mesh_exits
+        e.turn_backs = 0
 
 
 @compiled
-def _begin_parts(m: Model, t: float, y: Floats, yp: Floats) -> None:
+def _turn_back(m: Model, t: float) -> None:
+    """Note that teeth which cling to each other have turned the gear back, where it has just come to stand."""
+    e = m.state.extremes
+    if e.turn_backs > 0:
+        e.adhering += t - e.turn_back_time
+    e.turn_backs, e.turn_back_time = e.turn_backs + 1, t
+
+
+@compiled
+def _begin_parts(m: Model, last: Record, now: Record) -> None:
     """Begin those parts of the run whose time has come."""
-    k, e = m.work.track, m.state.extremes
-    h, place = t - k.time, y[PHASE] + m.state.turns
+    e, scale = m.state.extremes, m.scene.phase_rate
+    h = now.time - last.time
     for i in range(len(PARTS)):
         time = PARTS[i] * m.scene.end
-        if e.part[i].begun != 0 or t < time:
+        if e.part[i].begun != 0 or now.time < time:
             continue
-        share = (time - k.time) / h if h > 0.0 else 1.0
+        share = (time - last.time) / h if h > 0.0 else 1.0
         share = min(max(share, 0.0), 1.0)
-        w = cubic(share, h, k.speed, k.speed_rate, y[W], yp[W])
+        w = cubic(share, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         note_speed(m, w)
-        scale = m.scene.phase_rate
         e.part[i].begun, e.part[i].time = 1, time
-        e.part[i].place = cubic(share, h, k.place, scale * k.speed, place, scale * y[W])
+        e.part[i].place = cubic(share, h, last.place, scale * last.speed, now.place, scale * now.speed)
         e.part[i].lowest = e.part[i].highest = w
         if i == 0:
             e.top = e.bottom = w
-    k.next_part = next_part(m)
+    m.work.track.next_part = next_part(m)

@@ -51,7 +51,7 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         late_spread=spreads[1],
         last_min_gear_speed=speed * float(e.part[2].lowest) if e.part[2].begun else math.nan,
         final_speed=speed * float(y[W]),
-        **_standstill(e, tau, place),
+        **_standstill(e, tau, time, place),
         mesh_exits=int(e.mesh_exits),
         reversals=int(e.reversals),
     )
@@ -70,25 +70,30 @@ _NO_GEAR: Final[dict[str, Any]] = dict.fromkeys(
         "last_min_gear_speed",
         "stick_time",
         "turned_back",
+        "time_adhering",
     ),
     math.nan,
 )
-_NEVER: Final[dict[str, Any]] = {"reversals": 0, "stick_exits": 0, "mesh_exits": 0}
+_NEVER: Final[dict[str, Any]] = {"reversals": 0, "turn_backs": 0, "stick_exits": 0, "mesh_exits": 0}
 
 
-def _standstill(e: Record, tau: float, place: float) -> dict[str, Any]:
-    """Where and when the gear came to stand."""
+def _standstill(e: Record, tau: float, time: float, place: float) -> dict[str, Any]:
+    """Where and when the gear came to stand, and how long adhesion has held it."""
     if e.held:
         return {
             "stick_time": tau * float(e.held_time),
             "stick_exits": int(e.held_exits),
             "turned_back": max(float(e.held_place) - place, 0.0),
+            "turn_backs": int(e.turn_backs),
+            "time_adhering": tau * float(e.adhering + (time - e.turn_back_time if e.turn_backs > 1 else 0.0)),
         }
     never_moved = bool(e.highest_speed <= 0.0)
     return {
         "stick_time": 0.0 if never_moved else math.nan,
         "stick_exits": int(e.mesh_exits),
         "turned_back": max(-place, 0.0) if never_moved else 0.0,
+        "turn_backs": 0,
+        "time_adhering": tau * float(e.adhering),
     }
 
 

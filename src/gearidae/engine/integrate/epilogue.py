@@ -59,7 +59,7 @@ def finish_step(
     driver, t = m.work.driver, m.work.driver.time
     accept(m, t, y)
     follow_joining(m, t - m.work.track.time, y, yp[W] if m.scene.kind == GEARS else 0.0)
-    follow_extremes(m, t, y, yp, flag != 0)
+    follow_extremes(m, t, y, yp, flag != 0, between[0])
     _book(m, t, y, yp, between, flag)
     if m.state.bound_exceeded != 0:
         driver.error = BOUND_EXCEEDED

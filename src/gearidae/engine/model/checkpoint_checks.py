@@ -180,13 +180,16 @@ def _check_extremes(e: Record, time: float) -> None:
     """Check that extremes are in order, and times of the past."""
     require(e.begun in _FLAGS and e.held in _FLAGS, "flags of the extremes", "0 or 1")
     require(e.lowest_speed <= e.highest_speed and e.smallest_force <= e.largest_force, "extremes", "in order")
-    counts = (e.reversals, e.mesh_exits, e.held_exits)
+    counts = (e.reversals, e.mesh_exits, e.held_exits, e.turn_backs)
     require(
         min(counts) >= 0 and max(counts) <= _WHOLE_HIGH and e.held_exits <= e.mesh_exits,
         "counts of the extremes",
         "positive",
     )
-    times = (e.largest_force_time, e.smallest_force_time, e.held_time, *e.part["time"])
+    times = (
+        *(e.largest_force_time, e.smallest_force_time, e.held_time, e.turn_back_time, e.adhering),
+        *e.part["time"],
+    )
     require(all(0.0 <= one <= time for one in times), "times of the extremes", "in the past")
     for part in e.part:
         require(part.begun in _FLAGS and part.lowest <= part.highest, "parts of the extremes", "in order")

@@ -271,6 +271,9 @@ EXTREMES: Final = _record(  # of a run so far, at accepted times and located ext
     ("held_time", _REAL),  # the time and place of the first such, and the mesh exits until then
     ("held_place", _REAL),
     ("held_exits", _INT),
+    ("turn_backs", _INT),  # how often the drive flank's adhesion has turned the gear back there,
+    ("turn_back_time", _REAL),  # when it last did,
+    ("adhering", _REAL),  # and all times from one such to the next in the same place
     ("mesh_exits", _INT),  # on the drive flank
     ("largest_force", _REAL),  # along the line of action, mesh damping included; of a roller, on it
     ("largest_force_time", _REAL),
@@ -384,19 +387,23 @@ DRIVER: Final = _record(
     ("since", _INT),  # steps since the last checkpoint
 )
 
-TRACK: Final = (
-    _record(  # what the extremes are located from: the last accepted time, and forces at the last three
-        ("time", _REAL),
-        ("speed", _REAL),
-        ("speed_rate", _REAL),
-        ("place", _REAL),
-        ("travel", _REAL),  # transmission error, or height
-        ("travel_rate", _REAL),
-        ("next_part", _REAL),  # time at which the coming part of the run begins
-        ("forces", _INT),  # known since the force last had a corner
-        ("force_time", _REAL, (3,)),
-        ("force", _REAL, (3,)),
-    )
+POINT: Final = _record(  # of an accepted time, what extremes are located from
+    ("time", _REAL),
+    ("travel", _REAL),  # transmission error, or height, with its rate and acceleration
+    ("travel_rate", _REAL),
+    ("travel_bend", _REAL),
+    ("speed", _REAL),  # of the gear, its acceleration,
+    ("speed_rate", _REAL),
+    ("place", _REAL),  # and how far it has turned, in pitches
+    ("force", _REAL),
+)
+
+TRACK: Final = _record(  # of the extremes
+    ("time", _REAL),  # the last accepted time
+    ("point", POINT, (3,)),  # it, two before it, and in turn the time that is just accepted
+    ("last", _INT),  # where among them the last accepted time is
+    ("smooth", _INT),  # how many of them the force has passed since its last corner, that included
+    ("next_part", _REAL),  # time at which the coming part of the run begins
 )
 
 WORK: Final = _record(

@@ -1,0 +1,99 @@
+"""One run of `gearidae.studies.sticking_threshold`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from gearidae.errors import SceneError, SolverError
+from gearidae.runs.running import solve, unsolved
+
+if TYPE_CHECKING:
+    from gearidae.records import Solution
+    from gearidae.scene import Scene
+
+__all__ = ["ThresholdRun", "run_until", "value_of"]
+
+_LONGEST = 8.0
+"""A slow gear gets up to this many times the time; what it has not passed then counts as not passed."""
+
+
+@dataclass(frozen=True, slots=True)
+class ThresholdRun:
+    """What a run tells.
+
+    Attributes
+    ----------
+    value : float
+        Of the key, in SI units.
+    passed : int
+        Mesh exits until the gear stuck, or the run was over.
+    stick_time : float
+        When it stuck [s]; NaN if it has not.
+    window : float
+        Simulated time [s].
+    """
+
+    value: float
+    passed: int
+    stick_time: float
+    window: float
+
+    @classmethod
+    def of(cls, value: float, solution: Solution) -> ThresholdRun:
+        """Read a solution.
+
+        Raises
+        ------
+        SolverError
+            If the run could not be finished.
+        """
+        found = solution.extremes
+        if found is None or solution.status != "finished":
+            raise SolverError(
+                f"the run at {value:g} could not be finished: {solution.message or solution.status}",
+                time=solution.reached or 0.0,
+                state={},
+                last_event="not kept",
+                advice="try another rtol (run.rtol)",
+            )
+        return cls(value, found.stick_exits, found.stick_time, solution.reached or 0.0)
+
+
+def run_until(scene: Scene, exits: int, backend: str) -> Solution:
+    """Run a scene until the gear has stuck or passed so many exits, without its events.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the time that a gear without adhesion would take, and some more. A gear that neither sticks in it nor
+        passes the exits gets more time.
+    exits : int
+    backend : str
+        As for `simulate`.
+    """
+    duration, longest = scene.run.duration, _LONGEST * scene.run.duration
+    while True:
+        solution = solve(scene.replace({"run.duration": duration}), backend)
+        found = solution.extremes
+        slow = found is not None and math.isnan(found.stick_time) and found.mesh_exits < exits
+        if not slow or solution.status != "finished" or duration >= longest:
+            return replace(solution, events=unsolved("", "").events)
+        duration *= 2.0
+
+
+def value_of(scene: Scene, key: str) -> float:
+    """Value of a dotted key [SI].
+
+    Raises
+    ------
+    SceneError
+        If it is no number.
+    """
+    value: object = scene.to_dict()
+    for part in key.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise SceneError("over", key, "must be the key of a number")
+    return float(value)

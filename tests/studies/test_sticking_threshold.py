@@ -1,0 +1,124 @@
+"""The sticking threshold against runs of its own, and what may not matter to it."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearidae as gd
+from gearidae.analysis.verdict import outcomes
+from gearidae.cli import main
+from gearidae.errors import Interrupted
+from gearidae.runs.kept_runs import folder_beside
+from gearidae.studies import sticking_threshold as door
+
+LOW = gd.preset("teodorescu2009_low_speed")
+BETWEEN = (0.4, 0.6)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01)
+
+
+def test_runs_of_their_own_stick_and_turn_at_the_bracket(found):
+    """Six exits take 0.33 s at the steady speed of 1.5 rad/s: a run at either end says what the bracket says."""
+    one = found.sel(exits=5)
+    assert 0.0 < float(one.passes - one.sticks) <= 0.01
+    assert float(one.limit) == pytest.approx(0.5 * float(one.sticks + one.passes), rel=1e-15)
+    pitch = 2.0 * math.pi / (76 * 1.5)
+    for name, passed in (("sticks", False), ("passes", True)):
+        scene = LOW.replace({"coating.sam_fraction": float(one[name]), "run.duration": 9.0 * pitch})
+        (outcome,) = outcomes(gd.simulate(scene))
+        assert (outcome.mesh_exits >= 5) is passed
+
+
+def test_a_run_answers_for_all_numbers_of_exits(found):
+    assert found.exits.values.tolist() == [1, 2, 5]
+    assert np.isnan(found.limit.values[:2]).all()  # none sticks at the first two
+    later = gd.studies.sticking_threshold(LOW, between=(0.6, 0.4), exits=10, width=0.01)
+    assert float(later.limit.sel(exits=5)) == pytest.approx(float(found.limit[-1]), abs=0.01)
+    assert (
+        float(later.limit[-1]) > float(later.limit.sel(exits=5)) + 0.05
+    )  # the longer one waits the more sticks
+    stuck = later.exits_passed.values < 10
+    assert np.isfinite(later.stick_time.values[stuck]).all()
+    assert (later.stick_time.values[stuck] < later.simulated_time.values[stuck]).all()
+
+
+def test_executors_do_not_matter(found):
+    with ThreadPoolExecutor(1) as executor:
+        other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01, executor=executor)
+    assert other.drop_attrs().identical(found.drop_attrs())
+
+
+def test_cut_off_and_resumed_it_ends_alike(found, tmp_path):
+    target, told = tmp_path / "out.nc", []
+
+    def cut_off(done, total):
+        told.append((done, total))
+        if done == 3:
+            raise KeyboardInterrupt
+
+    settings = {"between": BETWEEN, "exits": 5, "width": 0.01, "archive": target}
+    with pytest.raises(Interrupted) as interrupted:
+        gd.studies.sticking_threshold(LOW, progress=cut_off, **settings)
+    assert interrupted.value.dataset.sizes["run"] == 3
+    assert not target.exists()
+    with pytest.raises(gd.SceneError, match="--resume"):
+        gd.studies.sticking_threshold(LOW, **settings)
+    whole = gd.studies.sticking_threshold(LOW, resume=True, **settings)
+    assert whole.drop_attrs().identical(found.drop_attrs())
+    assert not folder_beside(target).exists()
+    assert target.exists()
+    assert all(done <= total for done, total in told)
+
+
+@pytest.mark.parametrize(
+    ("settings", "key"),
+    [
+        ({"between": (0.9, 1.0)}, "between"),  # turns at both
+        ({"between": (0.5, 0.5)}, "between"),
+        ({"over": "contact.model", "between": ("elastic", "asperity")}, "over"),
+        ({"exits": 0}, "exits"),
+        ({"width": 0.0}, "width"),
+        ({"executor": 3}, "executor"),
+        ({"resume": True}, "resume"),
+    ],
+)
+def test_bad_requests_are_refused(settings, key):
+    with pytest.raises(gd.SceneError) as refused:
+        door(LOW, **({"between": BETWEEN, "exits": 2} | settings))
+    assert refused.value.key == key
+
+
+def test_scenes_without_a_threshold_are_refused():
+    with pytest.raises(gd.SceneError):
+        door(gd.preset("roller_slow"), between=BETWEEN)
+    with pytest.raises(gd.SceneError, match="schedule"):
+        door(LOW.replace({"drive.schedule": [[0.0, 0.0], [0.1, 1e-18]]}), between=BETWEEN)
+
+
+def test_the_command_prints_the_brackets(found, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    command = [
+        "threshold",
+        "teodorescu2009_low_speed",
+        "--over",
+        "coating.sam_fraction=0.4,0.6",
+        "--exits",
+        "5",
+    ]
+    assert main(command) == 0
+    told = capsys.readouterr().out
+    with xr.open_dataset("teodorescu2009_low_speed_threshold.nc") as kept:
+        limit = float(kept.limit[-1])
+    assert limit == pytest.approx(float(found.limit[-1]), abs=0.01)
+    assert "within 5 mesh exits" in told
+    assert f"{limit:.4g}" in told
+    assert "no run has stuck so early" in told
+    assert main([*command[:-1], "0", "--overwrite"]) == 2
