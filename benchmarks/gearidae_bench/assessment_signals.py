@@ -75,8 +75,10 @@ def _drift(time: Floats, speed: Floats, rng: np.random.Generator, *, by: float) 
     return speed + by * time / DURATION
 
 
-def _hum(time: Floats, speed: Floats, rng: np.random.Generator, *, amplitude: float) -> Floats:
-    return speed + amplitude * np.sin(2.0 * np.pi * (50.0 * time + rng.uniform()))
+def _tone(
+    time: Floats, speed: Floats, rng: np.random.Generator, *, frequency: float, amplitude: float
+) -> Floats:
+    return speed + amplitude * np.sin(2.0 * np.pi * (frequency * time + rng.uniform()))
 
 
 def _walk(time: Floats, speed: Floats, rng: np.random.Generator, *, by: float) -> Floats:
@@ -91,7 +93,8 @@ CONDITIONS: Mapping[str, Condition] = {
     "white noise, 0 dB": Condition(decibels=0.0),
     "white noise, -10 dB": Condition(decibels=-10.0),
     "random walk of 0.02 rad/s": Condition(change=partial(_walk, by=0.02)),
-    "hum of 50 Hz, 0.01 rad/s": Condition(change=partial(_hum, amplitude=0.01)),
+    "hum of 50 Hz, 0.01 rad/s": Condition(change=partial(_tone, frequency=50.0, amplitude=0.01)),
+    "tone of 3 kHz, 0.01 rad/s": Condition(change=partial(_tone, frequency=3e3, amplitude=0.01)),
     "offset of 0.02 rad/s": Condition(change=partial(_offset, by=0.02)),
     "gain 1 % too low": Condition(change=partial(_gain, by=0.99)),
     "drift of 0.05 rad/s": Condition(change=partial(_drift, by=0.05)),

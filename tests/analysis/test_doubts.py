@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from gearidae.analysis import doubts
 from gearidae.analysis.fitting import Heard, first_explanation
-from gearidae.analysis.ringing import Ring
+from gearidae.analysis.ringing import Ring, rings_of
 from gearidae.analysis.signal import Signal
 from reference.toy_map import heard, model
 
@@ -117,3 +118,72 @@ def test_a_sequence_that_no_image_explains_is_believed():
     record = told(0.97, 100e3)
     fit = first_explanation(model(), record, "start")
     assert doubts.alias(model(), record, fit, 100e3, math.inf) == ""
+
+
+def test_images_are_sought_at_other_torques_too():
+    """At 0.6 of the map's torque 0.55 rings at 5.4 and 8.5 kHz; at 7 kHz that shows as 1.6 and 1.5 kHz.
+
+    At the map's torque nothing shows so: 6.6 and 10.4 kHz would be 0.4 and 3.4 kHz.
+    """
+    slow = heard(0.55, torque=0.6, numbers=range(4))
+    shown = np.array([image(f, 7e3) for f in slow.frequency])
+    record = Heard(slow.numbers, shown, 0.002 * shown, slow.speed, 0.0)
+    # an answer that explains four impacts by 2.5 standard deviations each, and another fraction
+    fit = first_explanation(model(), heard(0.9), "start")
+    fit = replace(fit, chi2=fit.chi2 + 4 * 2.5**2)
+    assert doubts._image_of(model(), record, fit, 7e3, math.inf) == pytest.approx(0.55, abs=0.03)
+    as_map = Heard(slow.numbers, shown, 0.002 * shown, 1.0, 0.0)
+    assert math.isnan(doubts._image_of(model(), as_map, fit, 7e3, math.inf))
+
+
+def bursts(frequency, decay, tone=0.0):
+    """A gear whose speed rings after each pitch, in noise; and a tone throughout."""
+    pitch = 2.0 * math.pi / 76.0
+    since = np.mod(TIME - 0.02, pitch / 1.5)
+    late = TIME >= 0.02
+    ring = 0.01 * np.exp(-since / decay) * np.sin(2.0 * math.pi * frequency * since) * late
+    noise = 1e-4 * np.random.default_rng(5).standard_normal(len(TIME))
+    return 1.5 + ring + tone * np.sin(2.0 * math.pi * 3e3 * TIME) + noise
+
+
+@pytest.mark.parametrize(
+    ("values", "goes_on"),
+    [
+        (bursts(1300.0, 0.005), False),
+        (bursts(1300.0, 0.03), False),  # it takes a pitch of 55 ms to fall to a sixth
+        (bursts(1300.0, 0.005, tone=0.01), True),
+        (bursts(1300.0, 0.005, tone=2e-4), False),  # a tone that the ringing covers
+    ],
+)
+def test_a_tone_is_there_before_the_impacts_too(values, goes_on):
+    record = signal(values)
+    rings = rings_of(record, 0.2)
+    shown = [n for n, ring in enumerate(rings) if math.isfinite(ring.frequency)]
+    assert len(shown) >= 4
+    assert doubts.persistent(record, rings, shown, 0.2) == goes_on
+
+
+def test_the_first_impact_does_not_tell_a_tone():
+    record = signal(bursts(1300.0, 0.005, tone=0.01))
+    rings = rings_of(record, 0.2)
+    assert not doubts.persistent(record, rings, [0], 0.2)
+    assert not doubts.persistent(record, rings, [], 0.2)
+
+
+def test_another_torque_makes_slow_sampling_doubtful():
+    """The map's first impacts ring at up to 8.1 kHz: sampled at 19 kHz, some do not show."""
+    fit = first_explanation(model(), heard(0.97), "start")
+    for speed, rate, doubtful in (
+        (1.0, 19e3, False),
+        (1.02, 19e3, False),
+        (1.05, 19e3, True),
+        (1.05, 20e3, False),
+    ):
+        record = replace(heard(0.97), speed=speed)
+        said = doubts.alias(model(), record, fit, rate, math.inf)
+        assert ("a map over drive.torque can" in said) == doubtful
+    over = model([0.8, 1.2])
+    record = replace(heard(0.97), speed=1.05)
+    assert "drive.torque" not in doubts.alias(
+        over, record, first_explanation(over, record, "start"), 19e3, math.inf
+    )

@@ -50,7 +50,8 @@ class Assessment:
         - ``ambiguous``: quite different fractions do; `low` and `high` are the ends of what is possible.
         - ``no impacts``: nothing rings above the noise.
         - ``outside the map``: it rings lower or higher than anything in the map.
-        - ``does not fit``: no fraction of the map explains it, or the gear turns at another speed than in the map.
+        - ``does not fit``: no fraction of the map explains it, what stands out is no response to the impacts, or the
+          gear turns at another speed than in the map.
         - ``gear stops``: it stops, turns back, or turns more slowly than in any run of the map.
         - ``rounded too coarsely``: the ringing is smaller than the step to which the speed is rounded.
         - ``sampled too slowly``: what is heard could be the image of faster ringing.
@@ -128,7 +129,11 @@ def assess(
     batch = signals(data, gear_teeth=model.gear_teeth)
     if len(batch.signals) != 1:
         count, dim = len(batch.signals), batch.dims[0]
-        raise SceneError("signal", f"({count} runs)", f"must be one run: pick one with .sel({dim}=...)")
+        raise SceneError(
+            "signal",
+            f"({count} runs)",
+            f"must be one run: pick one with .sel({dim}=...), or --select {dim}=...",
+        )
     return judge(batch.signals[0], model, history, cutoff)
 
 
@@ -205,6 +210,8 @@ def judge(signal: Signal, model: MapModel, history: str, cutoff: float) -> Asses
     stopped = doubts.stop(signal, model)
     if stopped:
         return replace(silent, verdict="gear stops", explanation=_stop_words(stopped, heard))
+    if doubts.persistent(signal, rings, shown, model.width):
+        return replace(silent, verdict="does not fit", explanation=_tone_words(heard))
     fit = first_explanation(
         model, heard, history, may_be_start=_may_be_start(signal, model, rings, len(shown))
     )
@@ -236,6 +243,14 @@ def _stop_words(stopped: str, heard: Heard) -> str:
     return (
         f"{stopped}: adhesion holds it, or nothing drives it; that impacts ring at {_listed(heard.frequency)} Hz "
         "then says nothing about the coating"
+    )
+
+
+def _tone_words(heard: Heard) -> str:
+    """Why a tone says nothing about the contact."""
+    return (
+        f"what stands out after the impacts, at {_listed(heard.frequency)} Hz, is there before them too: a tone of "
+        "something else, and no response to the impacts"
     )
 
 

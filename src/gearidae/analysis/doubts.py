@@ -1,4 +1,4 @@
-"""What may be wrong with a record although a coating map explains it: a stopped gear, coarse rounding, aliasing."""
+"""What may be wrong with a record although a coating map explains it: stops, rounding, aliasing, interference."""
 
 from __future__ import annotations
 
@@ -6,14 +6,24 @@ import math
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
+from scipy.signal import detrend
 
 from gearidae.analysis.fitting import Fit, Heard, at_places
-from gearidae.analysis.impacts import angle_of
+from gearidae.analysis.impacts import angle_of, windows_of
 from gearidae.analysis.map_model import BEFORE, MapModel
-from gearidae.analysis.ringing import HIGHEST, Ring
-from gearidae.analysis.signal import Floats, Signal
+from gearidae.analysis.ringing import HIGHEST, Ring, piece_of
+from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal
 
-__all__ = ["alias", "quantum", "slower_than_map", "stop", "too_coarse", "unsteadiness", "widened"]
+__all__ = [
+    "alias",
+    "persistent",
+    "quantum",
+    "slower_than_map",
+    "stop",
+    "too_coarse",
+    "unsteadiness",
+    "widened",
+]
 
 _SMOOTH = 0.02
 """The speed is averaged over this part of a pitch before it is compared with the map's smallest."""
@@ -43,6 +53,12 @@ _LIKELY = 9.0
 """Images count as an explanation up to this loss of twice the log-likelihood: one in ninety."""
 _PRECISION = 0.005
 """Relative precision to which a ring that is no image is predicted by the map."""
+_OTHER_TORQUES = np.linspace(0.0, 1.0, 5)
+"""Shifts by another torque that are tried with a map at one torque, in parts of the largest that the speed allows."""
+_OTHER_SPEED = 0.03
+"""With a map at one torque, a speed that differs by more than this part from the map's is that of another torque."""
+_FADED = 0.5
+"""A ring falls below this part of its amplitude before the next impact; in all runs of the preset, to a hundredth."""
 
 
 def unsteadiness(signal: Signal) -> float:
@@ -188,6 +204,45 @@ def widened(ring: Ring, step: float) -> float:
     return math.hypot(ring.uncertainty, _ROUNDING * ring.frequency * min(1.0, step / ring.amplitude))
 
 
+def persistent(signal: Signal, rings: list[Ring], shown: list[int], width: float) -> bool:
+    """Whether what stands out after the impacts is there before them too: a tone of something else.
+
+    Parameters
+    ----------
+    signal : Signal
+        Gear speed, with the gear's teeth.
+    rings : list of Ring
+        Of all impacts.
+    shown : list of int
+        Which of them ring.
+    width : float
+        Of the windows, in pitches.
+
+    Returns
+    -------
+    bool
+        By the median over the impacts from the second on: before the first one the start may still ring.
+    """
+    windows, left = windows_of(signal, width), []
+    for number in shown:
+        _, start, stop = windows[number]
+        if number == 0 or 2.0 * start - stop < signal.start:
+            continue
+        after = piece_of(signal, start, stop)
+        before = piece_of(signal, 2.0 * start - stop, start)[-len(after) :]
+        if len(before) >= FEWEST_SAMPLES:
+            part = rings[number].frequency * signal.interval
+            left.append(_strength(before, part) / _strength(after, part))
+    return bool(left) and float(np.median(left)) > _FADED
+
+
+def _strength(piece: Floats, frequency: float) -> float:
+    """Amplitude at a frequency [in parts of the sampling rate] within a window, straight line taken out."""
+    turns = np.exp(-2j * math.pi * frequency * np.arange(len(piece)))
+    taper = np.hanning(len(piece))
+    return float(abs((detrend(piece) * taper * turns).sum()) / taper.sum())
+
+
 def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -> str:
     """Say so if what is heard could be the image of faster ringing.
 
@@ -206,8 +261,9 @@ def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -
     -------
     str
         Empty if it could not. It could if another fraction of the map rings, in its first three harmonics, above half
-        the sampling rate and its images explain the record; or if the record has fewer than three impacts and a
-        coating more worn than the map's could.
+        the sampling rate and its images explain the record; if the record has fewer than three impacts and a
+        coating more worn than the map's could; or if the torque is not that of the map and some of the map's first
+        impacts ring faster than the sampling shows.
     """
     if cutoff <= 0.5 * rate:
         return ""
@@ -219,6 +275,11 @@ def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -
             f"sampled at {rate:.3g} Hz without a low-pass filter, {len(heard.numbers)} impact(s) do not tell ringing "
             f"at these frequencies from images of ringing above {lowest_image:.3g} Hz"
         )
+    if model.highest_first > HIGHEST * rate and _at_another_torque(model, heard, fit):
+        return (
+            f"sampled at {rate:.3g} Hz without a low-pass filter, and at another torque than the map's by the gear's "
+            "speed, the record does not tell ringing from images of faster ringing; a map over drive.torque can"
+        )
     other = _image_of(model, heard, fit, rate, cutoff)
     if math.isnan(other):
         return ""
@@ -226,6 +287,13 @@ def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -
         f"sampled at {rate:.3g} Hz without a low-pass filter, the ringing of a SAM fraction of {other:.2f} would show "
         f"at the same frequencies"
     )
+
+
+def _at_another_torque(model: MapModel, heard: Heard, fit: Fit) -> bool:
+    """Whether the gear turns at another speed than in a map at one torque, so that all its frequencies are shifted."""
+    if model.torques is not None:
+        return False
+    return abs(math.log(heard.speed / float(model.speeds[0, fit.best]))) > _OTHER_SPEED
 
 
 def _image_of(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -> float:
@@ -243,14 +311,28 @@ def _image_of(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: floa
         predicted = at_places(sequences, places, steps[kept])
     if not kept.any():
         return math.nan
-    misfit, folded = _misfit_of_images(
-        np.exp(predicted), heard.frequency[kept], heard.uncertainty[kept], rate, cutoff
-    )
-    misfit = np.where(folded, misfit, np.inf).min(axis=1)
+    misfit = np.full(len(fractions), np.inf)
+    for shift in _shifts(model, heard):
+        each, folded = _misfit_of_images(
+            np.exp(predicted + shift[:, None, None]),
+            heard.frequency[kept],
+            heard.uncertainty[kept],
+            rate,
+            cutoff,
+        )
+        misfit = np.minimum(misfit, np.where(folded, each, np.inf).min(axis=1))
     possible = fit.possible
     misfit[(fractions > possible[0] - _APART) & (fractions < possible[-1] + _APART)] = np.inf
     best = int(misfit.argmin())
     return float(fractions[best]) if misfit[best] <= fit.chi2[fit.best] + _LIKELY else math.nan
+
+
+def _shifts(model: MapModel, heard: Heard) -> list[Floats]:
+    """Shifts of the logarithm of the frequencies of each fraction that another torque could cause."""
+    if model.torques is not None:
+        return [np.zeros(len(model.fractions[::_EVERY]))]
+    largest = np.nan_to_num(np.log(heard.speed / model.speeds[0, ::_EVERY]))
+    return [part * largest for part in _OTHER_TORQUES]
 
 
 def _misfit_of_images(

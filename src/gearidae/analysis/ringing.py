@@ -24,7 +24,15 @@ from scipy import signal as dsp
 from gearidae.analysis.impacts import LEAD, WIDTH, check_width, lowest_frequency, windows_of
 from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal, signals, stack
 
-__all__ = ["HIGHEST", "Ring", "characteristic_frequency", "impact_frequencies", "impact_spectrum", "rings_of"]
+__all__ = [
+    "HIGHEST",
+    "Ring",
+    "characteristic_frequency",
+    "impact_frequencies",
+    "impact_spectrum",
+    "piece_of",
+    "rings_of",
+]
 
 HIGHEST = 0.42
 """Ringing above this part of the sampling rate is left out: it could be the image of something still faster."""
@@ -212,7 +220,7 @@ def impact_spectrum(
     batch = signals(data, gear_teeth=gear_teeth)
     windows = [windows_of(each, check_width(width)) for each in batch.signals]
     pieces = [
-        [_piece(each, start, stop) for _, start, stop in rows]
+        [piece_of(each, start, stop) for _, start, stop in rows]
         for each, rows in zip(batch.signals, windows, strict=True)
     ]
     longest = max((len(piece) for row in pieces for piece in row), default=0)
@@ -278,7 +286,7 @@ def rings_of(signal: Signal, width: float) -> list[Ring]:
 def _ring(signal: Signal, window: Floats, teeth: int) -> Ring:
     """Response in one window, compared over shorter windows that begin alike."""
     impact, start, stop = window
-    piece = _piece(signal, start, stop)
+    piece = piece_of(signal, start, stop)
     if len(piece) < FEWEST_SAMPLES:
         return Ring(impact)
     lowest = lowest_frequency(piece, teeth)
@@ -288,7 +296,7 @@ def _ring(signal: Signal, window: Floats, teeth: int) -> Ring:
         return Ring(impact)
     same = [frequency]
     for part in _SHORTER:
-        piece = _piece(signal, start, start + part * (stop - start))
+        piece = piece_of(signal, start, start + part * (stop - start))
         if len(piece) < FEWEST_SAMPLES:
             continue
         other = _peak(piece, signal.rate, lowest, near=frequency).frequency
@@ -332,8 +340,20 @@ def _peak(piece: Floats, rate: float, lowest: float, near: float | None = None) 
     return _Peak(float(frequency[top] + shift * frequency[1]), random, amplitude, noise)
 
 
-def _piece(signal: Signal, start: float, stop: float) -> Floats:
-    """Samples of a window; none if it is not whole."""
+def piece_of(signal: Signal, start: float, stop: float) -> Floats:
+    """Samples of a window.
+
+    Parameters
+    ----------
+    signal : Signal
+    start, stop : float
+        Its ends [s]; NaN if it is not whole.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        None if it is not whole.
+    """
     if math.isnan(start):
         return np.empty(0)
     first = math.ceil((start - signal.start) / signal.interval - 1e-9)
