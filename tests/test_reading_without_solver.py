@@ -27,6 +27,7 @@ LIGHT = {
     "signal": "gd.analysis.read_signal(sys.argv[1])",
     "words": "from gearidae.analysis.verdict import outcomes; outcomes(ds)",
     "account": "from gearidae.analysis.run_summary import account; account(ds)",
+    "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 12",
     "checkpoints": "from gearidae.archive import GrowingArchive",
 }
 

@@ -121,6 +121,7 @@ WRONG = {
     "product_version": np.arange(2),
     "tabor_parameter_bare": "large",
     "account": "[1, 2]",
+    "validity": '[{"name": "expected_asperities", "value": "<script>"}]',
     "balance": '{"time": "<script>"}',
     "swept": '{"coating.sam_fraction": 1}',
     "swept ": '{"surface.roughness": [1e-9]}',

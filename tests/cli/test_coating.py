@@ -124,3 +124,76 @@ def test_a_file_that_is_no_map_is_one_line(content, folder, capfd):
     assert error.count("\n") == 1
     assert "xarray" not in error
     assert "engine" not in error
+
+
+def rows_of(ds, every=1):
+    return np.column_stack([ds.time, ds.gear_speed])[::every]
+
+
+def write_record(ds, every=1):
+    np.savetxt(
+        "rig.csv",
+        rows_of(ds, every),
+        delimiter=",",
+        header="time [s], gear_speed [rad/s]",
+        comments="",
+    )
+
+
+def test_a_filter_before_the_sampling_is_told(folder, capfd):
+    """At 12.5 kHz two impacts could be images of faster ringing, unless a filter has kept that out."""
+    assert main(["coating-map", CASE, "--over", "coating.sam_fraction=1:0.5:-0.05", "-o", "map.nc"]) == 0
+    write_record(
+        gd.simulate(gd.preset(CASE).replace({"coating.sam_fraction": 0.9}), t_end=0.11, samples=11001), 8
+    )
+    capfd.readouterr()
+    assert main(["assess", "rig.csv", "--map", "map.nc"]) == 0
+    assert capfd.readouterr().out.startswith("sampled too slowly: ")
+    for cutoff in ("4 kHz", "4000"):
+        assert main(["assess", "rig.csv", "--map", "map.nc", "--anti-alias-filter", cutoff]) == 0
+        assert capfd.readouterr().out.startswith("clear: SAM fraction 0.9")
+
+
+@pytest.mark.parametrize("cutoff", ["4 km", "fast", "-1", "0 Hz", "nan"])
+def test_a_filter_that_is_none_is_refused(cutoff, chart, folder, capfd):
+    write_record(gd.simulate(gd.preset(CASE), t_end=0.05, samples=5001))
+    assert main(["assess", "rig.csv", "--map", chart, f"--anti-alias-filter={cutoff}"]) == 2
+    error = capfd.readouterr().err
+    assert "anti" in error
+    assert error.count("\n") == 1
+
+
+def test_one_run_of_a_sweep_against_one_line_of_a_map(folder, capfd):
+    """The lines are at two torques; that of the run makes a clear answer, the other none that is near the truth."""
+    over = ["coating.sam_fraction=1:0.6:-0.1", "drive.torque=3.4e-18,4.5e-18"]
+    assert main(["coating-map", CASE, "--over", *over, "-o", "map.nc"]) == 0
+    assert main(["sweep", CASE, "--over", "coating.sam_fraction=1,0.72", "-o", "runs.nc"]) == 0
+    capfd.readouterr()
+    assess = ["assess", "runs.nc", "--map", "map.nc"]
+    assert main([*assess, "--select", "sam_fraction=0.72", "--line", "torque=4.5e-18"]) == 0
+    out = capfd.readouterr().out
+    assert out.startswith("clear: SAM fraction 0.72")
+    assert "torque" not in out
+    assert main([*assess, "--select", "sam_fraction=0.72", "--line", "torque=3.4e-18"]) == 0
+    assert not capfd.readouterr().out.startswith("clear: SAM fraction 0.72")
+    assert main([*assess, "--select", "sam_fraction=0.72"]) == 0
+    assert "the torque being 4.5" in capfd.readouterr().out
+    for wrong, words in (
+        ([], "--select sam_fraction=..."),
+        (["--select", "sam_fraction=0.5"], "must be one of 1, 0.72"),
+        (["--select", "torque=1"], "must be one of sam_fraction"),
+        (["--select", "sam_fraction=1", "--line", "drag=1"], "must be one of torque"),
+    ):
+        assert main([*assess, *wrong]) == 2
+        assert words in capfd.readouterr().err
+
+
+def test_lines_over_another_key_are_picked(folder, capfd):
+    over = ["coating.sam_fraction=1:0.6:-0.1", "load.drag=8e-18,9e-18"]
+    assert main(["coating-map", CASE, "--over", *over, "-o", "map.nc"]) == 0
+    write_record(gd.simulate(gd.preset(CASE).replace({"coating.sam_fraction": 0.72})))
+    capfd.readouterr()
+    assert main(["assess", "rig.csv", "--map", "map.nc"]) == 2
+    assert "--line drag=..." in capfd.readouterr().err
+    assert main(["assess", "rig.csv", "--map", "map.nc", "--line", "drag=8e-18"]) == 0
+    assert capfd.readouterr().out.startswith("clear: SAM fraction 0.72")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import itertools
+import json
 import multiprocessing
 import os
 import random
@@ -21,6 +22,7 @@ from gearidae.archive import growing
 from gearidae.cli import main
 from gearidae.engine.integrate import driver, native, portable
 from gearidae.runs import streaming
+from gearidae.runs.validity import validity_attribute
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
     {"coating.sam_fraction": 0.5, "run.duration": 0.01, "run.samples": 201}
@@ -47,7 +49,11 @@ def many_small_blocks(monkeypatch):
 
 
 def assert_same(one, other):
+    """Two archives, or an archive and what was computed in memory, which has no attribute ``validity``."""
     one, other = one.copy(), other.copy()
+    limits = validity_attribute(gd.Scene.from_dict(json.loads(one.attrs["scene"])))
+    for ds in (one, other):
+        assert ds.attrs.pop("validity", limits) == limits
     for name in MOMENTARY:
         one.attrs.pop(name)
         other.attrs.pop(name)

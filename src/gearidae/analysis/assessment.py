@@ -128,7 +128,11 @@ def assess(
     batch = signals(data, gear_teeth=model.gear_teeth)
     if len(batch.signals) != 1:
         count, dim = len(batch.signals), batch.dims[0]
-        raise SceneError("signal", f"({count} runs)", f"must be one run: pick one with .sel({dim}=...)")
+        raise SceneError(
+            "signal",
+            f"({count} runs)",
+            f"must be one run: pick one with .sel({dim}=...), or --select {dim}=...",
+        )
     return judge(batch.signals[0], model, history, cutoff)
 
 

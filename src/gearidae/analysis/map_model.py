@@ -214,7 +214,8 @@ def _torques(chart: xr.Dataset) -> Floats | None:
             raise SceneError(
                 "map",
                 f"(dimension {dim})",
-                f"has several lines: pick the signal's with .sel({dim}=...); only drive.torque is estimated",
+                f"has several lines: pick the signal's with .sel({dim}=...), or --line {dim}=...; "
+                "only drive.torque is estimated",
             )
     torques = np.sort(chart[_TORQUE].values.astype(np.float64))
     if len(torques) < 2 or torques[0] <= 0.0 or (np.diff(torques) <= 0.0).any():

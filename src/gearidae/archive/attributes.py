@@ -14,6 +14,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.variables import RUN, by_name
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
+from gearidae.scene.validity_row import ATTRIBUTE, holds_rows
 
 __all__ = ["readable_scene", "wrong_attribute"]
 
@@ -65,6 +66,8 @@ def wrong_attribute(ds: xr.Dataset) -> str:
     for name, is_sound, allowed in _TABLES:
         if name in ds.attrs and not is_sound(_table(ds.attrs[name])):
             return _told(name, ds.attrs[name], allowed)
+    if ATTRIBUTE in ds.attrs and not holds_rows(ds.attrs[ATTRIBUTE]):
+        return _told(ATTRIBUTE, ds.attrs[ATTRIBUTE], "a list of the limits of the model as JSON")
     for name in dimension_names(_table(ds.attrs.get("swept", "{}")) or {}).values():
         if name not in ds.coords:
             return (

@@ -187,16 +187,44 @@ def assess(
         Path, Parameter(help="Gear speed over time: CSV (time [s], gear_speed [rad/s]) or netCDF.")
     ],
     *,
-    map: Annotated[Path, Parameter(help="Coating map of the same gears at the same torque.")],  # noqa: A002
+    map: Annotated[  # noqa: A002
+        Path,
+        Parameter(
+            help="Coating map of the same gears at the torque of the signal; over drive.torque if that is not known."
+        ),
+    ],
     history: Annotated[
         str,
         Parameter(help="Whether the signal begins at the start of the map's runs: auto, start or unknown."),
     ] = "auto",
+    anti_alias_filter: Annotated[
+        str | None,
+        Parameter(
+            help="Cut-off frequency of a low-pass filter before the sampling, such as 4 kHz. Default: no filter."
+        ),
+    ] = None,
+    select: Annotated[
+        list[str] | None,
+        Parameter(
+            help="Select one run of a signal file with several: sam_fraction=0.5; repeatable.",
+            consume_multiple=False,
+        ),
+    ] = None,
+    line: Annotated[
+        list[str] | None,
+        Parameter(
+            help="Select one line of a map with several, such as a known torque: torque=4.5e-18; repeatable.",
+            consume_multiple=False,
+        ),
+    ] = None,
 ) -> int:
-    """Estimate from a speed signal how much of the coating is left."""
+    """Estimate from a speed signal how much of the coating is left.
+
+    With a map over drive.torque, the torque is estimated from the speed of the gear.
+    """
     from gearidae.cli.coating import assess_signal
 
-    return assess_signal(signal, map, history)
+    return assess_signal(signal, map, history, anti_alias_filter, select=select or [], line=line or [])
 
 
 @app.command

@@ -11,6 +11,7 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.validity_table import show_validity
+from gearidae.runs.pair_contact import contact_subject
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
@@ -45,17 +46,10 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     """
     scene = read_scene(case, settings)
     show_rows(_rows(scene))
-    show_validity(validity_rows(scene), about=_subject(scene))
+    show_validity(validity_rows(scene), about=contact_subject(scene))
     for doubt in doubts(scene):
         say(f"Warning: {doubt}")
     return DONE
-
-
-def _subject(scene: Scene) -> str:
-    """Contact that the limits of the model are computed for."""
-    if scene.roller is not None:
-        return "of the roller at its closest approach, with rigid bodies"
-    return "of one pair at the pitch point, at rest under the mean torque"
 
 
 def _rows(scene: Scene) -> Rows:

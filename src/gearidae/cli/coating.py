@@ -13,8 +13,9 @@ from gearidae.archive import check_target, save
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import is_quiet, say
+from gearidae.cli.selection import selected
 from gearidae.cli.tables import show_rows
-from gearidae.cli.values import default_output, sweep_values
+from gearidae.cli.values import default_output, quantity, sweep_values
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 
@@ -77,7 +78,15 @@ def map_case(
     return DONE
 
 
-def assess_signal(signal: Path, chart: Path, history: str) -> int:
+def assess_signal(
+    signal: Path,
+    chart: Path,
+    history: str,
+    anti_alias_filter: str | None,
+    *,
+    select: Sequence[str],
+    line: Sequence[str],
+) -> int:
     """Print what a signal says about the coating.
 
     Parameters
@@ -88,15 +97,29 @@ def assess_signal(signal: Path, chart: Path, history: str) -> int:
         Coating map.
     history : str
         ``auto``, ``start`` or ``unknown``.
+    anti_alias_filter : str or None
+        Cut-off frequency of a filter before the sampling, in hertz or with a unit.
+    select, line : sequence of str
+        ``dimension=value``: which run of a file with several, and which line of a map with several.
 
     Returns
     -------
     int
         Exit code: `DONE`, also where the signal cannot tell; that is an answer.
     """
-    found = gd.analysis.assess(signal, gd.analysis.open_map(chart), history=history)
+    cutoff = None if anti_alias_filter is None else quantity("--anti-alias-filter", anti_alias_filter, "Hz")
+    mapped = gd.analysis.open_map(chart)
+    record = gd.analysis.read_signal(signal)
+    record = selected(record, select, "--select", _dims(record["gear_speed"], "time"))
+    mapped = selected(mapped, line, "--line", _dims(mapped["characteristic_frequency"], "sam_fraction"))
+    found = gd.analysis.assess(record, mapped, history=history, anti_alias_filter=cutoff)
     say(f"{found.verdict}: {found.explanation}")
     return DONE
+
+
+def _dims(array: xr.DataArray, own: str) -> list[str]:
+    """Dimensions of an array beside its own."""
+    return [str(dim) for dim in array.dims if dim != own]
 
 
 def _rows(chart: xr.Dataset) -> Iterator[tuple[str, str, str]]:

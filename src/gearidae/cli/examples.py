@@ -21,7 +21,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
     "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
-    "assess": ("gearidae assess signal.csv --map map.nc",),
+    "assess": (
+        "gearidae assess signal.csv --map map.nc",
+        'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',
+        "gearidae assess sweep.nc --select sam_fraction=0.7 --map over_torque.nc --line torque=4.5e-18",
+    ),
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset teodorescu2009"),
     "info": ("gearidae info mine.nc",),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -13,11 +12,11 @@ import gearidae as gd
 from gearidae.archive.select import swept_dims
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
-from gearidae.cli.values import assignments, default_output
+from gearidae.cli.selection import selected
+from gearidae.cli.values import default_output, quantity
 from gearidae.errors import SceneError
 from gearidae.plot.files import MOVING
 from gearidae.scene.group import did_you_mean
-from gearidae.scene.units import from_text
 
 __all__ = ["draw"]
 
@@ -80,7 +79,7 @@ def draw(
         raise SceneError(*next(iter(given.items())), "needs --picture teeth")
     moves = bool(given.keys() - {"--time"})
     ds, usual = _open(archive)
-    ds = _selected(ds, select)
+    ds = selected(ds, select, "--select", swept_dims(ds) if select else ())
     if moves:
         if time is not None:
             raise SceneError(
@@ -90,14 +89,14 @@ def draw(
         target = gd.plot.animate_teeth(
             ds,
             output or default_output(str(archive), ".gif"),
-            start=0.0 if start is None else _seconds("--from", start),
-            stop=None if stop is None else _seconds("--to", stop),
+            start=0.0 if start is None else quantity("--from", start, "s"),
+            stop=None if stop is None else quantity("--to", stop, "s"),
             frames=100 if frames is None else frames,
             overwrite=overwrite,
         )
     else:
         target = output or default_output(str(archive), ".png")
-        at = {} if time is None else {"time": _seconds("--time", time)}
+        at = {} if time is None else {"time": quantity("--time", time, "s")}
         drawn = getattr(gd.plot, picture or usual)(ds, **at)
         figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
         assert figure is not None
@@ -120,37 +119,3 @@ def _open(archive: Path) -> tuple[xr.Dataset, str]:
         except SceneError:
             pass
         raise
-
-
-def _selected(ds: xr.Dataset, pairs: Sequence[str]) -> xr.Dataset:
-    """Pick runs of a sweep by the values of swept dimensions."""
-    if not pairs:
-        return ds
-    dims = swept_dims(ds)
-    for dim, value in assignments(pairs, "--select", "sam_fraction=0.5").items():
-        if dim not in dims:
-            known = f"must be one of {', '.join(dims)}" if dims else "there is only one run"
-            raise SceneError("--select", dim, known)
-        labels = ds[dim].values
-        numeric = np.issubdtype(labels.dtype, np.number) and isinstance(value, int | float)
-        # a value as it is printed is not always the same float
-        found = (
-            np.isclose(labels, value, rtol=1e-9, atol=0.0) if numeric else labels.astype(str) == str(value)
-        )
-        if not found.any():
-            shown = ", ".join(f"{each:g}" if numeric else str(each) for each in labels[:20])
-            raise SceneError(f"--select {dim}", value, f"must be one of {shown}")
-        ds = ds.isel({dim: int(np.flatnonzero(found)[0])})
-    return ds
-
-
-def _seconds(option: str, text: str) -> float:
-    """Read a time in seconds, or with a unit."""
-    try:
-        return float(text)
-    except ValueError:
-        pass
-    try:
-        return from_text(text, "s")
-    except ValueError as error:
-        raise SceneError(option, text, str(error)) from None

@@ -12,7 +12,7 @@ from rich.text import Text
 from gearidae.cli.output import show
 
 if TYPE_CHECKING:
-    from gearidae.runs.validity_row import ValidityRow
+    from gearidae.scene.validity_row import ValidityRow
 
 __all__ = ["show_validity"]
 

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from gearidae.errors import SceneError
+from gearidae.scene.units import from_text
 
-__all__ = ["assignments", "default_output", "spread", "sweep_values"]
+__all__ = ["assignments", "default_output", "quantity", "spread", "sweep_values"]
 
 _LONGEST_RANGE = 100_000
-_TAKES_PAIRS = ("--set", "--over", "--select")
+_TAKES_PAIRS = ("--set", "--over", "--select", "--line")
 
 
 def spread(arguments: Sequence[str]) -> list[str]:
@@ -105,6 +106,37 @@ def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
         else:
             values[key] = [_literal(part.strip()) for part in text.split(",")]
     return values
+
+
+def quantity(option: str, text: str, unit: str) -> float:
+    """Read the quantity of an option.
+
+    Parameters
+    ----------
+    option : str
+        What errors shall name.
+    text : str
+        A number in SI, or one with a unit.
+    unit : str
+        The SI unit.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    SceneError
+        If it is neither.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    try:
+        return from_text(text, unit)
+    except ValueError as error:
+        raise SceneError(option, text, str(error)) from None
 
 
 def default_output(case: str, suffix: str) -> Path:

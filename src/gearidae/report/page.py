@@ -21,6 +21,7 @@ from gearidae.report.tables import (
     outcome_table,
     parameter_tables,
     provenance_list,
+    validity_table,
 )
 from gearidae.report.teeth import pack_teeth
 
@@ -59,6 +60,7 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
             html.section("teeth", "Teeth in mesh", _teeth(ds)),
             html.section("pictures", "Pictures", pictures(ds)),
             html.section("events", "Events", event_table(ds)),
+            html.section("validity", "How far the model holds", validity_table(ds)),
             html.section("parameters", "Parameters", parameter_tables(ds)),
             html.section("provenance", "Provenance", provenance_list(ds)),
         )

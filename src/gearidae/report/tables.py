@@ -17,9 +17,19 @@ from gearidae.archive.pieces import pieces
 from gearidae.archive.select import runs, scene_of, swept_dims
 from gearidae.records import EventKind
 from gearidae.report import html
-from gearidae.scene import describe_keys
+from gearidae.runs.kept_validity import validity_of
+from gearidae.runs.pair_contact import contact_subject
+from gearidae.scene import Scene, describe_keys
 
-__all__ = ["account_table", "event_table", "headline", "outcome_table", "parameter_tables", "provenance_list"]
+__all__ = [
+    "account_table",
+    "event_table",
+    "headline",
+    "outcome_table",
+    "parameter_tables",
+    "provenance_list",
+    "validity_table",
+]
 
 _GEAR_HEADINGS = ("outcome", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
 _ROLLER_HEADINGS = (
@@ -164,6 +174,16 @@ def parameter_tables(ds: xr.Dataset) -> str:
         shown = f"swept: {_values(swept[key])}" if key in swept else _value(value)
         rows.append((key, shown, "" if unit == "1" else unit, meaning))
     return html.table(("key", "value", "unit", "meaning"), rows, caption="Parameters of the scene (SI units)")
+
+
+def validity_table(ds: xr.Dataset) -> str:
+    """List how far the model holds for the scene; an exclamation mark marks a limit that is exceeded."""
+    rows = [
+        (row.quantity, row.value, "" if row.holds else "!", row.limit, row.verdict) for row in validity_of(ds)
+    ]
+    about = contact_subject(Scene.from_dict(scene_of(ds)), swept_dims(ds))
+    caption = f"Limits of the model: contact {about}. ! marks a limit that is exceeded."
+    return html.table(("quantity", "value", "", "limit", "what follows"), rows, caption=caption)
 
 
 def provenance_list(ds: xr.Dataset) -> str:

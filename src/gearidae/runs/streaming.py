@@ -17,6 +17,7 @@ from gearidae.archive.journal import Checkpoint
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
+from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.running import early_end, unsolved
 
 if TYPE_CHECKING:
@@ -177,6 +178,10 @@ class _Run:
         return engine.Ended(statistics, "finished", "", point.time, balance, extremes)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
+        """Make the run's dataset, without samples and events, with what only a file has."""
+        return with_validity(self._dataset(ended), self._scene)
+
+    def _dataset(self, ended: Ended | None) -> xr.Dataset:
         """Make the run's dataset, without samples and events."""
         empty = unsolved("running", "the run is not at its end yet")
         statistics = replace(

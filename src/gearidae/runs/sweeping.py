@@ -18,6 +18,7 @@ from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.records import Solution
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, stop
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.running import prepare, runs_in_threads, solve, unsolved
 from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
 
@@ -127,7 +128,7 @@ def sweep(
                     stop(own)
     ds = plan.stack(batch.solutions())
     if archive is not None:
-        save(ds, archive, overwrite=overwrite or resume)
+        save(with_validity(ds, plan.base), archive, overwrite=overwrite or resume)
     if interrupted:
         where = (
             f"stopped before all {len(plan.scenes)} runs were done; the error's dataset has those that are"

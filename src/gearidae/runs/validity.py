@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from gearidae.contact.asperity_statistics import (
@@ -26,8 +27,8 @@ from gearidae.contact.surroundings import (
 from gearidae.contact.tip import tabor_parameter
 from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
 from gearidae.runs.pair_contact import PairContact, pair_contact
-from gearidae.runs.validity_row import ValidityRow, rows_to_json
 from gearidae.scene.prefixes import with_prefix
+from gearidae.scene.validity_row import ValidityRow, rows_to_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,9 +103,9 @@ def validity_attribute(scene: Scene) -> str:
     Returns
     -------
     str
-        A list of objects with the fields of `ValidityRow`; `gearidae.runs.validity_row.rows_from_json` reads it.
+        A list of objects with the fields of `ValidityRow`; `gearidae.scene.validity_row.rows_from_json` reads it.
     """
-    return rows_to_json(validity_rows(scene))
+    return rows_to_json(_rows(scene))
 
 
 def validity_rows(scene: Scene) -> list[ValidityRow]:
@@ -118,12 +119,18 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
     -------
     list of ValidityRow
     """
+    return list(_rows(scene))
+
+
+# Some 15 ms: an archive asks for them when it is begun and when it is finished.
+@lru_cache(maxsize=16)
+def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rest = _resting(scene)
     rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
     rows += [_temperature(rest), _gas(rest), _adhesion(scene, rest)]
     if scene.gears is not None:
         rows += [_disc_drag(scene), *_inertia(scene)]
-    return rows
+    return tuple(rows)
 
 
 def _resting(scene: Scene) -> _Rest:

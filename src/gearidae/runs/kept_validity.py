@@ -1,0 +1,60 @@
+"""How far the model holds for a scene, kept with its runs: the attribute ``validity`` of an archive."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gearidae.archive.select import run_scene, scene_of, swept_dims
+from gearidae.runs.validity import validity_attribute, validity_rows
+from gearidae.scene import Scene
+from gearidae.scene.validity_row import ATTRIBUTE, ValidityRow, holds_rows, rows_from_json
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["validity_of", "with_validity"]
+
+
+def with_validity(ds: xr.Dataset, scene: Scene) -> xr.Dataset:
+    """Add the rows of `gearidae.studies.validity` to a dataset that is about to be written.
+
+    A dataset that stays in memory does without: the rows take about as long as a short run.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    scene : Scene
+        That was run; of a sweep, the one that its runs were derived from.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same object, with the attribute ``validity``.
+    """
+    ds.attrs[ATTRIBUTE] = validity_attribute(scene)
+    return ds
+
+
+def validity_of(ds: xr.Dataset) -> list[ValidityRow]:
+    """Return how far the model holds for a dataset: the rows that it carries, or else those of its scene.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A run, a sweep (the rows are those of the scene that its runs were derived from), or one run that was picked
+        from a sweep (the rows are its own).
+
+    Returns
+    -------
+    list of ValidityRow
+
+    Raises
+    ------
+    SceneError
+        If the dataset carries no scene.
+    """
+    base = Scene.from_dict(scene_of(ds))
+    scene = base if swept_dims(ds) else run_scene(ds)
+    if scene == base and holds_rows(ds.attrs.get(ATTRIBUTE)):
+        return rows_from_json(ds.attrs[ATTRIBUTE])
+    return validity_rows(scene)

@@ -1,0 +1,138 @@
+"""One statement about how far a scene can be believed, and the attribute of an archive that keeps all of them."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+__all__ = ["ATTRIBUTE", "ValidityRow", "holds_rows", "rows_from_json", "rows_to_json"]
+
+ATTRIBUTE = "validity"
+"""Name of the attribute."""
+_LONGEST = 100_000
+"""Characters of it; what is written has some four thousand."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValidityRow:
+    """A quantity of a scene beside the limit it is compared with.
+
+    Attributes
+    ----------
+    name : str
+        Short name, such as ``expected_asperities``.
+    quantity : str
+        What it is, in words.
+    value : str
+        The number with its unit, for people.
+    limit : str
+        What it is compared with, with its unit.
+    verdict : str
+        What follows, in words.
+    holds : bool
+        Whether the quantity keeps to its limit; nothing is stopped if it does not.
+    number : float
+        The number itself, SI; NaN if the scene has none.
+    bound : float
+        The limit itself, SI; NaN if there is none.
+    unit : str
+        Unit of both; "1" for pure numbers.
+    """
+
+    name: str
+    quantity: str
+    value: str
+    limit: str
+    verdict: str
+    holds: bool
+    number: float
+    bound: float
+    unit: str
+
+
+def rows_to_json(rows: Iterable[ValidityRow]) -> str:
+    """Write rows as JSON, for the attribute of an archive; NaN and infinity become null.
+
+    Parameters
+    ----------
+    rows : iterable of ValidityRow
+
+    Returns
+    -------
+    str
+    """
+    kept = [
+        {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row}
+        for row in (asdict(each).items() for each in rows)
+    ]
+    return json.dumps(kept, allow_nan=False)
+
+
+def rows_from_json(text: str) -> list[ValidityRow]:
+    """Read rows back.
+
+    Parameters
+    ----------
+    text : str
+        What `rows_to_json` wrote.
+
+    Returns
+    -------
+    list of ValidityRow
+
+    Raises
+    ------
+    ValueError
+        If it is something else.
+    """
+    try:
+        entries = json.loads(text)
+    except RecursionError as error:
+        raise ValueError("holds no rows of validity: tables within tables") from error
+    if not isinstance(entries, list):
+        raise ValueError(f"holds no rows of validity, but one {type(entries).__name__}")
+    return [_row(entry) for entry in entries]
+
+
+def holds_rows(text: object) -> bool:
+    """Whether an attribute read from a file is what `rows_to_json` writes.
+
+    Parameters
+    ----------
+    text : object
+
+    Returns
+    -------
+    bool
+    """
+    if not isinstance(text, str) or len(text) > _LONGEST:
+        return False
+    try:
+        rows_from_json(text)
+    except ValueError:
+        return False
+    return True
+
+
+_TYPES = {field.name: field.type for field in fields(ValidityRow)}
+
+
+def _row(entry: Any) -> ValidityRow:
+    """One row from its table, each entry of the type that it is written with."""
+    if not isinstance(entry, dict) or entry.keys() != _TYPES.keys():
+        raise ValueError("holds no rows of validity: other entries than theirs")
+    read: dict[str, Any] = {}
+    for name, kind in _TYPES.items():
+        value = entry[name]
+        if kind == "float":
+            value = math.nan if value is None else value
+            if not isinstance(value, int | float) or isinstance(value, bool):
+                raise ValueError(f"holds no rows of validity: {name} is no number")
+            value = float(value) if abs(value) < 1e308 or isinstance(value, float) else math.nan
+        elif not isinstance(value, bool if kind == "bool" else str):
+            raise ValueError(f"holds no rows of validity: {name} is no {kind}")
+        read[name] = value
+    return ValidityRow(**read)
