@@ -186,7 +186,6 @@ def _numbers(source: Path, head: _Head, wanted: list[int]) -> Floats | None:
                 dtype=np.float64,
                 na_filter=False,
                 engine="c",
-                float_precision="round_trip",
             )
         except ValueError:  # pandas' own errors are of this kind
             return None

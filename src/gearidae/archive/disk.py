@@ -10,17 +10,13 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 __all__ = ["DiskError", "commit", "disk_errors", "open_file", "read_at", "sync", "write_at"]
 
-_DATA_SYNC: Any = getattr(os, "fdatasync", os.fsync)
-_READ: Any = getattr(os, "pread", None)
-_WRITE: Any = getattr(os, "pwrite", None)
-_FOLDERS_SYNC: Final = hasattr(os, "O_DIRECTORY")
 _BINARY: Final[int] = getattr(os, "O_BINARY", 0)  # or Windows would take line ends for texts'
 
 
@@ -45,13 +41,13 @@ def open_file(path: Path) -> int:
 
 def commit(descriptor: int) -> None:
     """Wait until what has been written to an open file is on the disk."""
-    _DATA_SYNC(descriptor)
+    getattr(os, "fdatasync", os.fsync)(descriptor)
 
 
 def sync(path: Path) -> None:
     """Wait until a file, or a folder's list of names where the system can wait for that, is on the disk."""
     is_folder = path.is_dir()
-    if is_folder and not _FOLDERS_SYNC:
+    if is_folder and not hasattr(os, "O_DIRECTORY"):
         return
     # Windows waits only for files that are open for writing
     descriptor = os.open(path, os.O_RDONLY) if is_folder else open_file(path)
@@ -95,15 +91,17 @@ def read_at(descriptor: int, size: int, place: int) -> bytes:
 
 def _write(descriptor: int, data: memoryview, place: int) -> int:
     """Write as much as the system takes at once; the number of bytes."""
-    if _WRITE is not None:
-        return int(_WRITE(descriptor, data, place))
+    at_place = getattr(os, "pwrite", None)
+    if at_place is not None:
+        return int(at_place(descriptor, data, place))
     os.lseek(descriptor, place, os.SEEK_SET)
     return os.write(descriptor, data)
 
 
 def _read(descriptor: int, size: int, place: int) -> bytes:
     """Read as much as the system gives at once, nothing at the file's end."""
-    if _READ is not None:
-        return bytes(_READ(descriptor, size, place))
+    at_place = getattr(os, "pread", None)
+    if at_place is not None:
+        return bytes(at_place(descriptor, size, place))
     os.lseek(descriptor, place, os.SEEK_SET)
     return os.read(descriptor, size)

@@ -18,7 +18,7 @@ from filelock import FileLock, Timeout, lock_descriptor
 
 __all__ = ["WriterLock", "is_locked"]
 
-_PATIENCE: Final = 0.2
+_PATIENCE: Final = 0.03
 """Time [s] for which a writer tries: whoever asks whether there is one holds the lock for some microseconds."""
 _ATTEMPTS: Final = 5
 """Times that the question is asked, since two who ask at once see each other."""
@@ -46,7 +46,7 @@ class WriterLock:
         # any thread may release it; on a file system without locks nothing is gained by a file that outlives a crash
         wanted = FileLock(place, thread_local=False, fallback_to_soft=False)
         try:
-            wanted.acquire(timeout=_PATIENCE, poll_interval=0.01)
+            wanted.acquire(timeout=_PATIENCE, poll_interval=0.005)
         except Timeout:
             return None
         except (
