@@ -140,12 +140,12 @@ def _terminal_bar(title: str, total: float) -> Iterator[Advance]:
 @contextmanager
 def _notebook_bar(display: Any, title: str, total: float) -> Iterator[Advance]:
     """Draw a bar by HTML's own element, which every front end knows; rich's needs widgets in the kernel."""
-    state = [0.0, ""]
+    state: list[Any] = [0.0, ""]
     began, drawn = monotonic(), [0.0]
     busy = threading.Lock()
 
     def look() -> dict[str, str]:
-        done, words = float(state[0]), f"{title}: {state[1]}, {monotonic() - began:.3g} s"
+        done, words = state[0], f"{title}: {state[1]}, {monotonic() - began:.3g} s"
         element = f'<progress max="{total:g}" value="{done:g}" style="vertical-align: middle"></progress>'
         return {"text/plain": words, "text/html": f"<div>{element} {html.escape(words)}</div>"}
 
