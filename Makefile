@@ -1,5 +1,6 @@
 # make run   the low-speed experiment: archive and picture in out/
 # make test  lint, types and tests
+# make types types once more, as Linux, macOS and Windows have them
 # make test-lowest  a short suite in a second environment, with the lowest versions that the package promises
 # make docs  the documentation: docs/_build/html/index.html
 # make bench    run time against error, all scenes: the benchmark's page anew (some ten minutes)
@@ -11,7 +12,7 @@ VENV   ?= .venv
 LOWEST ?= .venv-lowest
 BIN    := $(VENV)/bin
 
-.PHONY: run test test-lowest lint docs bench stress clean
+.PHONY: run test test-lowest lint types docs bench stress clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/installed
@@ -28,12 +29,17 @@ test: lint
 test-lowest: $(LOWEST)/installed
 	$(LOWEST)/bin/python -m pytest -q -W "ignore:numpy.ndarray size changed:RuntimeWarning" \
 	    tests/engine/test_backends.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
+	    tests/archive/test_lock.py tests/analysis/test_measured.py \
 	    tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+# What the types say on the systems that the tests do not run on.
+types: $(VENV)/installed-dev
+	for system in linux darwin win32; do $(BIN)/mypy --platform $$system --cache-dir .mypy_cache/$$system || exit 1; done
 
 docs: $(VENV)/installed-docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html

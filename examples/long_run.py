@@ -16,7 +16,7 @@ def press_ctrl_c(time: float, events: int) -> None:
 
 
 try:
-    gd.simulate(scene, archive="start_up.nc", progress=press_ctrl_c)
+    gd.simulate(scene, archive="start_up.nc", overwrite=True, progress=press_ctrl_c)
 except KeyboardInterrupt:
     kept = gd.open_archive("start_up.nc")
     print(f"{kept.attrs['status']} after {kept.sizes['time']} samples, {kept.sizes['event']} events")

@@ -41,7 +41,7 @@ print(f"contact ratio {scene.geometry.contact_ratio:.3f}, module {scene.geometry
 for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
     print(f"Tabor parameter, {name}: {gd.contact.tabor_parameter(surface):.2f}")
 
-run = gd.simulate(scene, archive="own_gears.nc")
+run = gd.simulate(scene, archive="own_gears.nc", overwrite=True)
 (did,) = outcomes(run)
 print(f"{did.verdict}, {did.min_speed:.3g} to {did.max_speed:.3g} rad/s, {did.impacts} impacts")
 Path("own_gears.toml").write_text(dump_case(scene), encoding="utf-8")  # for the command line

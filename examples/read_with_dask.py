@@ -10,7 +10,7 @@ import gearidae as gd
 from gearidae.records import EventKind, Flank
 
 scene = gd.preset("teodorescu2009_low_speed")
-gd.sweep(scene, {"coating.sam_fraction": [1.0, 0.6, 0.5]}, archive="sweep.nc")
+gd.sweep(scene, {"coating.sam_fraction": [1.0, 0.6, 0.5]}, archive="sweep.nc", overwrite=True)
 
 with xr.open_dataset("sweep.nc", chunks={}) as ds:
     late = ds.sel(time=slice(0.1, None))

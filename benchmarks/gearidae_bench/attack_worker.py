@@ -6,6 +6,7 @@ import contextlib
 import faulthandler
 import logging
 import math
+import sys
 import time
 import traceback
 from collections.abc import Callable
@@ -126,7 +127,7 @@ def warm_up() -> None:
 
 def limit_memory() -> None:
     """Let this process take no more than `MEMORY`, where the system can hold it to that."""
-    with contextlib.suppress(ImportError):
+    if sys.platform != "win32":
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
@@ -137,7 +138,7 @@ def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: 
     logging.disable(logging.WARNING)
     with Path(trace).open("w") as file:
         faulthandler.enable(file)
-        with contextlib.suppress(AttributeError):  # Unix's own
+        if sys.platform != "win32":
             import signal
 
             faulthandler.register(signal.SIGUSR1, file)

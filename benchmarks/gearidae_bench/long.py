@@ -8,7 +8,6 @@ error that adds up.
 from __future__ import annotations
 
 import math
-import resource
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -278,5 +277,9 @@ def long_page(parts: Sequence[Part]) -> str:
 
 def _memory() -> float:
     """Largest memory of the process so far [bytes]."""
+    if sys.platform == "win32":
+        return math.nan  # the module resource is Unix's own
+    import resource
+
     unit = 1 if sys.platform == "darwin" else 1024
     return float(unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)

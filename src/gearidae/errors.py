@@ -105,11 +105,11 @@ class Interrupted(KeyboardInterrupt):
     Parameters
     ----------
     message : str
-        Where it is kept; empty if nowhere but here.
+        How far it was, and where what there is is kept.
     dataset : xarray.Dataset
         The samples and events recorded so far.
     """
 
     def __init__(self, message: str, dataset: xr.Dataset) -> None:
         self.dataset = dataset
-        super().__init__(*([message] if message else []))
+        super().__init__(message)

@@ -1,20 +1,21 @@
-"""Progress of a run or a sweep: a bar on a terminal, or whatever the caller wants to be told."""
+"""Progress of a run or a sweep: a bar on a terminal or in a notebook, or whatever the caller wants to be told."""
 
 from __future__ import annotations
 
+import html
 import sys
+import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from time import monotonic
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from rich.console import Console
+from typing import Any, Final
 
 __all__ = ["RunProgress", "SweepProgress", "run_progress", "sweep_progress"]
 
 RunProgress = Callable[[float, int], None]
 """Told the simulated time reached [s] and the number of events so far."""
+_REDRAWN: Final = 0.1
+"""Least time between two states of a bar in a notebook [s]."""
 SweepProgress = Callable[[float, int], None]
 """Told how many runs are done (with fractions for those under way) and how many there are."""
 
@@ -26,7 +27,8 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunPro
     Parameters
     ----------
     wanted : bool or callable
-        True for a bar (drawn only if standard error is a terminal), False for nothing, or a function to call.
+        True for a bar (drawn only if standard error is a terminal, or in a notebook), False for nothing, or a function
+        to call.
     duration : float
         Simulated time of the whole run [s].
 
@@ -37,37 +39,29 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunPro
     """
     if callable(wanted):
         yield wanted
-    elif not wanted or not sys.stderr.isatty():
-        yield None
-    else:
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+        return
+    prefix, scale = ("ms", 1e3) if duration < 1.0 else ("s", 1.0)
+    with _bar("simulating", duration * scale) if wanted else nullcontext() as advance:
+        if advance is None:
+            yield None
+            return
+        begun: list[tuple[float, float]] = []
 
-        prefix, scale = ("ms", 1e3) if duration < 1.0 else ("s", 1.0)
-        with Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn(
-                f"{{task.completed:.4g}} of {duration * scale:.4g} {prefix}, {{task.fields[events]}} events, "
-                f"{{task.fields[rate]:.3g}} {prefix} per second"
-            ),
-            TimeRemainingColumn(),
-            console=_console(),
-        ) as bar:
-            task = bar.add_task("simulating", total=duration * scale, events=0, rate=0.0)
-            begun: list[tuple[float, float]] = []
+        def update(time: float, events: int) -> None:
+            now = monotonic()
+            if (
+                not begun
+            ):  # the rate counts from the first report: compiling is over, and a resumed run is back
+                begun.append((now, time))
+            elapsed = now - begun[0][0]
+            rate = (time - begun[0][1]) / elapsed * scale if elapsed > 0.0 else 0.0
+            advance(
+                time * scale,
+                f"{time * scale:.4g} of {duration * scale:.4g} {prefix}, {events} events, "
+                f"{rate:.3g} {prefix} per second",
+            )
 
-            def update(time: float, events: int) -> None:
-                now = monotonic()
-                if (
-                    not begun
-                ):  # the rate counts from the first report: compiling is over, and a resumed run is back
-                    begun.append((now, time))
-                elapsed = now - begun[0][0]
-                rate = (time - begun[0][1]) / elapsed * scale if elapsed > 0.0 else 0.0
-                bar.update(task, completed=time * scale, events=events, rate=rate)
-
-            yield update
-            bar.update(task, refresh=True)
+        yield update
 
 
 @contextmanager
@@ -88,24 +82,83 @@ def sweep_progress(wanted: bool | SweepProgress, runs: int) -> Iterator[SweepPro
     """
     if callable(wanted):
         yield wanted
-    elif not wanted or not sys.stderr.isatty():
-        yield lambda done, total: None
+        return
+    with _bar("sweeping", float(runs)) if wanted else nullcontext() as advance:
+
+        def update(done: float, total: int) -> None:
+            if advance is not None:
+                advance(done, f"{done:.4g} of {runs} runs")
+
+        yield update
+
+
+Advance = Callable[[float, str], None]
+"""Told how much is done, in the unit of the whole, and that in words."""
+
+
+@contextmanager
+def _bar(title: str, total: float) -> Iterator[Advance | None]:
+    """Provide a bar where one can be seen: in a notebook, or on a terminal."""
+    if (display := _notebook()) is not None:
+        with _notebook_bar(display, title, total) as advance:
+            yield advance
+    elif sys.stderr.isatty():
+        with _terminal_bar(title, total) as advance:
+            yield advance
     else:
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-        with Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn(f"{{task.percentage:3.0f}} % of {runs} runs"),
-            TimeElapsedColumn(),
-            TimeRemainingColumn(),
-            console=_console(),
-        ) as bar:
-            task = bar.add_task("sweeping", total=runs)
-            yield lambda done, total: bar.update(task, completed=done)
+        yield None
 
 
-def _console() -> Console:
+def _notebook() -> Any:
+    """Return what shows things in a notebook, None outside one."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    if getattr(shell, "kernel", None) is None:  # IPython on a terminal has none
+        return None
+    from IPython.display import display
+
+    return display
+
+
+@contextmanager
+def _terminal_bar(title: str, total: float) -> Iterator[Advance]:
     from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    return Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[words]}"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task(title, total=total, words="")
+        yield lambda done, words: bar.update(task, completed=done, words=words)
+        bar.update(task, refresh=True)
+
+
+@contextmanager
+def _notebook_bar(display: Any, title: str, total: float) -> Iterator[Advance]:
+    """Draw a bar by HTML's own element, which every front end knows; rich's needs widgets in the kernel."""
+    state: list[Any] = [0.0, ""]
+    began, drawn = monotonic(), [0.0]
+    busy = threading.Lock()
+
+    def look() -> dict[str, str]:
+        done, words = state[0], f"{title}: {state[1]}, {monotonic() - began:.3g} s"
+        element = f'<progress max="{total:g}" value="{done:g}" style="vertical-align: middle"></progress>'
+        return {"text/plain": words, "text/html": f"<div>{element} {html.escape(words)}</div>"}
+
+    handle = display(look(), raw=True, display_id=True)
+
+    def advance(done: float, words: str) -> None:
+        with busy:  # runs of a sweep report from several threads
+            state[:] = [done, words]
+            if monotonic() - drawn[0] >= _REDRAWN:
+                drawn[0] = monotonic()
+                handle.update(look(), raw=True)
+
+    try:
+        yield advance
+    finally:
+        handle.update(look(), raw=True)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import logging
+import os
 import shlex
 import shutil
 import subprocess
+import sys
 
 import pytest
 
@@ -93,6 +95,11 @@ WORDS = {
     "gearidae run lo": {"low.toml"},
     "gearidae plot lo": {"low.toml"},
     "gearidae assess --map lo": {"low.toml"},
+    "gearidae check star": {"start_up"},
+    "gearidae init mine --preset brak": {"braking"},
+    "gearidae run low.toml --set coating.sam": {"coating.sam_fraction="},
+    "gearidae sweep low.toml --over gears.mod": {"gears.module="},
+    "gearidae plot x.nc --picture power": {"power_spectrum"},
 }
 TRY = """
 source completion
@@ -109,8 +116,17 @@ def test_bash_completes_commands_options_and_files(tmp_path):
     (tmp_path / "low.toml").touch()
     (tmp_path / "completion").write_text(app.meta.generate_completion(shell="bash"))
     (tmp_path / "try.sh").write_text(TRY)
+    program = tmp_path / "bin" / "gearidae"  # which the shell asks for what only the program knows
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m gearidae "$@"\n')
+    program.chmod(0o755)
     done = subprocess.run(
-        ["bash", "try.sh", *WORDS], cwd=tmp_path, capture_output=True, text=True, check=True
+        ["bash", "try.sh", *WORDS],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}"},
     )
     assert done.stderr == ""
     assert [set(line.split()) for line in done.stdout.splitlines()] == list(WORDS.values())

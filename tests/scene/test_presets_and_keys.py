@@ -1,16 +1,18 @@
 """The paper's numbers, and the list of all keys."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from gearidae.errors import SceneError
-from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, preset
+from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, load_case, preset
 
 # Every key that users' scripts rely on.
+CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
-    "gears": "pinion_inertia gear_inertia pinion_base_radius pinion_teeth gear_teeth pressure_angle "
+    "gears": "pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
     "face_width",
     "mesh": "backlash tip_relief_radius damping static_error static_error.order static_error.amplitude "
     "static_error.phase",
@@ -21,7 +23,7 @@ CONTRACT = {
     "load": "torque harmonic drag schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
     "law.parameters",
     "initial": "gear_speed gap mesh_phase",
-    "run": "duration samples rtol",
+    "run": "duration samples rtol method",
     "roller": "radius mass width speed height",
     "contact": "model asperity",
 }
@@ -115,3 +117,69 @@ def test_described_defaults_are_those_of_scenes() -> None:
 def test_unknown_keys_have_no_description() -> None:
     with pytest.raises(SceneError, match=r"did you mean run\.duration\?"):
         describe_key("run.duratoin")
+
+
+@pytest.mark.parametrize("name", ["start_up", "braking", "alternating", "roller_slow", "roller_fast"])
+def test_presets_are_the_cases_of_their_name(name: str) -> None:
+    assert preset(name) == load_case(CASES / f"{name}.toml")
+
+
+# -- the module in place of the base radius ------------------------------------------------------------------
+
+
+def test_the_module_gives_the_base_radius() -> None:
+    """Of a pinion with 20 teeth of 10 um: a pitch diameter of 200 um, a base radius of 100 um times cos 20 deg."""
+    data = preset("teodorescu2009").to_dict()
+    del data["gears"]["pinion_base_radius"]
+    data["gears"] |= {"module": "10 um", "pinion_teeth": 20, "gear_teeth": 40, "pressure_angle": "20 deg"}
+    scene = Scene.from_dict(data)
+    assert scene.gears is not None
+    assert scene.gears.pinion_base_radius == pytest.approx(
+        93.96926208e-6, rel=1e-9, abs=0
+    )  # 1e-4 m cos 20 deg
+    assert scene.geometry.module == pytest.approx(10e-6, rel=1e-14, abs=0)
+    assert scene.gears.module is None
+    assert "module" not in scene.to_dict()["gears"]
+
+
+def test_the_module_of_a_geometry_gives_the_same_gears() -> None:
+    scene = preset("teodorescu2009")
+    again = scene.replace({"gears.module": scene.geometry.module})
+    assert scene.gears is not None
+    assert again.gears is not None
+    assert again.gears.pinion_base_radius == pytest.approx(scene.gears.pinion_base_radius, rel=1e-15, abs=0)
+    assert scene.replace({"gears.module": None}) == scene
+
+
+@pytest.mark.parametrize("changes", [("module", "pinion_base_radius"), ("pinion_base_radius", "module")])
+def test_module_and_base_radius_are_never_given_both(changes: tuple[str, str]) -> None:
+    scene = preset("teodorescu2009")
+    with pytest.raises(SceneError, match=r"gears\.module = 3e-05: cannot be given beside .*base_radius"):
+        scene.replace({f"gears.{name}": 3e-5 for name in changes})
+    data = scene.to_dict()
+    data["gears"]["module"] = 3e-5
+    with pytest.raises(SceneError, match=r"gears\.module = 3e-05: cannot be given beside pinion_base_radius"):
+        Scene.from_dict(data)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"module": "4 s"}, r"gears\.module = 4 s: the unit 's' does not fit"),
+        ({"module": -1.0}, r"gears\.module = -1\.0: must lie in"),
+        ({"module": "4 um", "pinion_teeth": 2}, r"gears\.pinion_teeth = 2: must be a whole number in 3"),
+        ({"modul": "4 um"}, r"gears\.modul = 4 um: unknown key; did you mean module\?"),
+    ],
+)
+def test_a_wrong_module_is_named(changes: dict[str, Any], message: str) -> None:
+    data = preset("teodorescu2009").to_dict()
+    del data["gears"]["pinion_base_radius"]
+    data["gears"] |= changes
+    with pytest.raises(SceneError, match=message):
+        Scene.from_dict(data)
+
+
+def test_a_schedule_is_taken_away_by_an_empty_list() -> None:
+    scene = preset("start_up").replace({"drive.schedule": [], "drive.torque": 1e-11})
+    assert scene.drive is not None
+    assert scene.drive.schedule == ()

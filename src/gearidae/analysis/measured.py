@@ -6,14 +6,19 @@ import csv
 import os
 import re
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 import xarray as xr
+from numpy.typing import NDArray
 
 from gearidae.analysis.signal import signals, to_si
 from gearidae.errors import SceneError
 
 __all__ = ["read_signal"]
+
+Floats = NDArray[np.float64]
 
 _HEADING = re.compile(r"\s*([^\[\](]+?)\s*[\[(]\s*(.*?)\s*[\])]\s*")
 _SI = {"time": "s", "gear_speed": "rad s-1"}
@@ -29,8 +34,10 @@ def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
     ----------
     path : path-like
         A CSV file whose first line names two columns and their units, ``time [s], gear_speed [rad/s]`` (other columns
-        are ignored, lines that begin with ``#`` too; separated by comma, semicolon or tab), or a netCDF file with the
-        variables ``time`` and ``gear_speed`` and their attributes ``units``.
+        are ignored, lines that begin with ``#`` too; separated by comma, semicolon or tab). The names may also stand in
+        a comment before the numbers, as ``numpy.savetxt(..., header="time [s], gear_speed [rad/s]")`` writes them; the
+        numbers below may then be separated by blanks. Or a netCDF file with the variables ``time`` and ``gear_speed``
+        and their attributes ``units``.
 
     Returns
     -------
@@ -73,29 +80,13 @@ def _from_netcdf(source: Path) -> xr.Dataset:
 
 def _from_csv(source: Path) -> xr.Dataset:
     try:
-        text = source.read_text(encoding="utf-8-sig")
+        head = _read_head(source)
+        columns = _columns(source, head.headings)
+        numbers = _numbers(source, head, [column for column, _ in columns.values()])
+        if numbers is None:
+            numbers = _numbers_by_line(source, head, columns)
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError("signal", source, f"is neither text nor netCDF ({error})") from error
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
-    if not lines:
-        raise SceneError("signal", source, "is empty")
-    separator = max(",;\t", key=lines[0][1].count)
-    columns = _columns(source, next(csv.reader([lines[0][1]], delimiter=separator)))
-    numbers = np.empty((len(lines) - 1, len(columns)))
-    for row, (number, line) in zip(numbers, lines[1:], strict=True):
-        cells = line.split(separator)
-        for place, (name, (column, _)) in enumerate(columns.items()):
-            try:
-                row[place] = float(cells[column])
-            except (ValueError, IndexError):
-                found = cells[column].strip() if column < len(cells) else "nothing"
-                raise SceneError(
-                    "signal", source, f"line {number}: {name} is {found[:40]!r}, not a number"
-                ) from None
-    if not np.isfinite(numbers).all():
-        number = lines[1 + int(np.argmin(np.isfinite(numbers).all(axis=1)))][0]
-        raise SceneError("signal", source, f"line {number}: every number must be finite")
     values = {
         name: to_si(
             xr.DataArray(numbers[:, place], attrs={"units": unit}), _SI[name], f"{source.name}: {name}"
@@ -106,6 +97,129 @@ def _from_csv(source: Path) -> xr.Dataset:
         {"gear_speed": ("time", values["gear_speed"], {"units": _SI["gear_speed"]})},
         coords={"time": ("time", values["time"], {"units": "s"})},
     )
+
+
+class _Head(NamedTuple):
+    """What the beginning of a file tells.
+
+    Attributes
+    ----------
+    headings : list of str
+        Of the columns.
+    separator : str
+        Between the numbers; empty for blanks.
+    line, place : int
+        Number of lines before the first row of numbers, and its place in the file [bytes].
+    """
+
+    headings: list[str]
+    separator: str
+    line: int
+    place: int
+
+
+def _read_head(source: Path) -> _Head:
+    """Find headings and first row of numbers; headings may stand in a comment, as `numpy.savetxt` writes them.
+
+    Raises
+    ------
+    SceneError
+        If there is nothing in the file.
+    """
+    heading, remark, separator = "", "", ","
+    line = place = 0
+    with source.open("rb") as file:
+        for raw in file:
+            text = raw.decode("utf-8-sig" if line == 0 else "utf-8").strip()
+            if text.startswith("#"):
+                remark = text.lstrip("# ") if not heading and _names(text.lstrip("# ")) else remark
+            elif text and not heading and not (remark and _is_row(text)):
+                heading, separator = text, _separator(text)
+            elif text:
+                heading, separator = heading or remark, _separator(text) if not heading else separator
+                break
+            line, place = line + 1, place + len(raw)
+    if not heading:
+        raise SceneError("signal", source, "is empty")
+    return _Head(_headings(heading), separator, line, place)
+
+
+def _separator(text: str) -> str:
+    """Separator of the cells of a line; empty if they are separated by blanks."""
+    best = max(",;\t", key=text.count)
+    return best if best in text else ""
+
+
+def _headings(text: str) -> list[str]:
+    """Cells of the line of headings, which may contain blanks before their unit."""
+    separator = _separator(text)
+    if separator:
+        return next(csv.reader([text], delimiter=separator))
+    found = re.findall(r"[^\[\]()]+[\[(][^\])]*[\])]", text)
+    return found if len(found) > 1 else [text]
+
+
+def _names(text: str) -> bool:
+    """Whether a comment names the columns that are read."""
+    bare = (match[1] if (match := _HEADING.fullmatch(one)) else one for one in _headings(text))
+    return set(_SI) <= {_NAMES.get(one.strip().lower().replace(" ", "_")) for one in bare}
+
+
+def _is_row(text: str) -> bool:
+    """Whether a line holds numbers."""
+    try:
+        return all(float(cell) is not None for cell in text.split(_separator(text) or None))
+    except ValueError:
+        return False
+
+
+def _numbers(source: Path, head: _Head, wanted: list[int]) -> Floats | None:
+    """Read all rows at once; None if a row is not as it should be, which `_numbers_by_line` then looks for."""
+    with source.open("rb") as file:
+        file.seek(head.place)
+        try:
+            table = pd.read_csv(
+                file,
+                sep=head.separator or r"\s+",
+                header=None,
+                usecols=wanted,
+                dtype=np.float64,
+                na_filter=False,
+                engine="c",
+            )
+        except ValueError:  # pandas' own errors are of this kind
+            return None
+    numbers = np.column_stack([table[column].to_numpy() for column in wanted])
+    return numbers if np.isfinite(numbers).all() else None
+
+
+def _numbers_by_line(source: Path, head: _Head, columns: dict[str, tuple[int, str]]) -> Floats:
+    """Read row by row, and name the first that is wrong.
+
+    Raises
+    ------
+    SceneError
+        If one is.
+    """
+    rows: list[list[float]] = []
+    with source.open(encoding="utf-8-sig") as file:
+        for number, line in enumerate(file, 1):
+            if number <= head.line or not line.strip() or line.lstrip().startswith("#"):
+                continue
+            cells = line.split(head.separator or None)
+            row = []
+            for name, (column, _) in columns.items():
+                found = cells[column].strip() if column < len(cells) else "nothing"
+                try:
+                    row.append(float(cells[column]))
+                except (ValueError, IndexError):
+                    raise SceneError(
+                        "signal", source, f"line {number}: {name} is {found[:40]!r}, not a number"
+                    ) from None
+            if not np.isfinite(row).all():
+                raise SceneError("signal", source, f"line {number}: every number must be finite")
+            rows.append(row)
+    return np.array(rows).reshape(-1, len(columns))
 
 
 def _columns(source: Path, headings: list[str]) -> dict[str, tuple[int, str]]:

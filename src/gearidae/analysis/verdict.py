@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.sampled_extremes import extremes_of_samples
+from gearidae.analysis.verdict_table import Outcomes, Shown
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of
@@ -30,7 +31,7 @@ BACK_FROM = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class GearOutcome:
+class GearOutcome(Shown):
     """What one run of a gear pair did.
 
     Attributes
@@ -110,7 +111,7 @@ def _seconds(time: float) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class RollerOutcome:
+class RollerOutcome(Shown):
     """What one run of a roller did.
 
     Attributes
@@ -161,7 +162,7 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     Returns
     -------
     list of GearOutcome or RollerOutcome
-        One per run, in the order of the dataset (the last dimension changes fastest).
+        One per run, in the order of the dataset (the last dimension changes fastest); a table in a notebook.
 
     Raises
     ------
@@ -169,9 +170,9 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
         If the dataset carries no scene.
     """
     if is_roller(ds):
-        return [_roller(label, run) for label, run in runs(ds)]
+        return Outcomes(_roller(label, run) for label, run in runs(ds))
     scheduled = _is_scheduled(scene_of(ds))
-    return [_gear(label, run, scheduled) for label, run in runs(ds)]
+    return Outcomes(_gear(label, run, scheduled) for label, run in runs(ds))
 
 
 def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcome:

@@ -23,10 +23,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.definition import define, offsets
-from gearidae.archive.disk import disk_errors, read_at, sync, write_at
+from gearidae.archive.disk import commit, disk_errors, open_file, read_at, sync, write_at
 from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
-from gearidae.archive.lock import is_locked, lock
+from gearidae.archive.lock import WriterLock
 from gearidae.archive.variables import EVENTS
 from gearidae.errors import SceneError
 from gearidae.records import Block, Statistics
@@ -88,6 +88,8 @@ class GrowingArchive:
         The file, made by `create`.
     template : xarray.Dataset
         What the run's dataset will be, without samples and events.
+    held : WriterLock, optional
+        The right to write it, if the caller has that already.
 
     Attributes
     ----------
@@ -102,8 +104,9 @@ class GrowingArchive:
         If it cannot be opened or is damaged.
     """
 
-    def __init__(self, path: Path, template: xr.Dataset) -> None:
+    def __init__(self, path: Path, template: xr.Dataset, held: WriterLock | None = None) -> None:
         self.path = path
+        self._held = held or _taken(path)
         self._template = template
         self._columns = [
             str(name) for name, variable in template.data_vars.items() if variable.dims == ("time",)
@@ -112,8 +115,12 @@ class GrowingArchive:
         self._checkpointed = time.monotonic()
         self._sequence = 0
         self.samples = self.events = 0
-        with disk_errors():
-            self._descriptor = self._open(path)
+        try:
+            with disk_errors():
+                self._descriptor = self._open(path)
+        except BaseException:
+            self._held.release()
+            raise
 
     @classmethod
     def create(cls, path: Path, template: xr.Dataset, samples: int, duration: float, words: int) -> Self:
@@ -139,8 +146,7 @@ class GrowingArchive:
         SceneError
             If another process is writing that file.
         """
-        if path.exists() and is_locked(path):
-            raise _busy(path)
+        held = _taken(path)
         sizes = {
             "time": samples,
             "event": max(samples, EVENT_ROOM),
@@ -148,14 +154,18 @@ class GrowingArchive:
             "checkpoint_word": HEADER + words,
         }
         part = _part(path)
-        with disk_errors():
-            try:
-                _lay_out(part, template, sizes, duration)
-                part.replace(path)
-            finally:
-                part.unlink(missing_ok=True)
-            sync(path.parent)
-        return cls(path, template)
+        try:
+            with disk_errors():
+                try:
+                    _lay_out(part, template, sizes, duration)
+                    part.replace(path)
+                finally:
+                    part.unlink(missing_ok=True)
+                sync(path.parent)
+        except BaseException:
+            held.release()
+            raise
+        return cls(path, template, held)
 
     def __enter__(self) -> Self:
         return self
@@ -165,6 +175,10 @@ class GrowingArchive:
 
     def close(self) -> None:
         """Let go of the file."""
+        self._close_file()
+        self._held.release()
+
+    def _close_file(self) -> None:
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1
@@ -250,6 +264,7 @@ class GrowingArchive:
             part.unlink(missing_ok=True)
             try:
                 self._compact(template, part)
+                self._close_file()  # Windows replaces no file that is open
                 part.replace(self.path)
             finally:
                 part.unlink(missing_ok=True)
@@ -266,11 +281,9 @@ class GrowingArchive:
         sync(part)
 
     def _open(self, path: Path) -> int:
-        """Open and lock the file, and look where its variables are."""
-        descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC)
+        """Open the file, and look where its variables are."""
+        descriptor = open_file(path)
         try:
-            if not lock(descriptor):
-                raise _busy(path)
             self._places = offsets(path)
             with netCDF4.Dataset(path) as file:
                 self._sizes = {name: len(dimension) for name, dimension in file.dimensions.items()}
@@ -295,7 +308,7 @@ class GrowingArchive:
         record = point.pack()
         if len(record) > self._slot_size:  # another contact model has taken over, with more to remember
             self._make_room("checkpoint_word", len(record) // 8)
-        os.fdatasync(self._descriptor)
+        commit(self._descriptor)
         write_at(self._descriptor, record, self._places["checkpoint"] + point.sequence % 2 * self._slot_size)
         self._checkpointed = time.monotonic()
 
@@ -308,34 +321,31 @@ class GrowingArchive:
         try:
             last = self._times(max(self._sizes["time"] - 1, 0), 1)
             _lay_out(part, self._template, self._sizes | {dimension: room}, float(last.max(initial=0.0)))
-            descriptor = self._copied(part)
+            self._copy_all(part)
+            self._close_file()  # Windows replaces no file that is open
             try:
                 part.replace(self.path)
-            except BaseException:
-                os.close(descriptor)
-                raise
+            finally:
+                self._descriptor = self._open(self.path)
         finally:
             part.unlink(missing_ok=True)
-        os.close(self._descriptor)
-        self._descriptor = descriptor
         sync(self.path.parent)
 
-    def _copied(self, part: Path) -> int:
-        """Copy everything that is committed into another file of this kind, and open that."""
+    def _copy_all(self, part: Path) -> None:
+        """Copy everything that is committed into another file of this kind."""
         places, slots = offsets(part), [self._slot(k) for k in (0, 1)]
-        descriptor = os.open(part, os.O_RDWR | os.O_CLOEXEC)
+        with netCDF4.Dataset(part) as file:
+            slot_size = 8 * len(file.dimensions["checkpoint_word"])
+        descriptor = open_file(part)
         try:
             for name, place in places.items():
                 for start, data in self._raw(name):
                     write_at(descriptor, data, place + start)
-            with netCDF4.Dataset(part) as file:
-                slot_size = 8 * len(file.dimensions["checkpoint_word"])
             for k, slot in enumerate(slots):
                 write_at(descriptor, slot, places["checkpoint"] + k * slot_size)
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
-        return self._open(part)
 
     def _slot(self, number: int) -> bytes:
         place = self._places["checkpoint"] + number * self._slot_size
@@ -395,5 +405,9 @@ def _part(path: Path) -> Path:
     return path.with_name(f".{path.name}.part")
 
 
-def _busy(path: Path) -> SceneError:
-    return SceneError("archive", path, "is being written by another run")
+def _taken(path: Path) -> WriterLock:
+    """Take the right to write an archive, or refuse."""
+    held = WriterLock.take(path)
+    if held is None:
+        raise SceneError("archive", path, "is being written by another run")
+    return held

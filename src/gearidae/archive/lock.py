@@ -1,51 +1,94 @@
-"""Who is writing: a lock that dies with its process and is in nobody's way.
+"""Who is writing an archive: a lock that ends with its process and disturbs no reader.
 
-An open-file-description lock on one byte far beyond any data: unlike a classic record lock it survives another
-descriptor of the same file being closed (every reader in this process closes one), and unlike ``flock`` it does not
-collide with the locks that HDF5 takes for readers.
+The lock is taken on a file of its own beside the archive, ``.NAME.lock``: HDF5 takes locks on the archive itself for
+its readers, and on some systems a lock keeps others from reading. What a lock is there, `filelock` knows: ``flock`` on
+Linux and macOS, ``LockFileEx`` on Windows. The system lifts it when the process ends in whatever way; the empty file
+that a killed process leaves behind locks nothing.
 """
 
 from __future__ import annotations
 
-import fcntl
 import os
-import struct
+import time
+from contextlib import suppress
 from pathlib import Path
+from typing import Final, Self
 
-__all__ = ["is_locked", "lock"]
+from filelock import FileLock, Timeout, lock_descriptor
 
-_FLOCK = "hhqqi4x"  # struct flock: type, whence, start, length, pid (must be 0)
-_BYTE = 2**62
+__all__ = ["WriterLock", "is_locked"]
+
+_PATIENCE: Final = 0.03
+"""Time [s] for which a writer tries: whoever asks whether there is one holds the lock for some microseconds."""
+_ATTEMPTS: Final = 5
+"""Times that the question is asked, since two who ask at once see each other."""
 
 
-def lock(descriptor: int) -> bool:
-    """Mark a file as being written; False if another has done so.
+class WriterLock:
+    """The right to write an archive, held until `release` or the end of the process.
+
+    Use `take`.
+    """
+
+    def __init__(self, held: FileLock | None) -> None:
+        self._held = held
+
+    @classmethod
+    def take(cls, archive: Path) -> Self | None:
+        """Mark an archive as being written; None if another has done so.
+
+        Parameters
+        ----------
+        archive : Path
+            It need not exist yet; its folder must.
+        """
+        place = _beside(archive)
+        # any thread may release it; on a file system without locks nothing is gained by a file that outlives a crash
+        wanted = FileLock(place, thread_local=False, fallback_to_soft=False)
+        try:
+            wanted.acquire(timeout=_PATIENCE, poll_interval=0.005)
+        except Timeout:
+            return None
+        except (
+            OSError
+        ):  # no locks here, or the file is another user's: two writers at once are then up to the users
+            return None if is_locked(archive) else cls(None)
+        return cls(wanted)
+
+    def release(self) -> None:
+        """Let others write; the file beside the archive goes."""
+        if self._held is None:
+            return
+        held, self._held = self._held, None
+        with suppress(OSError):  # Windows removes no file that is open, and leaves that to the library
+            Path(held.lock_file).unlink(
+                missing_ok=True
+            )  # still locked: who waits for it notices, and starts over
+        held.release()
+
+
+def is_locked(archive: Path) -> bool:
+    """Whether a process is writing an archive; what cannot be asked counts as no.
 
     Parameters
     ----------
-    descriptor : int
-        Open for writing; the lock ends when it is closed, also by the end of the process.
+    archive : Path
     """
     try:
-        fcntl.fcntl(descriptor, fcntl.F_OFD_SETLK, _request())
-    except BlockingIOError:
+        descriptor = os.open(_beside(archive), os.O_RDONLY)
+    except OSError:
         return False
-    except OSError:  # a file system without locks: two writers at once are then up to the user
-        return True
-    return True
-
-
-def is_locked(path: Path) -> bool:
-    """Whether a process is writing the file."""
-    descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     try:
-        answer = fcntl.fcntl(descriptor, fcntl.F_OFD_GETLK, _request())
+        for attempt in range(_ATTEMPTS):
+            if lock_descriptor(descriptor, blocking=False):
+                return False
+            time.sleep(0.001 * (attempt + os.getpid() % 5))  # not in step with another who asks
     except OSError:
         return False
     finally:
-        os.close(descriptor)
-    return bool(struct.unpack(_FLOCK, answer)[0] != fcntl.F_UNLCK)
+        os.close(descriptor)  # which lifts the lock
+    return True
 
 
-def _request() -> bytes:
-    return struct.pack(_FLOCK, fcntl.F_WRLCK, os.SEEK_SET, _BYTE, 1, 0)
+def _beside(archive: Path) -> Path:
+    return archive.with_name(f".{archive.name}.lock")

@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 import gearidae
+from gearidae.cli import completing
 
 __all__ = ["app"]
 
@@ -20,7 +21,9 @@ app = App(
 )
 app.meta.suppress_keyboard_interrupt = False
 
-Case = Annotated[Path, Parameter(help="Case file (TOML), or the name of a preset.")]
+Case = Annotated[
+    Path, Parameter(help="Case file (TOML), or the name of a preset.", completer=completing.cases)
+]
 Output = Annotated[
     Path | None, Parameter(name=["--output", "-o"], help="File to write. Default: named after the input.")
 ]
@@ -29,10 +32,13 @@ Settings = Annotated[
     list[str] | None,
     Parameter(
         name="--set",
-        help="Change keys of the scene: one or more key=value; repeatable.",
+        help="Change keys of the scene: one or more key=value; repeatable. key=[] takes a schedule or harmonics away.",
         consume_multiple=False,
+        completer=completing.keys,
     ),
 ]
+Dask = Annotated[str | None, Parameter(help="Address of a Dask scheduler; its cluster computes the runs.")]
+Json = Annotated[bool, Parameter(name="--json", help="Print one JSON object, in SI units.")]
 Rtol = Annotated[float | None, Parameter(help="Relative tolerance of the solver.")]
 
 
@@ -61,6 +67,7 @@ def sweep(
         Parameter(
             help="Key and its values: key=start:stop:step (both ends included) or key=a,b,c; repeatable.",
             consume_multiple=False,
+            completer=completing.keys,
         ),
     ],
     output: Output = None,
@@ -73,9 +80,7 @@ def sweep(
         ),
     ] = False,
     jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
-    dask: Annotated[
-        str | None, Parameter(help="Address of a Dask scheduler; its cluster computes the runs.")
-    ] = None,
+    dask: Dask = None,
     resume: Annotated[
         bool, Parameter(help="Resume an interrupted sweep; its finished runs are reused.")
     ] = False,
@@ -107,7 +112,10 @@ def plot(
     *,
     picture: Annotated[
         str | None,
-        Parameter(help="Name of a picture, such as power_spectrum or teeth. Default: an overview."),
+        Parameter(
+            help="Name of a picture, such as power_spectrum or teeth. Default: an overview.",
+            completer=completing.pictures,
+        ),
     ] = None,
     select: Annotated[
         list[str] | None,
@@ -168,6 +176,7 @@ def coating_map(
         Parameter(
             help="SAM fractions, coating.sam_fraction=1:0.5:-0.01, and other keys for several lines; repeatable.",
             consume_multiple=False,
+            completer=completing.keys,
         ),
     ] = None,
     output: Output = None,
@@ -176,6 +185,7 @@ def coating_map(
     resume: Annotated[
         bool, Parameter(help="Resume an interrupted map; its finished runs are reused.")
     ] = False,
+    dask: Dask = None,
     overwrite: Overwrite = False,
 ) -> int:
     """Map the frequency of the impact response against the SAM fraction.
@@ -184,7 +194,9 @@ def coating_map(
     """
     from gearidae.cli.coating import map_case
 
-    return map_case(str(case), over or [], output, settings or [], jobs, resume=resume, overwrite=overwrite)
+    return map_case(
+        str(case), over or [], output, settings or [], jobs, dask, resume=resume, overwrite=overwrite
+    )
 
 
 @app.command
@@ -245,6 +257,7 @@ def assess(
             consume_multiple=False,
         ),
     ] = None,
+    as_json: Json = False,
 ) -> int:
     """Estimate from a speed signal how much of the coating is left.
 
@@ -252,7 +265,9 @@ def assess(
     """
     from gearidae.cli.coating import assess_signal
 
-    return assess_signal(signal, map, history, anti_alias_filter, select=select or [], line=line or [])
+    return assess_signal(
+        signal, map, history, anti_alias_filter, select=select or [], line=line or [], as_json=as_json
+    )
 
 
 @app.command
@@ -267,7 +282,9 @@ def check(case: Case, *, settings: Settings = None) -> int:
 def init(
     name: Annotated[str, Parameter(help="Name of the case; NAME.toml is written to the current folder.")],
     *,
-    preset: Annotated[str, Parameter(help="Preset to start from.")] = "teodorescu2009_low_speed",
+    preset: Annotated[
+        str, Parameter(help="Preset to start from.", completer=completing.presets)
+    ] = "teodorescu2009_low_speed",
 ) -> int:
     """Write a commented case file to start from."""
     from gearidae.cli.files import write_case
@@ -276,8 +293,8 @@ def init(
 
 
 @app.command
-def info(archive: Annotated[Path, Parameter(help="Archive to describe.")]) -> int:
+def info(archive: Annotated[Path, Parameter(help="Archive to describe.")], *, as_json: Json = False) -> int:
     """Print the content, origin and outcome of an archive."""
     from gearidae.cli.files import describe
 
-    return describe(archive)
+    return describe(archive, as_json=as_json)

@@ -12,7 +12,7 @@ from gearidae.errors import SceneError
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["read_scene"]
+__all__ = ["check_dask", "read_scene"]
 
 
 def read_scene(case: str, settings: Sequence[str]) -> Scene:
@@ -44,3 +44,19 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
     scene = preset(case) if case in PRESETS and not path.exists() else load_case(case)
     changes = assignments(settings)
     return scene.replace(changes) if changes else scene
+
+
+def check_dask(dask: str | None, jobs: int | None) -> None:
+    """Refuse a number of simultaneous runs beside a cluster.
+
+    Raises
+    ------
+    SceneError
+        If both are given.
+    """
+    if dask is not None and jobs is not None:
+        raise SceneError(
+            "--jobs",
+            jobs,
+            "cannot be combined with --dask: the cluster decides the number of simultaneous runs",
+        )

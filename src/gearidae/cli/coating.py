@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import gearidae as gd
-from gearidae.cli.case import read_scene
+from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE
+from gearidae.cli.machine import say_json
 from gearidae.cli.output import is_quiet, say
 from gearidae.cli.selection import selected
 from gearidae.cli.tables import show_rows
 from gearidae.cli.values import default_output, quantity, sweep_values
 from gearidae.errors import SceneError
-from gearidae.runs.executors import check_jobs
+from gearidae.runs.executors import check_jobs, dask_executor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,6 +37,7 @@ def map_case(
     output: Path | None,
     settings: Sequence[str],
     jobs: int | None,
+    dask: str | None = None,
     *,
     resume: bool,
     overwrite: bool,
@@ -53,6 +57,8 @@ def map_case(
         ``key=value`` pairs.
     jobs : int or None
         Runs at a time; None for one per core.
+    dask : str or None
+        Address of the scheduler of a Dask cluster that computes the runs; None for this machine.
     resume : bool
         Whether to reuse the finished runs of an interrupted map.
     overwrite : bool
@@ -70,18 +76,21 @@ def map_case(
     if usual_torques and values:
         raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
     further = _TORQUE if usual_torques else values
+    check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    chart = gd.analysis.coating_map(
-        scene,
-        fractions,
-        over=further,
-        jobs=workers,
-        progress=not is_quiet(),
-        archive=target,
-        overwrite=overwrite,
-        resume=resume,
-    )
+    with nullcontext() if dask is None else dask_executor(dask) as executor:
+        chart = gd.analysis.coating_map(
+            scene,
+            fractions,
+            over=further,
+            executor=executor,
+            jobs=workers,
+            progress=not is_quiet(),
+            archive=target,
+            overwrite=overwrite,
+            resume=resume,
+        )
     show_rows(_rows(chart))
     say(f"Map: {target}")
     return DONE
@@ -95,6 +104,7 @@ def assess_signal(
     *,
     select: Sequence[str],
     line: Sequence[str],
+    as_json: bool = False,
 ) -> int:
     """Print what a signal says about the coating.
 
@@ -110,6 +120,8 @@ def assess_signal(
         Cut-off frequency of a filter before the sampling, in hertz or with a unit.
     select, line : sequence of str
         ``dimension=value``: which run of a file with several, and which line of a map with several.
+    as_json : bool, optional
+        Whether to print one JSON object in place of a sentence.
 
     Returns
     -------
@@ -122,7 +134,10 @@ def assess_signal(
     record = selected(record, select, "--select", _dims(record["gear_speed"], "time"))
     mapped = selected(mapped, line, "--line", _dims(mapped["characteristic_frequency"], "sam_fraction"))
     found = gd.analysis.assess(record, mapped, history=history, anti_alias_filter=cutoff)
-    say(f"{found.verdict}: {found.explanation}")
+    if as_json:
+        say_json({**asdict(found), "uncertainty": found.uncertainty, "conclusive": found.conclusive})
+    else:
+        say(f"{found.verdict}: {found.explanation}")
     return DONE
 
 

@@ -27,6 +27,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "gearidae assess sweep.nc --select sam_fraction=0.7 --map over_torque.nc --line torque=4.5e-18",
     ),
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
-    "init": ("gearidae init mine", "gearidae init mine --preset teodorescu2009"),
-    "info": ("gearidae info mine.nc",),
+    "init": ("gearidae init mine", "gearidae init mine --preset start_up"),
+    "info": ("gearidae info mine.nc", "gearidae info mine.nc --json"),
 }

@@ -11,6 +11,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.codes import DONE
+from gearidae.cli.machine import archive_facts, say_json
 from gearidae.cli.output import say
 from gearidae.cli.tables import show_account, show_outcomes, show_rows
 from gearidae.cli.validity_table import show_validity
@@ -62,13 +63,15 @@ def write_case(name: str, preset: str) -> int:
     return DONE
 
 
-def describe(archive: Path) -> int:
+def describe(archive: Path, *, as_json: bool = False) -> int:
     """Print the content of an archive.
 
     Parameters
     ----------
     archive : Path
         What to describe.
+    as_json : bool, optional
+        Whether to print one JSON object in place of tables.
 
     Returns
     -------
@@ -81,6 +84,9 @@ def describe(archive: Path) -> int:
         If the archive cannot be read.
     """
     ds = gd.open_archive(archive)
+    if as_json:
+        say_json(archive_facts(archive, ds))
+        return DONE
     show_rows(_description(archive, ds))
     show_outcomes(ds)
     show_account(ds)

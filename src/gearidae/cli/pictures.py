@@ -18,9 +18,14 @@ from gearidae.errors import SceneError
 from gearidae.plot.files import MOVING
 from gearidae.scene.group import did_you_mean
 
-__all__ = ["draw"]
+__all__ = ["draw", "picture_names"]
 
 _FUNCTIONS_OF_FILES = ("animate_teeth", "write")
+
+
+def picture_names() -> list[str]:
+    """List the pictures that can be asked for by name."""
+    return [name for name in gd.plot.__all__ if name not in _FUNCTIONS_OF_FILES]
 
 
 def draw(
@@ -66,7 +71,7 @@ def draw(
     SceneError
         If the archive cannot be read, there is no such picture or run in it, or the image cannot be written.
     """
-    pictures = [name for name in gd.plot.__all__ if name not in _FUNCTIONS_OF_FILES]
+    pictures = picture_names()
     if picture is not None and picture not in pictures:
         meant = did_you_mean(picture, pictures)
         raise SceneError(

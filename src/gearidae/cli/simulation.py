@@ -9,7 +9,7 @@ from pathlib import Path
 
 import gearidae as gd
 from gearidae.archive.select import run_value, runs
-from gearidae.cli.case import read_scene
+from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
 from gearidae.cli.tables import label_text, show_account, show_outcomes
@@ -112,12 +112,7 @@ def sweep_case(
     target = output or default_output(case, ".nc")
     values = sweep_values(over)
     _check_resume(resume=resume, overwrite=overwrite)
-    if dask is not None and jobs is not None:
-        raise SceneError(
-            "--jobs",
-            jobs,
-            "cannot be combined with --dask: the cluster decides the number of simultaneous runs",
-        )
+    check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
     with ExitStack() as stack:

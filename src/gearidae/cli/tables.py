@@ -16,11 +16,12 @@ from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.select import swept_dims
 from gearidae.cli.output import show
+from gearidae.scene.prefixes import with_prefix
 
 __all__ = ["label_text", "show_account", "show_outcomes", "show_rows"]
 
 _GEAR_HEADINGS = ("outcome", "min rad/s", "max rad/s", "impacts", "wall s")
-_ROLLER_HEADINGS = ("outcome", "peak uN", "pull-off uN", "restitution", "impacts", "wall s")
+_ROLLER_HEADINGS = ("outcome", "peak", "pull-off", "restitution", "impacts", "wall s")
 
 
 _BALANCE_ROWS = (
@@ -74,27 +75,27 @@ def _balance_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
     yield "Energy balance", "", ""
     for name, remark in _BALANCE_ROWS:
         if kept[name] != 0.0:
-            yield name.replace("_", " "), f"{kept[name]:.5g} J", remark
-    yield "residual", f"{kept['residual']:.2g} J", f"bound {kept['residual_bound']:.2g} J"
+            yield name.replace("_", " "), with_prefix(kept[name], "J", 5), remark
+    bound = with_prefix(kept["residual_bound"], "J", 2)
+    yield "residual", with_prefix(kept["residual"], "J", 2), f"bound {bound}"
 
 
 def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
-    def number(name: str, scale: float = 1.0) -> str:
-        return "-" if told[name] is None else f"{told[name] * scale:.4g}"
+    def number(name: str, unit: str) -> str:
+        return "-" if told[name] is None else with_prefix(told[name], unit, 4)
 
     yield "Run summary", "", ""
-    yield "time to speed", f"{number('time_to_speed', 1e3)} ms", "first sample with 95 % of the largest"
+    yield "time to speed", number("time_to_speed", "s"), "first sample with 95 % of the largest"
     held = f"held by {told['held_by']} at the end" if told["held_by"] else ""
     times = "once" if told["sticks"] == 1 else f"{told['sticks']} times"
     yield (
         "time at rest",
-        f"{number('time_at_rest', 1e3)} ms",
+        number("time_at_rest", "s"),
         f"held by dry resistance, stuck {times}; {held}".rstrip("; "),
     )
-    yield "time trapped by adhesion", f"{number('time_adhering', 1e3)} ms", "rocking within half a pitch"
+    yield "time trapped by adhesion", number("time_adhering", "s"), "rocking within half a pitch"
     if told["largest_force"] is not None:
-        when = f"at {number('largest_force_time', 1e3)} ms"
-        yield "largest force", f"{number('largest_force', 1e6)} uN", when
+        yield "largest force", number("largest_force", "N"), f"at {number('largest_force_time', 's')}"
 
 
 def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:
@@ -129,8 +130,8 @@ def _gear_cells(outcome: GearOutcome) -> Sequence[str]:
 def _roller_cells(outcome: RollerOutcome) -> Sequence[str]:
     return (
         _verdict(outcome),
-        _number(outcome.peak_force * 1e6),
-        _number(outcome.pull_off_force * 1e6),
+        with_prefix(outcome.peak_force, "N", 4),
+        with_prefix(outcome.pull_off_force, "N", 4),
         _number(outcome.restitution),
         str(outcome.impacts),
         f"{outcome.wall_time:.2f}",

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.plot.gears import gear_speed
+from gearidae.plot.picture import new_picture
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.style import runs_of
 from gearidae.plot.torque import contact_torque
@@ -34,7 +35,7 @@ def overview(ds: xr.Dataset) -> Figure:
     above, below = (roller_force, roller_gap) if is_roller(ds) else (gear_speed, contact_torque)
     strips = 1 if is_roller(ds) else len(runs_of(ds, "gear_contact_torque"))
     lower = 2.8 if strips == 1 else 0.8 + 0.62 * strips
-    figure = Figure(figsize=(7.6, 3.2 + lower), dpi=150, layout="constrained")
+    figure = new_picture((7.6, 3.2 + lower), layout="constrained")
     grid = figure.add_gridspec(2, 1, height_ratios=(3.2, lower))
     top, bottom = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
     above(ds, top)

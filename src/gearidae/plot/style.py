@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
 from gearidae.errors import SceneError
+from gearidae.plot.picture import PictureAxes, new_picture
 
 __all__ = [
     "NEGATIVE",
@@ -211,7 +211,7 @@ def new_axes(ax: Axes | None, *, height: float = 3.2) -> Axes:
     """Return the axes to draw into: the given ones, or those of a new figure of its own."""
     if ax is not None:
         return ax
-    return Figure(figsize=(7.2, height), dpi=150, layout="constrained").add_subplot()
+    return new_picture((7.2, height), layout="constrained").add_subplot(axes_class=PictureAxes)
 
 
 def tidy(ax: Axes) -> None:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from gearidae.archive.select import run_scene
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
+from gearidae.plot.picture import new_picture
 from gearidae.plot.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
 from gearidae.records import Flank
@@ -124,7 +125,7 @@ class TeethView:
         forces = [abs(one.force) for state in states for one in state.contacts if math.isfinite(one.force)]
         self._largest = max(forces, default=0.0)
         self._places = pairs_at_most(self._scene)
-        self.figure = Figure(figsize=(7.6, 7.2), dpi=150)
+        self.figure = new_picture((7.6, 7.2))
         self._mesh = self.figure.add_axes((0.015, 0.525, 0.97, 0.43))
         width = 0.985 / self._places
         self._close = [

@@ -46,8 +46,8 @@ def simulate(
         Which driver of the solver to use; ``auto`` takes the fastest that works here, or the one that a run to be
         resumed was begun with.
     progress : bool or callable, optional
-        True for a progress bar on a terminal, or a function that is told the simulated time reached [s] and
-        the number of events so far.
+        True for a progress bar on a terminal or in a notebook, or a function that is told the simulated time
+        reached [s] and the number of events so far.
     archive : path-like, optional
         Write to this netCDF4 file while the run goes on. It can be opened at any time, also after a crash.
     overwrite : bool, optional
@@ -102,7 +102,8 @@ def simulate(
 
     ds = with_account(to_dataset(scene, solution))
     if solution.status == "interrupted":
-        raise Interrupted("", ds)
+        where = f"t = {reached(solution):.4g} s of {scene.run.duration:.4g} s"
+        raise Interrupted(f"stopped at {where}; what was computed is the error's dataset", ds)
     if solution.status != "finished":
         raise early_end(ds, reached(solution))
     return ds

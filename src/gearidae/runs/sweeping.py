@@ -69,7 +69,7 @@ def sweep(
     overwrite : bool, optional
         Whether `archive` may replace a file, and the runs of an unfinished sweep beside it be discarded.
     progress : bool or callable, optional
-        True for a progress bar on a terminal, or a function that is told the number of runs done (with
+        True for a progress bar on a terminal or in a notebook, or a function that is told the number of runs done (with
         fractions for those under way, where they can be seen) and the number of runs.
     jobs : int, optional
         Runs at a time; by default the number of usable cores. Ignored if `executor` is given.
@@ -126,8 +126,10 @@ def sweep(
         save(with_validity(ds, plan.base), archive, overwrite=overwrite or resume)
     if interrupted:
         where = (
-            "" if archive is None else f"the finished runs are in {os.fspath(archive)}; go on with --resume"
+            f"stopped before all {len(plan.scenes)} runs were done; the error's dataset has those that are"
         )
+        if archive is not None:
+            where = f"the finished runs are in {os.fspath(archive)}; go on with --resume"
         raise Interrupted(where, ds)
     if kept is not None:
         kept.remove(plan.scenes)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import math
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from gearidae.scene.group import Group
+from gearidae.errors import SceneError
+from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Count, Phase, Quantity
 from gearidae.scene.tables import one_or_more
 
@@ -18,12 +20,21 @@ Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]
 
 
 class Gears(Group):
-    """Two spur gears of full-depth involute teeth at their nominal centre distance."""
+    """Two spur gears of full-depth involute teeth at their nominal centre distance.
+
+    Their size is given by the pinion's base radius, or by the module m in its place, from which it follows as
+    ``R1 = m z1 cos(alpha) / 2``: the pitch circle has the diameter ``m z1``, and the base circle is that times
+    ``cos(alpha)`` (ISO 21771). A scene keeps the radius.
+    """
 
     pinion_inertia: Inertia = Field(description="moment of inertia of the pinion, I1")
     gear_inertia: Inertia = Field(description="moment of inertia of the gear, I2")
     pinion_base_radius: Annotated[float, Quantity(unit="m", at_least=1e-8, at_most=1, shown=("um", -6))] = (
         Field(description="base radius of the pinion, R1; that of the gear follows from the teeth")
+    )
+    module: Annotated[float | None, Quantity(unit="m", at_least=1e-9, at_most=1, shown=("um", -6))] = Field(
+        default=None,
+        description="module m, in place of the base radius, which is m z1 cos(alpha) / 2; a scene keeps the radius",
     )
     pinion_teeth: Teeth = Field(description="teeth of the pinion, z1")
     gear_teeth: Teeth = Field(description="teeth of the gear, z2")
@@ -33,6 +44,36 @@ class Gears(Group):
     face_width: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = Field(
         description="width of the teeth along the axis, L"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _radius_of_module(cls, data: Any) -> Any:
+        """Put the base radius in the place of the module."""
+        if not isinstance(data, dict) or data.get("module") is None:
+            return data
+        if data.get("pinion_base_radius") is not None:
+            raise SceneError(
+                "module",
+                shorten(data["module"]),
+                "cannot be given beside pinion_base_radius: choose one of the two",
+            )
+        module, teeth, angle = (
+            cls._number(data, name) for name in ("module", "pinion_teeth", "pressure_angle")
+        )
+        rest = {name: value for name, value in data.items() if name != "module"}
+        return {**rest, "pinion_base_radius": 0.5 * module * teeth * math.cos(angle)}
+
+    @classmethod
+    def _number(cls, data: dict[str, Any], name: str) -> float:
+        """Read one key as pydantic would, which has not come to it yet."""
+        field = cls.model_fields[name]
+        if name not in data:
+            raise SceneError(name, "(missing)", f"is required: {field.description}")
+        kind = next(one for one in field.metadata if isinstance(one, (Quantity, Count)))
+        try:
+            return kind.read(data[name])
+        except ValueError as error:
+            raise SceneError(name, shorten(data[name]), str(error)) from error
 
 
 class StaticErrorHarmonic(Group):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, get_args
+from typing import Any, Final, get_args
 
 from pydantic.fields import FieldInfo
 
@@ -15,9 +15,11 @@ from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Count, Quantity
 
-__all__ = ["KeyInfo", "find_key", "keys_of", "put"]
+__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put"]
 
 _LONGEST_KEY = 200
+INSTEAD: Final = {"gears.module": "gears.pinion_base_radius"}
+"""Keys that are given in the place of others, in which a scene keeps what they say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +106,8 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
         inside = _entry(inside, part)
     if isinstance(inside, list) and len(inside) == 1 and not last.isdecimal():
         inside = inside[0]
+    if isinstance(inside, dict) and key in INSTEAD and not _is_nothing(value):
+        inside.pop(INSTEAD[key].rpartition(".")[2], None)
     if isinstance(inside, dict) and info.default == () and _is_nothing(value):
         inside.pop(last, None)
     elif isinstance(inside, dict):

@@ -1,4 +1,4 @@
-"""Ready-made scenes: the experiments of Teodorescu, Theodossiades and Rahnejat (2009).
+"""Ready-made scenes: the experiments of Teodorescu, Theodossiades and Rahnejat (2009), and run-up and braking.
 
 Tribology International 42 (2009) 197-205, doi:10.1016/j.triboint.2008.05.019. Values are those of the paper's
 Table 1 and text; what it does not print was inferred and is marked so. The asperity radius is the one fitted
@@ -73,11 +73,54 @@ def _roller(speed: float, duration: float) -> _Tables:
     }
 
 
+_WORN: Final[_Tables] = {**_PAIR, "coating": {"sam_fraction": 0.6, "energy": 0.1}}
+_DRY: Final[Mapping[str, float]] = {"torque": 3e-11, "drag": 8e-18}
+_FULL: Final = 2.43e-11  # the drive torque that holds 2898 rad/s against this load
+_MORE: Final = 1.63e-11  # what it has beyond a third
+
+_START_UP: Final[_Tables] = {
+    **_WORN,
+    "drive": {"schedule": [[0.0, 0.0], [0.01, _FULL]]},
+    "load": _DRY,
+    "initial": {"gear_speed": 0.0, "gap": 0.1e-6, "mesh_phase": 0.3},
+    "run": {"duration": 0.05, "samples": 50_001, "rtol": 1e-6},
+}
+
+_BRAKING: Final[_Tables] = {
+    **_WORN,
+    "drive": {"schedule": [[0.0, _FULL], [0.01, _FULL], [0.03, 0.0]]},
+    "load": _DRY,
+    "initial": {"gear_speed": 2898.0, "gap": 36e-9, "mesh_phase": 0.3},
+    "run": {"duration": 0.05, "samples": 50_001, "rtol": 1e-6},
+}
+
+_KNOTS: Final = [
+    [0.0, _MORE],
+    [0.02, _MORE],
+    [0.021, 0.0],
+    [0.04, 0.0],
+    [0.041, _MORE],
+    [0.06, _MORE],
+    [0.061, 0.0],
+    [0.08, 0.0],
+    [0.081, _MORE],
+]
+_ALTERNATING: Final[_Tables] = {
+    **_WORN,
+    "drive": {"torque": 0.8e-11, "schedule": _KNOTS},
+    "load": _DRY,
+    "initial": {"gear_speed": 0.0, "gap": 0.1e-6, "mesh_phase": 0.3},
+    "run": {"duration": 0.1, "samples": 100_001, "rtol": 1e-6},
+}
+
 PRESETS: Final[Mapping[str, _Tables]] = {
     "teodorescu2009": _HIGH_SPEED,
     "teodorescu2009_low_speed": _LOW_SPEED,
     "roller_slow": _roller(speed=0.01, duration=12e-6),
     "roller_fast": _roller(speed=0.1, duration=2e-6),
+    "start_up": _START_UP,
+    "braking": _BRAKING,
+    "alternating": _ALTERNATING,
 }
 
 
@@ -88,7 +131,8 @@ def preset(name: str) -> Scene:
     ----------
     name : str
         ``teodorescu2009`` (Figs. 4-6, high speed), ``teodorescu2009_low_speed`` (Figs. 7-10), ``roller_slow``
-        or ``roller_fast`` (Figs. 2 and 3).
+        or ``roller_fast`` (Figs. 2 and 3); ``start_up``, ``braking`` or ``alternating``: a worn pair whose drive
+        torque follows a schedule.
 
     Returns
     -------

@@ -11,7 +11,7 @@ from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
-from gearidae.scene.keys import KeyInfo, find_key, keys_of, put
+from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import check_gaps, check_reach, check_stretch
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.surface import Coating, Contact, Material, Surface
@@ -189,6 +189,11 @@ class Scene(Group):
         """
         if not isinstance(changes, Mapping):
             raise SceneError("replace", shorten(changes), "must be a mapping from dotted keys to values")
+        for key, other in INSTEAD.items():
+            if changes.get(key) is not None and other in changes:
+                raise SceneError(
+                    key, shorten(changes[key]), f"cannot be given beside {other}: choose one of the two"
+                )
         data = self.to_dict()
         for key, value in changes.items():
             put(type(self), data, key, value)
@@ -207,6 +212,20 @@ class Scene(Group):
             if table in data and not data[table]["schedule"]:
                 del data[table]["schedule"]
         return data
+
+    def __repr__(self) -> str:
+        """Return a line that says what the scene is, and how it differs from the nearest preset."""
+        from gearidae.scene.shown import as_line
+
+        return as_line(self)
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        """Return a table of all keys with units, those that differ from the nearest preset marked."""
+        from gearidae.scene.shown import as_html
+
+        return as_html(self)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:

@@ -24,6 +24,7 @@ from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import IDA, YP, Y
+from gearidae.engine.sundials.interpolation import solution_at
 
 __all__ = ["SHARPNESS", "Arrays", "Stepper", "next_time", "start_search", "state_at"]
 
@@ -91,7 +92,7 @@ def state_at(s: Stepper, t: float) -> None:
     if s.m.work.adams.order_used > 0:
         adams.between(s.m.work.adams, t, s.y, s.yp)
     else:
-        sun.IDAGetSolution(s.handles[IDA], t, s.handles[Y], s.handles[YP])
+        solution_at(s.handles[IDA], t, s.handles[Y], s.handles[YP])
 
 
 @compiled(inline=True)
@@ -145,7 +146,7 @@ def _step(s: Stepper) -> int:
         return flag
     adams.keep(s.m.work.adams, s.clock[0], s.yp)
     if search.as_ida != 0:
-        sun.IDAGetSolution(vectors[IDA], s.clock[0], vectors[Y], vectors[YP])
+        solution_at(vectors[IDA], s.clock[0], vectors[Y], vectors[YP])
     if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
         search.stop, search.stop_time = 1, s.clock[0]
         sun.IDAGetCurrentTime(vectors[IDA], s.clock.ctypes.data)

@@ -8,9 +8,11 @@ call it; no compiler and no second copy of the library are needed.
 from __future__ import annotations
 
 import ctypes
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -20,7 +22,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.sundials.memory import STEP, SYSTEM
 
-__all__ = ["newton_places", "places", "unavailable"]
+__all__ = ["exports", "libraries", "newton_places", "places", "unavailable"]
 
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
@@ -41,7 +43,8 @@ def unavailable() -> str:
     if not str(config.get("SUNDIALS_VERSION", "")).startswith("7."):
         return f"SUNDIALS {config.get('SUNDIALS_VERSION')} is not of the 7 series"
     try:
-        binding.load_library_permanently(_cy_ida.__file__)
+        for library in libraries(Path(_cy_ida.__file__)):
+            binding.load_library_permanently(str(library))
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
     wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, STEP)
@@ -53,6 +56,27 @@ def unavailable() -> str:
     except RuntimeError as error:
         return str(error)
     return ""
+
+
+def libraries(extension: Path) -> list[Path]:
+    """List the files to load so that every function of SUNDIALS is found by its name.
+
+    Linux and macOS look for a name in the extension module and go on in the libraries that it was linked with. Windows
+    looks in one file at a time; there the libraries lie in a folder beside the package, where its wheel has put them.
+
+    Parameters
+    ----------
+    extension : Path
+        scikit-sundae's extension module for IDA.
+    """
+    if sys.platform != "win32":
+        return [extension]
+    return [extension, *sorted((extension.parents[1] / "scikit_sundae.libs").glob("sundials_*.dll"))]
+
+
+def exports(name: str) -> bool:
+    """Whether the library, loaded, has a function of this name."""
+    return not unavailable() and binding.address_of_symbol(name) is not None
 
 
 OF_SOLVERS: Final = ("SUNLinSolSetup_Dense", "SUNLinSolSolve_Dense")
@@ -169,6 +193,11 @@ _NAMES: list[str] = []
 
 def _declare(name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
     _NAMES.append(name)
+    return _declare_optional(name, result, *arguments)
+
+
+def _declare_optional(name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
+    """Declare a function that is done without where the library does not export it."""
     declared: Callable[..., Any] = types.ExternalFunction(name, result(*arguments))
     return declared
 
@@ -204,7 +233,7 @@ IDASolve = _declare("IDASolve", _INT, _PTR, _REAL, _PTR, _PTR, _PTR, _INT)
 IDASetEtaFixedStepBounds = _declare("IDASetEtaFixedStepBounds", _INT, _PTR, _REAL, _REAL)
 IDASetEtaMax = _declare("IDASetEtaMax", _INT, _PTR, _REAL)
 IDASetMaxOrd = _declare("IDASetMaxOrd", _INT, _PTR, _INT)
-IDAGetSolution = _declare("IDAGetSolution", _INT, _PTR, _REAL, _PTR, _PTR)
+IDAGetSolution = _declare_optional("IDAGetSolution", _INT, _PTR, _REAL, _PTR, _PTR)
 IDAGetCurrentTime = _declare("IDAGetCurrentTime", _INT, _PTR, _PTR)
 IDAGetDky = _declare("IDAGetDky", _INT, _PTR, _REAL, _INT, _PTR)
 IDAGetNumSteps = _declare("IDAGetNumSteps", _INT, _PTR, _PTR)

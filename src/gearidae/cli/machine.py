@@ -1,0 +1,76 @@
+"""Answers for programs: one JSON object on standard output, SI units, null where there is no number."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearidae.analysis.verdict import outcomes
+from gearidae.archive.energy import balance_in_attributes
+from gearidae.archive.select import scene_of, swept_dims
+from gearidae.cli.output import say
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["archive_facts", "say_json"]
+
+_ATTRIBUTES = (
+    "title", "history", "source", "product_version", "status", "message", "t_end", "rtol", "steps",
+    "residual_evaluations", "jacobian_evaluations", "restarts", "wall_time", "backend", "method",
+)  # fmt: skip
+
+
+def say_json(facts: Mapping[str, Any]) -> None:
+    """Print facts as one JSON object; what is not a number or infinite becomes null, which JSON has instead."""
+    say(json.dumps(_plain(facts), indent=2, allow_nan=False))
+
+
+def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
+    """Say of an archive what ``gearidae info`` says.
+
+    Parameters
+    ----------
+    archive : Path
+        The file.
+    ds : xarray.Dataset
+        What is in it.
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        "file": str(archive),
+        "bytes": archive.stat().st_size,
+        **{name: ds.attrs[name] for name in _ATTRIBUTES if name in ds.attrs},
+        "sizes": {str(name): size for name, size in ds.sizes.items()},
+        "swept": {dim: ds[dim].values.tolist() for dim in swept_dims(ds)},
+        "variables": {
+            str(name): {"dimensions": list(map(str, one.dims)), "units": str(one.attrs.get("units", ""))}
+            for name, one in ds.data_vars.items()
+        },
+        "outcomes": [{**asdict(one), "words": one.words} for one in outcomes(ds)],
+        "run_summary": json.loads(ds.attrs["account"]) if "account" in ds.attrs else None,
+        "energy_balance": balance_in_attributes(ds) or None,
+        "scene": scene_of(ds),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Turn what numpy and dataclasses hold into what JSON knows."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if isinstance(value, bool | int | float | str) or value is None else str(value)

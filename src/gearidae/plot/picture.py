@@ -1,0 +1,51 @@
+"""Figures that show themselves in a notebook.
+
+Figures here are made without pyplot, so that a notebook's own machinery does not know of them; and of axes it knows
+nothing at all. These two say how they look, by the method that Jupyter asks objects for.
+"""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+__all__ = ["Picture", "PictureAxes", "new_picture"]
+
+_WIDTH = 100
+"""Pixels of the page that an inch of a figure takes; the picture itself has more, for fine screens."""
+
+
+class Picture(Figure):
+    """A figure that shows itself in a notebook."""
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        """Return the picture and its size on the page, as Jupyter asks for it."""
+        buffer = BytesIO()
+        self.savefig(buffer, format="png")
+        width, height = (round(_WIDTH * float(inches)) for inches in self.get_size_inches())
+        return buffer.getvalue(), {"width": width, "height": height}
+
+
+class PictureAxes(Axes):
+    """Axes that show their figure in a notebook."""
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]] | None:
+        """Return the picture of the whole figure, nothing if that is not ours to show."""
+        figure = self.get_figure(root=True)
+        return figure._repr_png_() if isinstance(figure, Picture) else None
+
+
+def new_picture(size: tuple[float, float], **options: Any) -> Picture:
+    """Make an empty figure.
+
+    Parameters
+    ----------
+    size : tuple of float
+        Width and height [inches].
+    **options
+        As for `matplotlib.figure.Figure`.
+    """
+    return Picture(figsize=size, dpi=150, **options)

@@ -1,0 +1,101 @@
+"""Progress where it can be seen: in a notebook's kernel, on a terminal, nowhere else."""
+
+from __future__ import annotations
+
+import io
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from gearidae import progress
+
+
+class Handle:
+    def __init__(self, shown):
+        self.shown = shown
+
+    def update(self, what, raw):
+        assert raw
+        self.shown.append(what)
+
+
+@pytest.fixture
+def kernel(monkeypatch):
+    """What a notebook shows, one state after the other."""
+    shown = []
+
+    def display(what, raw, display_id):
+        assert raw
+        assert display_id
+        shown.append(what)
+        return Handle(shown)
+
+    shell = SimpleNamespace(kernel=object())
+    module = SimpleNamespace(get_ipython=lambda: shell)
+    monkeypatch.setitem(sys.modules, "IPython", module)
+    monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=display))
+    monkeypatch.setattr(progress, "_REDRAWN", 0.0)
+    return shown
+
+
+def test_a_run_shows_its_progress_in_a_notebook(kernel):
+    with progress.run_progress(True, 0.3) as report:
+        report(0.15, 12)
+        report(0.3, 40)
+    assert 'max="300" value="150"' in kernel[1]["text/html"]
+    assert "150 of 300 ms, 12 events" in kernel[1]["text/plain"]
+    assert "300 of 300 ms, 40 events" in kernel[-1]["text/html"]
+
+
+def test_a_sweep_shows_its_progress_in_a_notebook(kernel):
+    with progress.sweep_progress(True, 4) as report:
+        report(1.5, 4)
+    assert "1.5 of 4 runs" in kernel[-1]["text/html"]
+
+
+def test_the_last_state_is_shown_when_a_run_is_interrupted(kernel, monkeypatch):
+    monkeypatch.setattr(progress, "_REDRAWN", 1e9)
+
+    def interrupted():
+        with progress.run_progress(True, 2.0) as report:
+            report(1.0, 3)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert "1 of 2 s, 3 events" in kernel[-1]["text/plain"]
+
+
+def test_ipython_on_a_terminal_is_no_notebook(monkeypatch):
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=SimpleNamespace))
+    assert progress._notebook() is None
+
+
+def test_nothing_is_shown_where_nobody_looks(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with progress.run_progress(True, 1.0) as report:
+        assert report is None
+    with progress.sweep_progress(True, 3) as update:
+        update(1.0, 3)
+    assert sys.stderr.getvalue() == ""
+
+
+def test_a_bar_is_drawn_on_a_terminal(monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "150")
+    with progress.run_progress(True, 0.3) as report:
+        report(0.3, 7)
+    assert "300 of 300 ms, 7 events" in sys.stderr.getvalue()
+
+
+def test_a_function_is_told():
+    told = []
+    with progress.run_progress(lambda *what: told.append(what), 1.0) as report:
+        report(0.5, 2)
+    assert told == [(0.5, 2)]
