@@ -39,7 +39,7 @@ def next_part(m: Model) -> float:
     """Time at which the coming part of the run begins."""
     for i in range(len(PARTS)):
         if m.state.extremes.part[i].begun == 0:
-            return float(PARTS[i] * m.scene.end)
+            return float(m.scene.start + PARTS[i] * (m.scene.end - m.scene.start))
     return math.inf
 
 
@@ -126,7 +126,7 @@ def _begin_parts(m: Model, t: float, y: Floats, yp: Floats) -> None:
     k, e = m.work.track, m.state.extremes
     h, place = t - k.time, y[PHASE] + m.state.turns
     for i in range(len(PARTS)):
-        time = PARTS[i] * m.scene.end
+        time = m.scene.start + PARTS[i] * (m.scene.end - m.scene.start)
         if e.part[i].begun != 0 or t < time:
             continue
         share = (time - k.time) / h if h > 0.0 else 1.0

@@ -17,6 +17,7 @@ from gearidae.engine.model.state import (
     GEARS,
     MATERIALS,
     PHASE,
+    SCHEDULES,
     STATE,
     Floats,
     Model,
@@ -24,6 +25,7 @@ from gearidae.engine.model.state import (
     assign,
 )
 from gearidae.engine.model.tooth_pairs import gap_and_rate
+from gearidae.engine.model.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 
 __all__ = ["HEADER", "depth_of", "exceeded", "pack", "scene_digest", "unpack"]
@@ -150,15 +152,16 @@ def _check_numbers(record: Record, dtype: np.dtype[Any], prefix: str) -> None:
 def _check_run(m: Model, s: Record) -> None:
     """Check time, schedules, roots, energies and counters."""
     scene = m.scene
-    _require(0.0 <= s.time <= scene.end, "time", "within the run")
+    slack = 1e-12 * scene.start  # of a start that has been through other units
+    _require(scene.start - slack <= s.time <= scene.end, "time", "within the run")
     knots = m.tables[scene.knots_at : scene.knots_at + scene.knot_count]
     _require(_between(s.next_knot, knots, s.time), "next_knot", "the coming one")
-    for shaft in range(2):
-        own = scene.torque[shaft]
-        times = m.tables[own.knots_at : own.knots_at + 2 * own.knot_count : 2]
-        _require(_between(s.segment[shaft], times, s.time), "segment", "that of the time")
+    for which in range(SCHEDULES):
+        times = segment_ends(scene.schedule[which], m.tables)
+        _require(_between(s.segment[which], times, s.time), "segment", "that of the time")
     _require(s.slip in (-1.0, 0.0, 1.0) and (scene.dry != 0 or s.slip == 1.0), "slip", "a direction")
     _require(s.slipping in _FLAGS and s.bound_exceeded in _FLAGS, "flags", "0 or 1")
+    _require(s.stop_armed in _FLAGS, "stop_armed", "0 or 1")
     _require(set(s.near.tolist()) <= _FLAGS, "near", "0 or 1")
     _require(s.last_flank in (-1, 0, 1), "last_flank", "a flank")
     _require(0 <= s.roots <= scene.root_limit and s.last_root <= s.time, "roots", "before the time")
@@ -169,9 +172,11 @@ def _check_run(m: Model, s: Record) -> None:
     _require(all(p[name] >= 0 for name in p.dtype.names), "counters", "positive")
     _require(p.next_sample <= scene.samples, "next_sample", "of the run")
     if scene.samples > 1:
-        spacing = scene.end / (scene.samples - 1)
-        due = s.time / spacing
-        _require(abs(p.next_sample - due) <= 2.0 + 1e-9 * due, "next_sample", "that of the time")
+        spacing = (scene.end - scene.start) / (scene.samples - 1)
+        due = (s.time - scene.start) / spacing
+        _require(
+            abs(p.next_sample - due) <= 2.0 + 1e-9 * s.time / spacing, "next_sample", "that of the time"
+        )
 
 
 def _between(index: int, times: Floats, time: float) -> bool:
