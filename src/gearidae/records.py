@@ -226,7 +226,7 @@ class EnergyBalance:
     model_change : float
         By how much the stored energy jumped when the elastic contact model took over from the asperity model.
     drag_loss, dry_loss, damping_loss : float
-        Taken by the drags (quadratic and viscous) and the dry resistance at the gear, and by the mesh's viscous damping.
+        Taken by both drags and the dry resistance at the gear, and by the mesh's viscous damping.
     adhesion_loss : float
         Lost to adhesion: 0.93550 times pull-off load times stretch limit for each asperity that joined.
     stored_change, kinetic_change : float

@@ -49,10 +49,9 @@ def sample_times(start: float, duration: float, count: int) -> NDArray[np.float6
     ndarray, shape (count,)
         [s]; of a run that begins at 0, `numpy.linspace`.
     """
-    times = np.linspace(0.0, duration, count)
     if start == 0.0 or count < 2:
-        return times
+        return np.linspace(0.0, duration, count)
     first, spacing = first_sample(start, start + duration, count), duration / (count - 1)
-    times = (first + np.arange(count)) * spacing
-    times[0], times[-1] = start, start + duration
-    return times
+    grid = (first + np.arange(count, dtype=np.float64)) * spacing
+    grid[0], grid[-1] = start, start + duration
+    return grid

@@ -1,8 +1,8 @@
 """Going on from the end of another run: its state in the units, contacts and torques of a new scene.
 
-What the gears and the mesh are is the same; drive, load, coating and settings may differ. Time, motion, histories, energy
-balance and extremes go on. Where nothing but settings of the run differ, all units are the same and every number is kept
-to the last bit. A new torque changes the units of time and force, a new coating what asperities do:
+Gears and mesh are the same; drive, load, coating and settings may differ. Time, motion, histories, energy balance and
+extremes go on. Where nothing but settings of the run differ, all units are the same and every number is kept to the
+last bit. A new torque changes the units of time and force, a new coating what asperities do:
 
 - Joined heights are places on the surface, and stay; where asperities cannot stretch so far any more they have let go.
   A material that remembers nothing so far, or has not been there, starts with nothing stretched.
@@ -43,7 +43,7 @@ from gearidae.engine.model.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
-__all__ = ["MAY_DIFFER", "Origin", "checkpoint_of_start", "end_of", "problem_from"]
+__all__ = ["MAY_DIFFER", "Origin", "checkpoint_of_start", "end_of", "problem_from", "refuse_other_bodies"]
 
 MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
 """Tables in which a run may differ from the one it goes on from; its own ``initial`` then says nothing."""
@@ -112,7 +112,7 @@ def problem_from(scene: Scene, origin: Origin | None) -> Problem:
     """Make the problem of a scene that goes on from another run, or begins for itself."""
     if origin is None:
         return make_problem(scene)
-    _refuse_other_bodies(origin.scene, scene)
+    refuse_other_bodies(origin.scene, scene)
     return make_problem(scene, begin=origin.begin)
 
 
@@ -156,7 +156,7 @@ def _restored(scene: Scene, words: Floats, start: float) -> tuple[Problem, Float
     return problem, y
 
 
-def _refuse_other_bodies(old: Scene, new: Scene) -> None:
+def refuse_other_bodies(old: Scene, new: Scene) -> None:
     """Refuse a scene that differs in what may not."""
     before, after = old.to_dict(), new.to_dict()
     for table in sorted({*before, *after} - {*MAY_DIFFER}):
@@ -294,4 +294,3 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     s.stop_armed = 0
     if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:
         stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, 5)), 0)
-

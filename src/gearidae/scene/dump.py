@@ -66,7 +66,9 @@ def _knots(knots: tuple[tuple[float, float], ...]) -> str:
     """Write a schedule, one knot in a line."""
     text = "[\n" + "".join(f"    [{time!r}, {value!r}],\n" for time, value in knots) + "]"
     interpolation = getattr(knots, "interpolation", "linear")
-    return text if interpolation == "linear" else f"{{ interpolation = {_text(interpolation)}, knots = {text} }}"
+    return (
+        text if interpolation == "linear" else f"{{ interpolation = {_text(interpolation)}, knots = {text} }}"
+    )
 
 
 def _inline(group: Group) -> str:

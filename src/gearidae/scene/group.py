@@ -87,11 +87,11 @@ def _complaints(error: ValidationError) -> Iterator[tuple[str, object, str]]:
         reason = one.get("ctx", {}).get("error")
         if isinstance(reason, SceneError | ValidationError):
             inner = reason if isinstance(reason, ValidationError) else reason.__cause__
-            nested = (
-                _complaints(inner)
-                if isinstance(inner, ValidationError)
-                else [(reason.key, reason.value, reason.allowed)]
-            )
+            nested: Iterable[tuple[str, object, str]] = ()
+            if isinstance(inner, ValidationError):
+                nested = _complaints(inner)
+            elif isinstance(reason, SceneError):
+                nested = [(reason.key, reason.value, reason.allowed)]
             for key, value, allowed in nested:
                 inside = key if key.startswith("[") or not key else f".{key}"
                 yield f"{where}{inside}".lstrip("."), value, allowed

@@ -87,7 +87,7 @@ else:
     Schedule = Annotated[
         tuple[tuple[Time, Torque], ...], pairs, increasing, _reader("N m"), PlainSerializer(plain)
     ]
-_SPEEDS: Final[TypeAdapter[Knots]] = TypeAdapter(
+_SPEEDS: Final[TypeAdapter[Any]] = TypeAdapter(
     Annotated[tuple[tuple[Time, Speed], ...], pairs, increasing, _reader("rad/s")]
 )
 
@@ -112,7 +112,11 @@ class Scheduled(Quantity):
         ValueError
             Saying what is allowed.
         """
-        if isinstance(value, (list, tuple, dict)) or hasattr(value, "columns") or getattr(value, "ndim", 0):
+        if (
+            isinstance(value, (list, tuple, dict))
+            or hasattr(value, "columns")
+            or getattr(value, "ndim", 0) > 0
+        ):
             return _SPEEDS.validate_python(value)
         return Quantity.read(self, value)
 

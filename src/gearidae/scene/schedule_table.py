@@ -4,8 +4,8 @@
 ``data`` (a DataFrame) in place of ``file``, arrays or pint quantities as ``time`` and ``value``, ``knots`` (pairs), or
 a DataFrame of two columns as it is. The unit of a column stands in brackets in its name; without, it is SI.
 
-``packed`` holds many knots as text: the bits of the numbers, as differences, sorted by significance, compressed. Nothing
-is lost; 10,000 knots at even times take some tens of kilobytes in place of half a megabyte.
+``packed`` holds many knots as text: the bits of the numbers, as differences, sorted by significance, compressed.
+Nothing is lost; 10,000 knots at even times take some tens of kilobytes in place of half a megabyte.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Studies: simulations, or the static contact, used to answer a question.
 
-`coating_map`, `starting_torque` and `static_starting_torque`, what the teeth did (`tooth_contacts`), and estimates on
-paper. The older names are those of `gearidae.analysis` too. Names are loaded on first use.
+`coating_map`, `starting_torque` and `static_starting_torque`, what the teeth did (`tooth_contacts`), derivatives
+(`sensitivity`), and estimates on paper. The older names are those of `gearidae.analysis` too. Names are loaded on first
+use.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from gearidae.runs.validity import validity
     from gearidae.studies.coating_map import coating_map, open_map
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
+    from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.tooth_contacts import tooth_contacts
 
@@ -25,6 +27,7 @@ __all__ = [
     "natural_frequency",
     "open_map",
     "resting_gap",
+    "sensitivity",
     "starting_torque",
     "static_starting_torque",
     "steady_speed",
@@ -39,6 +42,7 @@ _HOME = {
     "natural_frequency": "equilibrium",
     "open_map": "coating_map",
     "resting_gap": "gearidae.runs.estimates",
+    "sensitivity": "sensitivity",
     "starting_torque": "starting_torque",
     "static_starting_torque": "starting_torque",
     "steady_speed": "gearidae.runs.estimates",

@@ -16,8 +16,8 @@ from gearidae.engine.energy.adhesion import sample_joining
 from gearidae.engine.energy.balance import sample_radius_power
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard
-from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.pair_events import handle_pair, newly_stretched, pair_guard
+from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, ROLLER, Floats, Model
 from gearidae.engine.model.tooth_pairs import (
     gap_and_rate,

@@ -62,12 +62,15 @@ class Begin(NamedTuple):
     place: float | None = None
 
 
+AT_ONCE = Begin()
+
+
 def make_problem(
     scene: Scene,
     nodes: Nodes | None = None,
     digest: tuple[float, ...] | None = None,
     columns: tuple[str, ...] | None = None,
-    begin: Begin = Begin(),
+    begin: Begin = AT_ONCE,
 ) -> Problem:
     """Scale a scene and tabulate its force laws.
 
@@ -319,9 +322,7 @@ def _add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
     s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
 
 
-def _add_schedule(
-    s: Record, tables: Tables, which: int, schedule: Knots, unit: float
-) -> set[float]:
+def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: float) -> set[float]:
     """Lay out a schedule of values in a unit; return the times over tau at which the solver has to stop for it."""
     tau, own = float(s.time_unit), s.schedule[which]
     cubic = schedule.interpolation == "cubic" and len(schedule) >= LEAST_CUBIC

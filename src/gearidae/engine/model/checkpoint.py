@@ -174,9 +174,7 @@ def _check_run(m: Model, s: Record) -> None:
     if scene.samples > 1:
         spacing = (scene.end - scene.start) / (scene.samples - 1)
         due = (s.time - scene.start) / spacing
-        _require(
-            abs(p.next_sample - due) <= 2.0 + 1e-9 * s.time / spacing, "next_sample", "that of the time"
-        )
+        _require(abs(p.next_sample - due) <= 2.0 + 1e-9 * s.time / spacing, "next_sample", "that of the time")
 
 
 def _between(index: int, times: Floats, time: float) -> bool:

@@ -166,8 +166,8 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     """dF/dy + cj dF/dy' of the motion, dense, column by column (Fortran order).
 
     The static error's own slopes are left out: it is small, and the Jacobian only steers Newton's iteration. So are the
-    slopes of a torque law in the speed (not that of a drive which holds one): a shaft takes many steps to follow a mild law, and each iteration reduces what
-    is left by the ratio of a step to that time.
+    slopes of a torque law in the speed: a shaft takes many steps to follow a mild law, and each iteration reduces what
+    is left by the ratio of a step to that time. A drive that holds a speed is not mild, and its slope is there.
 
     Parameters
     ----------

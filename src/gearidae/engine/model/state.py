@@ -69,7 +69,7 @@ LOAD: Final = 1
 
 SPEED: Final = 2
 SCHEDULES: Final = 3
-"""The speed that a drive holds, among the schedules beside the torques of `DRIVE` and `LOAD`; and how many these are."""
+"""The speed that a drive holds among the schedules, beside both torques; and how many there are."""
 
 MATERIALS: Final = 2
 """Materials that share the surface: bare first, then coated."""
@@ -158,7 +158,10 @@ SCENE: Final = _record(
     ("error_at", _INT),
     ("torque", TORQUE, (2,)),  # of the pinion (DRIVE) and of the gear (LOAD)
     ("schedule", SCHEDULE, (SCHEDULES,)),  # of both torques and of the speed that the drive holds (SPEED),
-    ("speed_gain", _REAL),  # and force over what the pinion's surface velocity is short of that; 0 if none is held
+    (
+        "speed_gain",
+        _REAL,
+    ),  # and force over what the pinion's surface velocity is short of that; 0 if none is held
     # the contact
     ("cutoff", _REAL),  # gap beyond which the force is taken as zero
     ("contact_gap", _REAL),  # gap of contact onset and separation
@@ -193,7 +196,10 @@ SCENE: Final = _record(
     ("end", _REAL),  # and ends
     ("samples", _INT),  # in the whole run, the first at its start; 0 for none
     ("first_sample", _REAL),  # the start over the time between two samples
-    ("knot_count", _INT),  # stops inside the run, knots of schedules and checkpoints, among the tables: times,
+    (
+        "knot_count",
+        _INT,
+    ),  # stops inside the run, knots of schedules and checkpoints, among the tables: times,
     ("knots_at", _INT),
     ("checkpoints_at", _INT),  # and for each 1 if a checkpoint is kept there
     ("stop", _INT),  # what ends the run before its time: see `STOPS`
@@ -313,7 +319,10 @@ STATE: Final = _record(
     ("near", _INT, (2,)),  # flank close enough for any pair to touch
     ("last_flank", _INT),  # flank of the last onset, -1 before the first
     ("bound_exceeded", _INT),  # 1 once a pair has been below the lowest gap
-    ("stop_armed", _INT),  # 1 once the gear has moved forward, in a run that ends where its speed falls to zero
+    (
+        "stop_armed",
+        _INT,
+    ),  # 1 once the gear has moved forward, in a run that ends where its speed falls to zero
     ("last_root", _REAL),  # time of the last root, and how many have come in close succession
     ("roots", _INT),
     ("next_knot", _INT),  # index of the coming knot among all knots

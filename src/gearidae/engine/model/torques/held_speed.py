@@ -1,4 +1,4 @@
-"""A drive that holds a speed: ``gain (w(t) - w)``, the torque-speed line of a motor with its no-load speed over time."""
+"""A drive that holds a speed: ``gain (w(t) - w)``, the torque-speed line of a motor."""
 
 from __future__ import annotations
 
