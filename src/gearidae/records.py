@@ -142,6 +142,7 @@ class Ending(Enum):
         "too_deep",
         "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
     )
+    STOPPED = ("stopped", "ended by on_block")
     NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
 
     @property
@@ -225,7 +226,7 @@ class EnergyBalance:
     model_change : float
         By how much the stored energy jumped when the elastic contact model took over from the asperity model.
     drag_loss, dry_loss, damping_loss : float
-        Taken by the drag and the dry resistance at the gear, and by the mesh's viscous damping.
+        Taken by both drags and the dry resistance at the gear, and by the mesh's viscous damping.
     adhesion_loss : float
         Lost to adhesion: 0.93550 times pull-off load times stretch limit for each asperity that joined.
     stored_change, kinetic_change : float
@@ -429,6 +430,10 @@ class Solution:
         The energy balance; None if the run produced nothing.
     extremes : Extremes, optional
         Likewise.
+    start : float
+        When the run began [s].
+    checkpoint : ndarray of 8-byte words, optional
+        That of the end, from which another run can go on.
     """
 
     time: NDArray[np.float64]
@@ -440,3 +445,5 @@ class Solution:
     reached: float | None = None
     balance: EnergyBalance | None = None
     extremes: Extremes | None = None
+    start: float = 0.0
+    checkpoint: Words | None = None

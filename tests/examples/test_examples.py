@@ -26,6 +26,10 @@ ANSWERS = {
     "long_run": (r"interrupted after \d+ samples(.|\n)*finished after 15001 samples", {"start_up.nc"}),
     "own_gears": (r"turns smoothly", {"own_gears.nc", "own_gears.toml"}),
     "read_with_dask": (r"SAM 1: a tooth leaves every 55\.\d ms", {"sweep.nc"}),
+    "start_run_brake": (
+        r"up: 0\.00 to 6\.00 ms(.|\n)*ing: 6\.00 to 8\.00 ms(.|\n)*ing: 8\.00 to \d+\.\d+ ms, -?0 r(.|\n)*: True",
+        {"start_up.nc", "running.nc", "braking.nc"},
+    ),
     "watch_the_teeth": (
         r"pair -?\d+, DRIVE: \d+\.\d nm, -\d+\.\d+ pN, FULLY_STRETCHED",
         {"teeth.png", "teeth.gif"},

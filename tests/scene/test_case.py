@@ -8,7 +8,10 @@ import pytest
 from gearidae.errors import SceneError
 from gearidae.scene import dump_case, load_case, preset
 
-SHIPPED = ["alternating", "braking", "high_speed", "low_speed", "roller_fast", "roller_slow", "start_up"]
+SHIPPED = [
+    *("alternating", "braking", "high_speed", "inspection", "low_speed", "roller_fast", "roller_slow"),
+    *("run_down", "running", "start_up"),
+]
 
 
 def test_shipped_cases(cases: Path) -> None:
@@ -44,6 +47,16 @@ def test_long_cases_drive_the_papers_gears_by_schedule(cases: Path, case: str) -
     highest = scene.drive.torque + max(torque for _, torque in scene.drive.schedule)
     assert highest == pytest.approx(paper.drive.torque, rel=1e-12, abs=0)  # a sum of two decimals
     assert scene.drive.schedule[-1][0] < scene.run.duration
+
+
+def test_a_chain_of_cases_is_of_the_same_gears(cases: Path) -> None:
+    scenes = [load_case(cases / f"{name}.toml") for name in ("start_up", "running", "run_down")]
+    for scene in scenes[1:]:
+        for table in ("gears", "mesh", "surface", "contact", "coating", "load"):
+            assert getattr(scene, table) == getattr(scenes[0], table)
+    assert scenes[2].drive is not None
+    begin = sum(scene.run.duration for scene in scenes[:2])
+    assert scenes[2].drive.schedule[0][0] == pytest.approx(begin, rel=1e-12, abs=0)  # a sum of two decimals
 
 
 def test_name_may_be_given(tmp_path: Path) -> None:

@@ -19,11 +19,11 @@ CONTRACT = {
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range",
     "coating": "sam_fraction energy",
     "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
-    "law.parameters",
-    "load": "torque harmonic drag schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
+    "law.parameters speed speed_gain",
+    "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
     "law.parameters",
     "initial": "gear_speed gap mesh_phase",
-    "run": "duration samples rtol method",
+    "run": "duration samples rtol method stop checkpoints",
     "roller": "radius mass width speed height",
     "contact": "model asperity",
 }

@@ -90,7 +90,14 @@ def readable_scene(text: object) -> dict[str, Any] | None:
     scene = _table(text)
     if not scene:
         return None
+    if any(_names_file(table) for table in scene.values()):
+        return None
     return scene if all(isinstance(table, dict) or key == "name" for key, table in scene.items()) else None
+
+
+def _names_file(table: object) -> bool:
+    """Whether a table of a scene would read a file; archives hold numbers, and must not make a reader open others."""
+    return isinstance(table, dict) and any(isinstance(one, dict) and "file" in one for one in table.values())
 
 
 def _is_text(value: object) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.energy import balance_attribute, balance_numbers
 from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.provenance import provenance, surface_regimes
@@ -69,8 +70,17 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             **_totals([solution]),
             **balance_attribute(scene, solution),
             **surface_regimes(scene),
+            **end_state_attributes(solution.start, solution.checkpoint),
+            "t_end": _end(scene, solution),
         },
     )
+
+
+def _end(scene: Scene, solution: Solution) -> float:
+    """When a run ends [s]: at the end of its time, or where it was to stop."""
+    if scene.run.stop != "time" and solution.status == "finished":
+        return reached(solution)
+    return solution.start + scene.run.duration
 
 
 def reached(solution: Solution) -> float:

@@ -24,12 +24,14 @@ from numpy.typing import NDArray
 
 from gearidae.archive.definition import define, offsets
 from gearidae.archive.disk import commit, disk_errors, open_file, read_at, sync, write_at
+from gearidae.archive.end_state import packed_state
 from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
 from gearidae.archive.lock import WriterLock
 from gearidae.archive.variables import EVENTS
 from gearidae.errors import SceneError
 from gearidae.records import Block, Statistics
+from gearidae.sampling import first_sample
 
 __all__ = ["GrowingArchive", "is_growing", "trimmed"]
 
@@ -70,6 +72,8 @@ def trimmed(ds: xr.Dataset, *, running: bool) -> xr.Dataset:
     }
     point = newest(slot.astype("<f8").tobytes() for slot in ds["checkpoint"].values)
     cut = ds.isel(time=slice(counts["sample"]), event=slice(counts["event"])).drop_vars(list(_BOOKS))
+    if point.sequence:
+        cut.attrs["end_state"] = packed_state(point.state)
     cut.attrs |= {
         "status": "running" if running else "interrupted",
         "message": f"not at its end yet; checkpoint at {point.time:g} s",
@@ -389,12 +393,14 @@ def _lay_out(path: Path, template: xr.Dataset, sizes: Mapping[str, int], duratio
     """Write the file's structure, and the times of the samples, which are known."""
     path.unlink(missing_ok=True)
     define(template, path, sizes, _BOOKS)
-    total = sizes["time"]
+    total, begin = sizes["time"], float(template.attrs.get("start_time", 0.0))
+    first = first_sample(begin, begin + duration, total)
     with netCDF4.Dataset(path, "a") as file:
         for start in range(0, total, _COPIED):
             number = np.arange(start, min(start + _COPIED, total), dtype=np.float64)
-            times = number * (duration / (total - 1))  # as numpy.linspace has it, to the last bit
-            times[number == total - 1] = duration
+            times = (first + number) * (duration / (total - 1))  # as `sample_times` has it, to the last bit
+            times[number == 0] = begin
+            times[number == total - 1] = begin + duration
             file["time"][start : start + times.size] = times
         file["checkpoint"][:] = 0.0
     sync(path)

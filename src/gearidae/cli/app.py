@@ -51,11 +51,14 @@ def run(
     rtol: Rtol = None,
     overwrite: Overwrite = False,
     resume: Annotated[bool, Parameter(help="Resume the unfinished run in the output file.")] = False,
+    start: Annotated[Path | None, Parameter(help="Archive of another run to go on from.")] = None,
+    until: Annotated[str | None, Parameter(help="End the run before its time: sticks, or 'turns N'.")] = None,
 ) -> int:
     """Run one scene and write a netCDF archive, which can be opened during the run."""
     from gearidae.cli.simulation import run_case
 
-    return run_case(str(case), output, settings or [], rtol, overwrite=overwrite, resume=resume)
+    given = [*(settings or []), *([] if until is None else [f"run.stop={until}"])]
+    return run_case(str(case), output, given, rtol, overwrite=overwrite, resume=resume, start=start)
 
 
 @app.command

@@ -28,6 +28,7 @@ def run_case(
     *,
     overwrite: bool,
     resume: bool,
+    start: Path | None = None,
 ) -> int:
     """Run one scene, write its archive, print its outcome.
 
@@ -45,6 +46,8 @@ def run_case(
         Whether the archive may replace a file.
     resume : bool
         Whether to resume the run in the archive.
+    start : Path, optional
+        Archive of another run to go on from.
 
     Returns
     -------
@@ -57,7 +60,13 @@ def run_case(
     was_finished = resume and target.exists() and gd.open_archive(target).attrs["status"] == "finished"
     try:
         ds = gd.simulate(
-            scene, rtol=rtol, progress=not is_quiet(), archive=target, overwrite=overwrite, resume=resume
+            scene,
+            rtol=rtol,
+            progress=not is_quiet(),
+            archive=target,
+            overwrite=overwrite,
+            resume=resume,
+            start=start,
         )
     except SolverError as error:
         if error.dataset is not None:

@@ -1,5 +1,18 @@
 """The engine: one residual, its guards and histories, and two drivers that integrate it with SUNDIALS IDA."""
 
-from gearidae.engine.backend import Ended, Start, choose_backend, follow, kept_at, outlook, solve
+from gearidae.engine.backend import Ended, OnBlock, Start, choose_backend, follow, kept_at, outlook, solve
+from gearidae.engine.continuing import Origin, end_of, refuse_other_bodies
 
-__all__ = ["Ended", "Start", "choose_backend", "follow", "kept_at", "outlook", "solve"]
+__all__ = [
+    "Ended",
+    "OnBlock",
+    "Origin",
+    "Start",
+    "choose_backend",
+    "end_of",
+    "follow",
+    "kept_at",
+    "outlook",
+    "refuse_other_bodies",
+    "solve",
+]

@@ -6,18 +6,20 @@ import logging
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.changeover import change_over, deepen
+from gearidae.engine.continuing import Origin, checkpoint_of_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.integrate.driver import Block, Ending
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics, sampled_columns
+from gearidae.sampling import sample_times
 from gearidae.scene import Scene
 
 __all__ = [
@@ -148,6 +150,8 @@ class Start:
     ----------
     checkpoint : ndarray, optional
         From a `Block` of a run of the same scene by the same backend.
+    origin : Origin, optional
+        The end of another run that this one goes on from; without a checkpoint, it begins there.
     statistics : Statistics
         The solver's counters there.
     time, wall_time : float
@@ -157,6 +161,7 @@ class Start:
     """
 
     checkpoint: NDArray[np.float64] | None = None
+    origin: Origin | None = None
     statistics: Statistics = field(default_factory=Statistics)
     time: float = 0.0
     wall_time: float = 0.0
@@ -180,6 +185,8 @@ class Ended:
         The latest energy balance; None if the run did not begin.
     extremes : Extremes, optional
         The latest extremes, likewise.
+    checkpoint : ndarray, optional
+        That of the end; None where the run ended between two.
     """
 
     statistics: Statistics
@@ -188,6 +195,11 @@ class Ended:
     reached: float
     balance: EnergyBalance | None = None
     extremes: Extremes | None = None
+    checkpoint: NDArray[np.float64] | None = None
+
+
+OnBlock: TypeAlias = Callable[[Block], object]
+"""What is told every block of output, and ends the run by returning True."""
 
 
 def follow(
@@ -197,6 +209,7 @@ def follow(
     backend: str = "auto",
     on_progress: Callable[[float, int], None] | None = None,
     begin: Start | None = None,
+    on_block: OnBlock | None = None,
 ) -> Ended:
     """Run a scene and hand every block of output to `take` as soon as it is there.
 
@@ -209,7 +222,9 @@ def follow(
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
     begin : Start, optional
-        Checkpoint to resume from; by default the run starts at time 0.
+        Checkpoint to resume from, or end of another run to go on from; by default the run starts at time 0.
+    on_block : callable, optional
+        Told every block of output, after `take`; what returns True ends the run there, with the status ``stopped``.
 
     Returns
     -------
@@ -227,30 +242,35 @@ def follow(
     status = message = ""
     balance: EnergyBalance | None = None
     extremes: Extremes | None = None
+    checkpoint: NDArray[np.float64] | None = None
     skipped: dict[str, int] = {}
     started = time.perf_counter()
     try:
         load_driver(name)
-        problem = make_problem(scene)
+        problem = problem_from(scene, begin.origin)
         ready_driver(name, problem)
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
-        for block in run_blocks(
-            problem, scene.run.rtol, scene.run.sample_count, name, statistics, begin.checkpoint
-        ):
+        resume = begin.checkpoint
+        if resume is None and begin.origin is not None:
+            resume = checkpoint_of_start(scene, begin.origin)
+        for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
             take(block, statistics, begin.wall_time + time.perf_counter() - started)
             reached = block.time
             balance, extremes = block.balance or balance, block.extremes or extremes
             seen += len(block.events)
+            checkpoint = block.checkpoint
             if on_progress is not None:
                 on_progress(reached, seen)
+            if on_block is not None and on_block(block) is True:
+                statistics.ending = Ending.STOPPED
+                break
         status, message = statistics.ending.status, statistics.message
     except KeyboardInterrupt:
         status, message = "interrupted", "interrupted by the user"
     wall_time = begin.wall_time + time.perf_counter() - started
-    return Ended(
-        statistics_of(statistics, wall_time, name, skipped), status, message, reached, balance, extremes
-    )
+    counted = statistics_of(statistics, wall_time, name, skipped)
+    return Ended(counted, status, message, reached, balance, extremes, checkpoint)
 
 
 def statistics_of(
@@ -280,6 +300,8 @@ def solve(
     samples: int | str | None = None,
     backend: str = "auto",
     on_progress: Callable[[float, int], None] | None = None,
+    origin: Origin | None = None,
+    on_block: OnBlock | None = None,
 ) -> Solution:
     """Run a scene and collect all of it.
 
@@ -291,6 +313,10 @@ def solve(
     backend : {"auto", "native", "sksundae"}, optional
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
+    origin : Origin, optional
+        The end of another run to go on from.
+    on_block : callable, optional
+        As for `follow`.
 
     Returns
     -------
@@ -312,10 +338,11 @@ def solve(
         rows.append(block.rows)
         events.append(block.events)
 
-    ended = follow(scene, take, backend=backend, on_progress=on_progress)
+    begin = Start(origin=origin, time=0.0 if origin is None else origin.time)
+    ended = follow(scene, take, backend=backend, on_progress=on_progress, begin=begin, on_block=on_block)
     table = np.concatenate(rows)
     return Solution(
-        time=np.linspace(0.0, scene.run.duration, scene.run.sample_count)[: len(table)],
+        time=sample_times(begin.time, scene.run.duration, scene.run.sample_count)[: len(table)],
         samples={column: np.ascontiguousarray(table[:, i]) for i, column in enumerate(columns)},
         events=_events(np.concatenate(events)),
         statistics=ended.statistics,
@@ -324,11 +351,16 @@ def solve(
         reached=ended.reached,
         balance=ended.balance,
         extremes=ended.extremes,
+        start=begin.time,
+        checkpoint=ended.checkpoint,
     )
 
 
 def outlook(
-    scene: Scene, backend: str, checkpoint: NDArray[np.float64] | None = None
+    scene: Scene,
+    backend: str,
+    checkpoint: NDArray[np.float64] | None = None,
+    origin: Origin | None = None,
 ) -> tuple[int, dict[str, int], str]:
     """What can be said of a run without running it.
 
@@ -338,6 +370,8 @@ def outlook(
     backend : {"native", "sksundae"}
     checkpoint : ndarray, optional
         Where the run is to go on.
+    origin : Origin, optional
+        The end of another run that it goes on from.
 
     Returns
     -------
@@ -353,13 +387,15 @@ def outlook(
     SceneError
         If the scene is beyond what the engine can do.
     """
-    problem = make_problem(scene)
+    problem = problem_from(scene, origin)
     if checkpoint is not None and problem.of_checkpoint(checkpoint).depth > 0:
         problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
     return problem.checkpoint(0.0, problem.start).size, problem.skipped, formulas(problem, backend)
 
 
-def kept_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> tuple[EnergyBalance, Extremes]:
+def kept_at(
+    scene: Scene, checkpoint: NDArray[np.float64], backend: str, origin: Origin | None = None
+) -> tuple[EnergyBalance, Extremes]:
     """Return the energy balance and the extremes at a checkpoint of a run.
 
     Parameters
@@ -369,13 +405,15 @@ def kept_at(scene: Scene, checkpoint: NDArray[np.float64], backend: str) -> tupl
         From a `Block` of a run of this scene.
     backend : {"native", "sksundae"}
         The driver that ran.
+    origin : Origin, optional
+        The end of another run that it went on from.
 
     Raises
     ------
     SceneError
         If the checkpoint is not of this scene.
     """
-    problem = make_problem(scene).of_checkpoint(checkpoint)
+    problem = problem_from(scene, origin).of_checkpoint(checkpoint)
     problem.prepare(scene.run.rtol, scene.run.sample_count)
     state = np.empty(problem.start.size)
     time = problem.restore(checkpoint, state)

@@ -11,7 +11,7 @@ from gearidae.engine.energy.balance import carry_balance
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 
-__all__ = ["change_over", "deepen"]
+__all__ = ["carry_nodes", "change_over", "deepen", "join_as_pairs", "note_gaps", "take_over"]
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
 
@@ -35,20 +35,28 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     m, source = new.model, old.model
     state = np.empty(old.start.size)
     time = old.restore(checkpoint, state)
-    _take_over(source, m)
+    take_over(source, m)
     y = np.concatenate([state, np.zeros(new.start.size - state.size)])
-    # what is joined goes with the gaps along the contact, and these with the pressures of what is joined
-    for _ in range(_ROUNDS):
-        before = y.copy()
-        _join(m, y)
-        settle_nodes(m, time, y)
-        if np.max(np.abs(y - before)) <= SETTLED:
-            break
+    m.state.time = time
+    join_as_pairs(m, y)
     carry_balance(source, state, m, y)
     return new.checkpoint(time, y)
 
 
-def _take_over(source: Model, m: Model) -> None:
+def join_as_pairs(m: Model, y: Floats) -> None:
+    """Set the deflections that go with the pairs' joined heights, in place.
+
+    What is joined goes with the gaps along the contact, and these with the pressures of what is joined.
+    """
+    for _ in range(_ROUNDS):
+        before = y.copy()
+        _join(m, y)
+        settle_nodes(m, float(m.state.time), y)
+        if np.max(np.abs(y - before)) <= SETTLED:
+            break
+
+
+def take_over(source: Model, m: Model) -> None:
     """Take the state over, with the histories in the slots that the new model has for them."""
     slots, own = int(source.scene.slots), int(m.scene.slots)
     histories = [(k // slots, h.copy()) for k, h in enumerate(source.state.history[: source.scene.histories])]
@@ -83,23 +91,68 @@ def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     m.rows[m.scene.node_rows_at : m.scene.error_weights_at] = source.rows[
         source.scene.node_rows_at : source.scene.error_weights_at
     ]
-    nodes, y = int(m.scene.nodes), state.copy()
-    for k in range(int(m.scene.histories)):
-        first = first_unknown(m, k)
-        y[first : first + nodes] = _along(source, m, state[first : first + nodes], False)
-        row_of(m, k, SHARE)[:] = _along(source, m, row_of(source, k, SHARE), False)
-        for material in range(MATERIALS):
-            heights = row_of(source, k, JOINED + material) - profile_of(source, True)
-            row_of(m, k, JOINED + material)[:] = _along(source, m, heights, True) + profile_of(m, True)
+    y = state.copy()
+    _interpolate(source, state, m, y)
     settle_nodes(m, time, y)
+    note_gaps(m, y)
+    carry_balance(source, state, m, y)
+    return new.checkpoint(time, y)
+
+
+def carry_nodes(source: Model, state: Floats, m: Model, y: Floats) -> bool:
+    """Carry deflections and what nodes remember to another model with nodes, in place.
+
+    Returns
+    -------
+    bool
+        Whether both have the same nodes and units, so that all is kept to the last bit; else the deflections are where
+        the search for the new ones begins, and `note_gaps` is wanted once they are settled.
+    """
+    old, new = profile_of(source, False), profile_of(m, False)
+    same = (
+        np.array_equal(old, new)
+        and source.scene.force_unit == m.scene.force_unit
+        and source.scene.histories == m.scene.histories
+    )
+    if same:
+        m.rows[m.scene.node_rows_at : m.scene.error_weights_at] = source.rows[
+            source.scene.node_rows_at : source.scene.error_weights_at
+        ]
+        y[-int(m.scene.nodes * m.scene.histories) :] = state[-int(m.scene.nodes * m.scene.histories) :]
+        return True
+    _interpolate(source, state, m, y)
+    return False
+
+
+def note_gaps(m: Model, y: Floats) -> None:
+    """Note gaps and the energy of what is joined along all contacts, once the deflections are settled."""
+    nodes = int(m.scene.nodes)
     for k in range(int(m.scene.histories)):
         first = first_unknown(m, k)
         gap = m.state.history[k].gap
         row_of(m, k, GAP)[:] = gap + profile_of(m, False) + y[first : first + nodes]
         for material in range(MATERIALS):
             book_points(m, k, material)
-    carry_balance(source, state, m, y)
-    return new.checkpoint(time, y)
+
+
+def _interpolate(source: Model, state: Floats, m: Model, y: Floats) -> None:
+    """Carry deflections, shares and joined heights to the places of other nodes, pair by pair."""
+    before = {
+        (k // int(source.scene.slots), int(source.state.history[k].pair)): k
+        for k in range(int(source.scene.histories))
+    }
+    for k in range(int(m.scene.histories)):
+        place = (k // int(m.scene.slots), int(m.state.history[k].pair))
+        old = before.get(place)
+        if old is None:
+            continue
+        first, was = first_unknown(m, k), first_unknown(source, old)
+        deflections = state[was : was + int(source.scene.nodes)]
+        y[first : first + int(m.scene.nodes)] = _along(source, m, deflections, False)
+        row_of(m, k, SHARE)[:] = _along(source, m, row_of(source, old, SHARE), False)
+        for material in range(MATERIALS):
+            heights = row_of(source, old, JOINED + material) - profile_of(source, True)
+            row_of(m, k, JOINED + material)[:] = _along(source, m, heights, True) + profile_of(m, True)
 
 
 def _along(source: Model, m: Model, values: Floats, finer: bool) -> Floats:

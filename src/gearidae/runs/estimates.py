@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -56,8 +57,9 @@ def steady_speed(scene: Scene) -> float:
     Returns
     -------
     float
-        w2 of ``M10 R2/R1 = M20 + alpha w2^2`` [rad/s]; 0 if the drive does not overcome the dry resistance,
-        infinite if there is no drag. (Teodorescu et al. 2009, Eq. 3, prints the ratio upside down.)
+        w2 of ``(M10 + g (w - w2 R2/R1)) R2/R1 = M20 + c w2 + alpha w2^2`` [rad/s], with the viscous drag c and a drive
+        that holds the speed w with the gain g; 0 if the drive does not overcome the dry resistance, infinite if
+        nothing slows the gear down. (Teodorescu et al. 2009, Eq. 3, prints the ratio upside down.)
 
     Raises
     ------
@@ -70,11 +72,24 @@ def steady_speed(scene: Scene) -> float:
 
 def balanced_speed(scene: Scene, torque: float) -> float:
     """Speed of the gear [rad/s] at which a constant torque of the pinion [N m] is balanced, see `steady_speed`."""
-    gears, _, load = _tables(scene)
-    surplus = torque * gears.gear_teeth / gears.pinion_teeth - load.torque
+    gears, drive, load = _tables(scene)
+    ratio = gears.gear_teeth / gears.pinion_teeth
+    surplus = (torque + drive.speed_gain * _mean_over_run(scene, drive.speed_knots())) * ratio - load.torque
     if surplus <= 0.0:
         return 0.0
-    return math.sqrt(surplus / load.drag) if load.drag > 0.0 else math.inf
+    linear = load.viscous + drive.speed_gain * ratio**2
+    slowing = linear + math.sqrt(linear**2 + 4.0 * load.drag * surplus)
+    return 2.0 * surplus / slowing if slowing > 0.0 else math.inf
+
+
+def _mean_over_run(scene: Scene, knots: Sequence[tuple[float, float]], *, constant: float = 0.0) -> float:
+    """Mean size of a constant plus a schedule over the run; cubics are taken for straight lines."""
+    if not knots:
+        return abs(constant)
+    table = np.array(knots)
+    # Between knots the schedule is a straight line: what is off the mean of 4001 values lies below a thousandth.
+    times = np.linspace(0.0, scene.run.duration, 4001)
+    return float(np.abs(constant + np.interp(times, table[:, 0], table[:, 1])).mean())
 
 
 def resting_gap(scene: Scene) -> float:
@@ -114,20 +129,21 @@ def mean_drive_torque(scene: Scene) -> float:
     Returns
     -------
     float
-        Mean over ``run.duration`` of the size of the constant part plus the schedule [N m].
+        Mean over ``run.duration`` of the size of the constant part plus the schedule [N m]; of a drive that holds a
+        speed, what the load takes at that speed.
 
     Raises
     ------
     SceneError
         If the scene has no gears.
     """
-    _, drive, _ = _tables(scene)
-    if not drive.schedule:
-        return abs(drive.torque)
-    knots = np.array(drive.schedule)
-    # Between knots the schedule is a straight line: what is off the mean of 4001 values lies below a thousandth.
-    times = np.linspace(0.0, scene.run.duration, 4001)
-    return float(np.abs(drive.torque + np.interp(times, knots[:, 0], knots[:, 1])).mean())
+    gears, drive, load = _tables(scene)
+    mean = _mean_over_run(scene, drive.schedule, constant=drive.torque)
+    if drive.speed is None:
+        return mean
+    speed = balanced_speed(scene, mean)
+    resistance = load.torque + speed * (load.viscous + load.drag * speed)
+    return resistance * gears.pinion_teeth / gears.gear_teeth
 
 
 def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:

@@ -22,7 +22,12 @@ _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "f
 
 
 def prepare(
-    scene: Scene, *, rtol: float | None, t_end: float | None, samples: int | str | None, backend: str = "auto"
+    scene: Scene,
+    *,
+    rtol: float | None,
+    t_end: float | None = None,
+    samples: int | str | None,
+    backend: str = "auto",
 ) -> Scene:
     """Put the settings of one call into the scene, so that the scene says exactly what was run.
 
@@ -58,7 +63,14 @@ def prepare(
     return scene.replace(given) if given else scene
 
 
-def solve(scene: Scene, backend: str, on_progress: Callable[[float, int], None] | None = None) -> Solution:
+def solve(
+    scene: Scene,
+    backend: str,
+    on_progress: Callable[[float, int], None] | None = None,
+    *,
+    origin: engine.Origin | None = None,
+    on_block: engine.OnBlock | None = None,
+) -> Solution:
     """Run a scene; a solver that cannot even start leaves an empty solution that says why.
 
     Parameters
@@ -68,13 +80,17 @@ def solve(scene: Scene, backend: str, on_progress: Callable[[float, int], None] 
         As for `simulate`.
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
+    origin : Origin, optional
+        The end of another run to go on from.
+    on_block : callable, optional
+        Told every block of output; ends the run by returning True.
 
     Returns
     -------
     Solution
     """
     try:
-        return engine.solve(scene, backend=backend, on_progress=on_progress)
+        return engine.solve(scene, backend=backend, on_progress=on_progress, origin=origin, on_block=on_block)
     except SolverError as error:
         return unsolved("failed", str(error))
 

@@ -9,10 +9,14 @@ from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.plausibility import log_doubts
 from gearidae.runs.running import early_end, prepare, solve
+from gearidae.runs.starting import started_from
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import xarray as xr
 
+    from gearidae.records import Block
     from gearidae.scene import Scene
 
 __all__ = ["simulate"]
@@ -29,6 +33,8 @@ def simulate(
     archive: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
     resume: bool = False,
+    start: xr.Dataset | str | os.PathLike[str] | None = None,
+    on_block: Callable[[Block], object] | None = None,
 ) -> xr.Dataset:
     """Run a scene.
 
@@ -39,7 +45,7 @@ def simulate(
     rtol : float, optional
         Relative tolerance of the solver in place of ``run.rtol`` of the scene.
     t_end : float, optional
-        Simulated time [s] in place of ``run.duration``.
+        Time at which the run ends [s], in place of what ``run.duration`` makes it.
     samples : int or str, optional
         Number of uniform samples, their rate ("20 kHz"), or "off", in place of ``run.samples``.
     backend : {'auto', 'native', 'sksundae'}, optional
@@ -56,6 +62,14 @@ def simulate(
         Go on with the run that `archive` holds if it is not at its end; it gives the same samples and events as if
         it had never been interrupted. Without such a file the run begins; an archive of a finished run is returned
         as it is.
+    start : xarray.Dataset or path-like, optional
+        Another run to go on from, in memory or on disk: with its motion, histories, energy balance and time, where it
+        ended (an unfinished one: at its newest checkpoint). The run then lasts ``run.duration`` from there; torques and
+        schedules are those of the time that goes on. The scene may differ in ``drive``, ``load``, ``coating``, ``run``
+        and ``name``; its ``initial`` says nothing.
+    on_block : callable, optional
+        Told each block of output (`gearidae.records.Block`: samples, events, the time reached) as soon as it is there;
+        by returning True it ends the run, which keeps what there is, with the status ``stopped``.
 
     Returns
     -------
@@ -83,7 +97,11 @@ def simulate(
     >>> scene = gd.preset("teodorescu2009_low_speed")
     >>> ds = gd.simulate(scene, archive="low_speed.nc")  # doctest: +SKIP
     """
-    scene = prepare(scene, rtol=rtol, t_end=t_end, samples=samples, backend=backend)
+    scene = prepare(scene, rtol=rtol, samples=samples, backend=backend)
+    started = started_from(start, scene)
+    begin = 0.0 if started is None else started.time
+    if t_end is not None:
+        scene = _ending(scene, t_end, begin)
     log_doubts(scene)
     # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one
     if archive is not None:
@@ -91,19 +109,39 @@ def simulate(
         from gearidae.runs.streaming import stream
 
         target = check_target(archive, overwrite=overwrite or resume)
-        return stream(scene, target, backend=backend, progress=progress, resume=resume)
+        return stream(
+            scene,
+            target,
+            backend=backend,
+            progress=progress,
+            resume=resume,
+            started=started,
+            on_block=on_block,
+        )
     if resume:
         raise SceneError("resume", resume, "needs the archive to go on from (archive=)")
-    with run_progress(progress, scene.run.duration) as report:
-        solution = solve(scene, backend, report)
+    with run_progress(progress, begin + scene.run.duration) as report:
+        origin = None if started is None else started.origin
+        solution = solve(scene, backend, report, origin=origin, on_block=on_block)
 
     from gearidae.analysis.run_summary import with_account
     from gearidae.archive import reached, to_dataset
 
     ds = with_account(to_dataset(scene, solution))
+    if started is not None:
+        ds.attrs["started_from"] = started.fingerprint
     if solution.status == "interrupted":
         where = f"t = {reached(solution):.4g} s of {scene.run.duration:.4g} s"
         raise Interrupted(f"stopped at {where}; what was computed is the error's dataset", ds)
-    if solution.status != "finished":
+    if solution.status not in ("finished", "stopped"):
         raise early_end(ds, reached(solution))
     return ds
+
+
+def _ending(scene: Scene, t_end: float, begin: float) -> Scene:
+    """Let a run that begins at a time end at another."""
+    if begin == 0.0:
+        return scene.replace({"run.duration": t_end})
+    if not isinstance(t_end, int | float) or not t_end > begin:
+        raise SceneError("t_end", t_end, f"must lie after {begin:g} s, where the run begins")
+    return scene.replace({"run.duration": t_end - begin})

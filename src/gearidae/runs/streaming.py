@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from gearidae.engine import Ended
-    from gearidae.records import Block, Statistics
+    from gearidae.records import Block, Solution, Statistics
+    from gearidae.runs.starting import Started
     from gearidae.scene import Scene
 
 __all__ = ["stream"]
@@ -39,6 +40,8 @@ def stream(
     backend: str,
     progress: bool | RunProgress,
     resume: bool,
+    started: Started | None = None,
+    on_block: engine.OnBlock | None = None,
 ) -> xr.Dataset:
     """Run a scene, or go on with a run of it, into an archive.
 
@@ -48,8 +51,10 @@ def stream(
         As it is to be run.
     target : Path
         The archive, checked by `gearidae.archive.check_target`.
-    backend, progress, resume
+    backend, progress, resume, on_block
         As for `gearidae.simulate`.
+    started : Started, optional
+        Where the run goes on from.
 
     Returns
     -------
@@ -61,16 +66,16 @@ def stream(
     SceneError, SolverError, Interrupted
         As `gearidae.simulate` says.
     """
-    found = _found(target, scene) if resume and target.exists() else None
+    found = _found(target, scene, started) if resume and target.exists() else None
     if found is not None and found.attrs["status"] == "finished":
         return found
     if found is not None:
         backend = _same_backend(backend, str(found.attrs["backend"]))
         found.close()
-    run = _Run(scene, target, engine.choose_backend(backend, scene.run.method))
+    run = _Run(scene, target, engine.choose_backend(backend, scene.run.method), started)
     with run.take_up() if found is not None else run.begin() as archive:
-        with run_progress(progress, scene.run.duration) as report:
-            ended = run.follow(archive, report)
+        with run_progress(progress, run.end) as report:
+            ended = run.follow(archive, report, on_block)
         run.leave(archive, ended)
     return open_archive(target)
 
@@ -78,9 +83,14 @@ def stream(
 class _Run:
     """One run into one archive."""
 
-    def __init__(self, scene: Scene, target: Path, backend: str) -> None:
-        self._scene, self._target, self._backend = scene, target, backend
-        self._checkpoint_size, self._skipped, self._method = engine.outlook(scene, backend)
+    def __init__(self, scene: Scene, target: Path, backend: str, started: Started | None) -> None:
+        self._scene, self._target, self._backend, self._started = scene, target, backend, started
+        self._origin = None if started is None else started.origin
+        self._begin = 0.0 if started is None else started.time
+        self.end = self._begin + scene.run.duration
+        self._checkpoint_size, self._skipped, self._method = engine.outlook(
+            scene, backend, origin=self._origin
+        )
 
     def begin(self) -> GrowingArchive:
         """Make the archive."""
@@ -105,24 +115,34 @@ class _Run:
         except DiskError as error:
             raise SceneError("archive", self._target, f"cannot be written ({error})") from error
 
-    def follow(self, archive: GrowingArchive, report: RunProgress | None) -> Ended:
+    def follow(
+        self, archive: GrowingArchive, report: RunProgress | None, on_block: engine.OnBlock | None
+    ) -> Ended:
         """Run on from the newest checkpoint."""
-        duration = self._scene.run.duration
-        reached = 0.0
+        reached = self._begin
 
         def take(block: Block, statistics: Statistics, wall_time: float) -> None:
             nonlocal reached
-            archive.take(block, statistics, wall_time, last=_is_end(block.time, duration))
+            archive.take(block, statistics, wall_time, last=_is_end(block.time, self.end))
             reached = block.time
 
         try:
             point = archive.go_back()
-            reached = point.time
-            if _is_end(reached, duration):  # all that is missing is the final form
+            reached = point.time if point.sequence else self._begin
+            if _is_end(reached, self.end):  # all that is missing is the final form
                 return self._ended_at(point)
             state = point.state if point.sequence else None
-            start = engine.Start(state, point.statistics, point.time, point.wall_time, point.events)
-            return engine.follow(self._scene, take, backend=self._backend, on_progress=report, begin=start)
+            start = engine.Start(
+                state, self._origin, point.statistics, reached, point.wall_time, point.events
+            )
+            return engine.follow(
+                self._scene,
+                take,
+                backend=self._backend,
+                on_progress=report,
+                begin=start,
+                on_block=on_block,
+            )
         except DiskError as error:
             raise self._not_written(archive, reached, error) from error
 
@@ -142,14 +162,14 @@ class _Run:
             archive.finish(self._told(archive, ended))
         except DiskError as error:
             raise self._not_written(archive, ended.reached, error) from error
-        if ended.status != "finished":
+        if ended.status not in ("finished", "stopped"):
             raise early_end(open_archive(self._target), ended.reached)
 
     def _told(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
         """Make the final template, with the account of the run."""
         template = self._template(ended)
         if self._scene.roller is None:
-            end = self._scene.run.duration if ended.status == "finished" else 0.0
+            end = float(template.attrs["t_end"]) if ended.status == "finished" else 0.0
             told = account_of(
                 self._scene,
                 archive.read,
@@ -171,24 +191,20 @@ class _Run:
 
     def _ended_at(self, point: Checkpoint) -> Ended:
         """How a run ended of which only the archive's final form was missing."""
-        _, skipped, method = engine.outlook(self._scene, self._backend, point.state)
+        _, skipped, method = engine.outlook(self._scene, self._backend, point.state, self._origin)
         counted = replace(point.statistics, method=method)
         statistics = statistics_of(counted, point.wall_time, self._backend, skipped)
-        balance, extremes = engine.kept_at(self._scene, point.state, self._backend)
-        return engine.Ended(statistics, "finished", "", point.time, balance, extremes)
+        balance, extremes = engine.kept_at(self._scene, point.state, self._backend, self._origin)
+        return engine.Ended(statistics, "finished", "", point.time, balance, extremes, point.state)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
-        """Make the run's dataset, without samples and events, with what only a file has."""
-        return with_validity(self._dataset(ended), self._scene)
-
-    def _dataset(self, ended: Ended | None) -> xr.Dataset:
         """Make the run's dataset, without samples and events."""
         empty = unsolved("running", "the run is not at its end yet")
-        statistics = replace(
-            empty.statistics, backend=self._backend, method=self._method, skipped=self._skipped
-        )
         if ended is None:
-            return to_dataset(self._scene, replace(empty, statistics=statistics))
+            statistics = replace(
+                empty.statistics, backend=self._backend, method=self._method, skipped=self._skipped
+            )
+            return self._dataset(replace(empty, statistics=statistics))
         solution = replace(
             empty,
             statistics=ended.statistics,
@@ -197,8 +213,16 @@ class _Run:
             reached=ended.reached,
             balance=ended.balance,
             extremes=ended.extremes,
+            checkpoint=ended.checkpoint,
         )
-        return to_dataset(self._scene, solution)
+        return self._dataset(solution)
+
+    def _dataset(self, solution: Solution) -> xr.Dataset:
+        """Label a solution, and say how far the model holds and what the run goes on from."""
+        ds = with_validity(to_dataset(self._scene, replace(solution, start=self._begin)), self._scene)
+        if self._started is not None:
+            ds.attrs["started_from"] = self._started.fingerprint
+        return ds
 
 
 def _is_end(time: float, duration: float) -> bool:
@@ -206,7 +230,7 @@ def _is_end(time: float, duration: float) -> bool:
     return math.isclose(time, duration, rel_tol=1e-12)
 
 
-def _found(target: Path, scene: Scene) -> xr.Dataset:
+def _found(target: Path, scene: Scene, started: Started | None) -> xr.Dataset:
     """Open the archive to be resumed and make sure that it is of this very run."""
     ds = open_archive(target)
     theirs = json.loads(ds.attrs["scene"])
@@ -219,6 +243,8 @@ def _found(target: Path, scene: Scene) -> xr.Dataset:
         refusal = f"was begun by gearidae {ds.attrs['product_version']}, which alone can go on with it"
     elif ds.attrs["status"] not in ("finished", "running", "interrupted"):
         refusal = f"has ended early ({ds.attrs['status']}): there is nothing to go on with"
+    elif ds.attrs.get("started_from", "") != ("" if started is None else started.fingerprint):
+        refusal = "began elsewhere: resume with the run that it went on from (--start, start=)"
     if refusal:
         ds.close()
         raise SceneError("archive", target, refusal)

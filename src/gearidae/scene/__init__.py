@@ -4,6 +4,7 @@ from gearidae.scene.case import load_case
 from gearidae.scene.dump import dump_case
 from gearidae.scene.gears import Gears, Mesh, StaticErrorHarmonic
 from gearidae.scene.keys import KeyInfo
+from gearidae.scene.knots import Knots
 from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.scene import Scene, describe_key, describe_keys
@@ -20,6 +21,7 @@ __all__ = [
     "Harmonic",
     "Initial",
     "KeyInfo",
+    "Knots",
     "Load",
     "Material",
     "Mesh",

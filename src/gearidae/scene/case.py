@@ -9,6 +9,7 @@ from pathlib import Path
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 from gearidae.scene.scene import Scene
+from gearidae.scene.schedule_table import in_folder
 
 __all__ = ["load_case"]
 
@@ -43,7 +44,18 @@ def load_case(path: str | os.PathLike[str]) -> Scene:
     if not data:
         raise SceneError("case file", shorten(os.fspath(path)), "is empty")
     data.setdefault("name", _stem(path))
+    _find_files(data, Path(path).parent)
     return Scene.from_dict(data)
+
+
+def _find_files(data: dict[str, object], folder: Path) -> None:
+    """Let files that schedules name lie beside the case file."""
+    for name in ("drive", "load"):
+        table = data.get(name)
+        if isinstance(table, dict):
+            for key in ("schedule", "speed"):
+                if key in table:
+                    table[key] = in_folder(table[key], folder)
 
 
 def _read(path: str | os.PathLike[str]) -> str:

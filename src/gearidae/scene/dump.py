@@ -45,9 +45,10 @@ def _table(group: Group) -> Iterator[str]:
     for name, field in type(group).model_fields.items():
         value = getattr(group, name)
         if isinstance(value, tuple):
-            if value and not isinstance(value[0], Group):
-                knots = "".join(f"    [{time!r}, {torque!r}],\n" for time, torque in value)
-                entries.append((f"{name} = [\n{knots}]", field.description))
+            if value and isinstance(value[0], float):
+                entries.append((f"{name} = {_plain(value)}", field.description))
+            elif value and not isinstance(value[0], Group):
+                entries.append((f"{name} = {_knots(value)}", field.description))
             continue
         if value is None:
             continue
@@ -59,6 +60,15 @@ def _table(group: Group) -> Iterator[str]:
     width = max((len(text) for text, _ in entries if "\n" not in text), default=0)
     for text, description in entries:
         yield f"# {description}\n{text}" if "\n" in text else f"{text:<{width}}  # {description}"
+
+
+def _knots(knots: tuple[tuple[float, float], ...]) -> str:
+    """Write a schedule, one knot in a line."""
+    text = "[\n" + "".join(f"    [{time!r}, {value!r}],\n" for time, value in knots) + "]"
+    interpolation = getattr(knots, "interpolation", "linear")
+    return (
+        text if interpolation == "linear" else f"{{ interpolation = {_text(interpolation)}, knots = {text} }}"
+    )
 
 
 def _inline(group: Group) -> str:

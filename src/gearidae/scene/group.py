@@ -85,15 +85,16 @@ def _complaints(error: ValidationError) -> Iterator[tuple[str, object, str]]:
             "."
         )
         reason = one.get("ctx", {}).get("error")
-        if isinstance(reason, SceneError):
-            inner = reason.__cause__
-            nested = (
-                _complaints(inner)
-                if isinstance(inner, ValidationError)
-                else [(reason.key, reason.value, reason.allowed)]
-            )
+        if isinstance(reason, SceneError | ValidationError):
+            inner = reason if isinstance(reason, ValidationError) else reason.__cause__
+            nested: Iterable[tuple[str, object, str]] = ()
+            if isinstance(inner, ValidationError):
+                nested = _complaints(inner)
+            elif isinstance(reason, SceneError):
+                nested = [(reason.key, reason.value, reason.allowed)]
             for key, value, allowed in nested:
-                yield f"{where}.{key}".lstrip("."), value, allowed
+                inside = key if key.startswith("[") or not key else f".{key}"
+                yield f"{where}{inside}".lstrip("."), value, allowed
         elif one["type"] == "missing":
             yield where, "(missing)", f"is required: {_description(error.title, where)}"
         elif one["type"] in ("model_type", "dict_type"):

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Final, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group
+from gearidae.scene.knots import Time
 from gearidae.scene.quantity import Quantity, Sampling
 
 __all__ = ["Initial", "Roller", "Run"]
 
 MOST_SAMPLES: Final = 100_000_000
+MOST_TURNS: Final = 1e9
+MOST_CHECKPOINTS: Final = 10_000
 
 
 class Initial(Group):
@@ -25,6 +29,29 @@ class Initial(Group):
     mesh_phase: Annotated[float, Quantity(unit="1", at_least=0, below=1)] = Field(
         default=0.3, description="position of pair 0 on the path of contact, in base pitches"
     )
+
+
+def _read_stop(value: object) -> str:
+    """Read ``time``, ``sticks`` or ``turns N``."""
+    words = value.split() if isinstance(value, str) else []
+    if words in (["time"], ["sticks"]):
+        return words[0]
+    try:
+        turns = float(words[1]) if len(words) == 2 and words[0] in ("turns", "turn") else math.nan
+    except ValueError:
+        turns = math.nan
+    if not 0.0 < turns <= MOST_TURNS:
+        raise ValueError(f'must be "time", "sticks" or "turns N", with N above 0 and at most {MOST_TURNS:g}')
+    return f"turns {turns!r}"
+
+
+def _read_times(value: object) -> object:
+    """Accept one time, a list of them or an array; what it holds is read later."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    times = tuple(value) if isinstance(value, (list, tuple)) else (value,)
+    if len(times) > MOST_CHECKPOINTS:
+        raise ValueError(f"has {len(times)} times; there may be {MOST_CHECKPOINTS} at most")
+    return times
 
 
 class Run(Group):
@@ -42,6 +69,13 @@ class Run(Group):
     method: Literal["auto", "bdf"] = Field(
         default="auto",
         description="bdf: IDA's own formulas, iteration and root search throughout; auto: Adams' where they are better",
+    )
+
+    stop: Annotated[str, BeforeValidator(_read_stop)] = Field(
+        default="time", description="what ends the run before its time: sticks, or turns N of the gear"
+    )
+    checkpoints: Annotated[tuple[Time, ...], BeforeValidator(_read_times)] = Field(
+        default=(), description="times at which the solver starts afresh and keeps a checkpoint"
     )
 
     @model_validator(mode="after")

@@ -94,6 +94,8 @@ class Scene(Group):
                     "(given)",
                     f"a scene has a roller or gears, not both; a roller takes no {given[0]}",
                 )
+            if self.run.stop != "time":
+                raise SceneError("run.stop", self.run.stop, "must be time in a scene with a roller")
             return self
         for table in ("gears", "mesh", "drive", "initial"):
             if table not in given:
@@ -208,9 +210,9 @@ class Scene(Group):
             ``Scene.from_dict`` makes an equal scene of it, to the last bit.
         """
         data: dict[str, Any] = self.model_dump(mode="json", exclude_none=True)
-        for table in ("drive", "load"):
-            if table in data and not data[table]["schedule"]:
-                del data[table]["schedule"]
+        for table, key in (("drive", "schedule"), ("load", "schedule"), ("run", "checkpoints")):
+            if table in data and not data[table][key]:
+                del data[table][key]
         return data
 
     def __repr__(self) -> str:

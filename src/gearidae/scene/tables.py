@@ -53,9 +53,11 @@ def _as_pairs(value: object) -> object:
 
 def _check_increasing(value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
     times = [time for time, _ in value]
-    for before, after in pairwise(times):
+    for row, (before, after) in enumerate(pairwise(times), 2):
         if after <= before:
-            raise ValueError(f"times must strictly increase, but {after:g} s follows {before:g} s")
+            raise ValueError(
+                f"times must strictly increase, but {after:g} s follows {before:g} s (knot {row})"
+            )
         if after - before < CLOSEST_KNOTS * after:
             raise ValueError(
                 f"the knots at {before!r} s and {after!r} s are too close to step between:"

@@ -1,8 +1,9 @@
 """What drives the pinion and what loads the gear.
 
-Both torques are a constant, plus harmonics, plus a piecewise linear schedule that holds its end values
-outside its knots (Teodorescu et al. 2009, Eqs. 2 and 3), plus a law of time and speed by its name
-(`gearidae.torques`).
+Both torques are a constant, plus harmonics, plus a schedule, linear or monotone cubic between its knots, that holds its
+end values outside them (Teodorescu et al. 2009, Eqs. 2 and 3), plus a law of time and speed by its name
+(`gearidae.torques`). A drive may hold a speed besides, ``gain (w(t) - w1)``, the torque-speed line of a motor. The
+gear's motion is resisted by a quadratic and a viscous drag.
 """
 
 from __future__ import annotations
@@ -13,16 +14,15 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, shorten
+from gearidae.scene.knots import Knots, Schedule, Scheduled, Torque
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Phase, Quantity
-from gearidae.scene.tables import increasing, one_or_more, pairs
+from gearidae.scene.tables import one_or_more
 from gearidae.torques import torque_law, torque_names
 
 __all__ = ["Drive", "Harmonic", "Law", "Load"]
 
-Torque = Annotated[float, Quantity(unit="N m", at_least=-1e9, at_most=1e9, least=1e-40)]
-Time = Annotated[float, Quantity(unit="s", at_least=0, at_most=1e12, least=1e-20)]
-Schedule = Annotated[tuple[tuple[Time, Torque], ...], pairs, increasing]
+_SCHEDULE = "torque over time, added to the constant: [time, torque] knots, or a table with columns"
 
 
 class Harmonic(Group):
@@ -68,10 +68,29 @@ class Drive(Group):
 
     torque: Torque = Field(default=0.0, description="constant part, M10")
     harmonic: Harmonics = Field(default=(), description="harmonic part, a table or a list of tables")
-    schedule: Schedule = Field(
-        default=(), description="[time, torque] knots, joined linearly, added to the constant"
-    )
+    schedule: Schedule = Field(default=Knots(), description=_SCHEDULE)
     law: Law | None = Field(default=None, description="a torque law of time and speed, added to the rest")
+    speed: Annotated[
+        float | Knots | None, Scheduled(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)
+    ] = Field(default=None, description="speed of the pinion that the drive holds, a number or a schedule")
+    speed_gain: Annotated[float, Quantity(unit="N m s/rad", at_least=0, at_most=1e12)] = Field(
+        default=0.0, description="torque over what the pinion's speed is short of that speed"
+    )
+
+    @model_validator(mode="after")
+    def _speed_is_held(self) -> Self:
+        """Let speed and gain come together."""
+        if self.speed is not None and self.speed_gain == 0.0:
+            raise SceneError("speed_gain", 0.0, "must be above 0 N m s/rad where a speed is to be held")
+        if self.speed is None and self.speed_gain != 0.0:
+            raise SceneError("speed", "(missing)", "is required with speed_gain: the speed to be held")
+        return self
+
+    def speed_knots(self) -> Knots:
+        """Return the speed that is held as a schedule, of one knot if it is constant; empty if none is held."""
+        if self.speed is None:
+            return Knots()
+        return self.speed if isinstance(self.speed, Knots) else Knots([(0.0, self.speed)])
 
 
 class Load(Group):
@@ -84,9 +103,10 @@ class Load(Group):
     drag: Annotated[float, Quantity(unit="N m s^2/rad^2", at_least=0, at_most=1e12)] = Field(
         default=0.0, description="quadratic drag alpha, torque over angular speed squared"
     )
-    schedule: Schedule = Field(
-        default=(), description="[time, torque] knots, joined linearly, added to the constant"
+    viscous: Annotated[float, Quantity(unit="N m s/rad", at_least=0, at_most=1e12)] = Field(
+        default=0.0, description="viscous drag, torque over angular speed"
     )
+    schedule: Schedule = Field(default=Knots(), description=_SCHEDULE)
     law: Law | None = Field(
         default=None, description="a law of time and speed, added to the dry resistance against the motion"
     )

@@ -1,8 +1,8 @@
 """Studies: simulations, or the static contact, used to answer a question.
 
 `coating_map`, `sticking_threshold`, `starting_torque` and `static_starting_torque`, what the teeth did
-(`tooth_contacts`), and estimates on paper. The older names are those of `gearidae.analysis` too. Names are loaded on
-first use.
+(`tooth_contacts`), derivatives (`sensitivity`), and estimates on paper. The older names are those of
+`gearidae.analysis` too. Names are loaded on first use.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gearidae.runs.validity import validity
     from gearidae.studies.coating_map import coating_map, open_map
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
+    from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.sticking_threshold import sticking_threshold
     from gearidae.studies.tooth_contacts import tooth_contacts
@@ -27,6 +28,7 @@ __all__ = [
     "natural_frequency",
     "open_map",
     "resting_gap",
+    "sensitivity",
     "starting_torque",
     "static_starting_torque",
     "steady_speed",
@@ -42,6 +44,7 @@ _HOME = {
     "natural_frequency": "equilibrium",
     "open_map": "coating_map",
     "resting_gap": "gearidae.runs.estimates",
+    "sensitivity": "sensitivity",
     "starting_torque": "starting_torque",
     "static_starting_torque": "starting_torque",
     "steady_speed": "gearidae.runs.estimates",

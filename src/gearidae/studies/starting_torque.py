@@ -241,7 +241,9 @@ def _turns(search: _Search, torque: float, backend: str) -> bool:
     duration = math.sqrt(2.0 * way * inertia / (torque * ratio))
     if load.drag > 0.0:
         duration += way / math.sqrt(torque * ratio / load.drag)
-    drive = {key: value for key, value in scene.to_dict()["drive"].items() if key != "schedule"}
+    duration += way * load.viscous / (torque * ratio)
+    others = ("schedule", "speed", "speed_gain")
+    drive = {key: value for key, value in scene.to_dict()["drive"].items() if key not in others}
     changes = {
         "drive": {**drive, "torque": _dry(scene) + torque},
         "initial.gear_speed": 0.0,

@@ -40,6 +40,7 @@ from gearidae.engine.energy.quadrature import (
     error_of_square,
     integral,
     integral_of_cube,
+    integral_of_square,
     torque_work,
 )
 from gearidae.engine.energy.radius import radius_power, sample_radius_power
@@ -209,6 +210,13 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
         taken = m.scene.drag * cube
         e.drag_loss += taken
         e.loss_error += m.scene.drag * error
+    if m.scene.viscous != 0.0:
+        square, error = integral_of_square(
+            h, gear - r.gear_travel, r.gear_speed, r.gear_acceleration, w, w_rate
+        )
+        e.drag_loss += m.scene.viscous * square
+        e.loss_error += m.scene.viscous * error
+        taken += m.scene.viscous * square
     if m.scene.damping != 0.0:
         v, was = y[V], r.mesh_speed
         rub = m.scene.damping * integral(

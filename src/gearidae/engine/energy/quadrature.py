@@ -13,6 +13,7 @@ __all__ = [
     "error_of_square",
     "integral",
     "integral_of_cube",
+    "integral_of_square",
     "torque_work",
 ]
 
@@ -91,6 +92,17 @@ def integral_of_cube(
             error, corrected
         )  # the step is too long for the drag: rates may be out at both ends alike
     return abs(mean * mean * travel + integral(h, f0, f1, start, end)), error
+
+
+@compiled
+def integral_of_square(
+    h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float
+) -> tuple[float, float]:
+    """Integral of the square of a speed, of which the travel is known, and how far it may be out."""
+    mean = travel / h
+    a, b = w0 - mean, w1 - mean
+    rest = integral(h, a * a, b * b, 2.0 * a * rate0, 2.0 * b * rate1)
+    return mean * travel + rest, error_of_square(h, rate0, rate1)
 
 
 @compiled

@@ -17,6 +17,7 @@ from gearidae.engine.energy.balance import sample_radius_power
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard
 from gearidae.engine.events.pair_events import handle_pair, newly_stretched, pair_guard
+from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, ROLLER, Floats, Model
 from gearidae.engine.model.tooth_pairs import (
     gap_and_rate,
@@ -45,6 +46,8 @@ def guard(m: Model, t: float, y: Floats) -> float:
     least = math.inf
     if m.scene.kind == GEARS:
         least = mark_guard(m, y)
+        if m.scene.stop != 0:
+            least = min(least, stop_guard(m, y))
         if m.scene.dry != 0:
             least = min(least, dry_guard(m, t, y))
         if m.state.near[COAST] == 0:

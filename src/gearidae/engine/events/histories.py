@@ -10,6 +10,7 @@ from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.dry_resistance import dry_guard, note_slip, stick_or_slip
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.run_stop import arm_stop
 from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
 from gearidae.engine.model.tooth_pairs import (
     gap_and_rate,
@@ -28,6 +29,8 @@ def accept(m: Model, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     m.state.time = t
     note_slip(m, y)
+    if m.scene.stop != 0:
+        arm_stop(m, y)
     for coast in range(1 if m.scene.kind == ROLLER else 2):
         if nearest_gap(m, coast, y) < m.scene.cutoff:
             m.state.near[coast] = 1

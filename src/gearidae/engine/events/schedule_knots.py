@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import record
-from gearidae.engine.model.state import DRIVE, LOAD, Floats, Model
+from gearidae.engine.model.state import SCHEDULES, Floats, Model
 from gearidae.engine.model.torques.schedule import enter_segment
 from gearidae.records import EventKind, Flank
 
-__all__ = ["next_stop", "pass_knot"]
+__all__ = ["keeps_checkpoint", "next_stop", "pass_knot"]
 
 _SCHEDULE_KNOT, _NO_FLANK = float(EventKind.SCHEDULE_KNOT), float(Flank.NONE)
 
@@ -22,9 +22,20 @@ def next_stop(m: Model) -> float:
 
 
 @compiled
+def keeps_checkpoint(m: Model) -> bool:
+    """Whether the run keeps a checkpoint at the coming stop."""
+    return bool(m.tables[m.scene.checkpoints_at + m.state.next_knot] != 0.0)
+
+
+@compiled
 def pass_knot(m: Model, t: float, events: Floats, count: int) -> int:
-    """Enter the next segment of every schedule that has a knot here."""
-    enter_segment(m, DRIVE, t)
-    enter_segment(m, LOAD, t)
+    """Enter the next segment of every schedule that has a knot here; a checkpoint alone is no event."""
+    entered = 0
+    for which in range(SCHEDULES):
+        entered -= m.state.segment[which]
+        enter_segment(m, which, t)
+        entered += m.state.segment[which]
     m.state.next_knot += 1
+    if entered == 0:
+        return count
     return record(m, events, count, t, _SCHEDULE_KNOT, 0, _NO_FLANK, 0.0)

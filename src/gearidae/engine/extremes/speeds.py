@@ -40,7 +40,7 @@ def next_part(m: Model) -> float:
     """Time at which the coming part of the run begins."""
     for i in range(len(PARTS)):
         if m.state.extremes.part[i].begun == 0:
-            return float(PARTS[i] * m.scene.end)
+            return float(m.scene.start + PARTS[i] * (m.scene.end - m.scene.start))
     return math.inf
 
 
@@ -119,7 +119,7 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
     e, scale = m.state.extremes, m.scene.phase_rate
     h = now.time - last.time
     for i in range(len(PARTS)):
-        time = PARTS[i] * m.scene.end
+        time = m.scene.start + PARTS[i] * (m.scene.end - m.scene.start)
         if e.part[i].begun != 0 or now.time < time:
             continue
         share = (time - last.time) / h if h > 0.0 else 1.0

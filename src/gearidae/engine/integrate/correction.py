@@ -43,10 +43,11 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     a1, turning, damping = m.scene.pinion_inverse_mass, m.scene.phase_rate, m.scene.damping
     a2 = 0.0 if held(m) else m.scene.gear_inverse_mass
     torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase
-    drag = 2.0 * m.scene.drag * abs(y[W])
+    drag = 2.0 * m.scene.drag * abs(y[W]) + m.scene.viscous
+    gain = a1 * m.scene.speed_gain
     # du = (dv - of_u) step and dphase = (turning dw - of_phase) step, put into the rows of v and w
-    v_v = cj + a1 * (damping + force_u * step)
-    v_w = cj + a1 * force_phase * turning * step
+    v_v = cj + gain + a1 * (damping + force_u * step)
+    v_w = cj + gain + a1 * force_phase * turning * step
     w_v = -a2 * (damping + torque_u * step)
     w_w = cj + a2 * (drag - torque_phase * turning * step)
     right_v = a1 * (force_u * of_u + force_phase * of_phase) * step - of_v
@@ -56,5 +57,5 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     delta[W] = (v_v * right_w - w_v * right_v) * share
     delta[U] = (delta[V] - of_u) * step
     delta[PHASE] = (turning * delta[W] - of_phase) * step
-    slowing = 2.0 * ((a1 + a2) * damping + a2 * drag)
+    slowing = 2.0 * ((a1 + a2) * damping + a2 * drag + gain)
     return a1 * abs(force_u) + a2 * abs(torque_u) + slowing * slowing

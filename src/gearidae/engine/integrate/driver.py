@@ -120,8 +120,13 @@ class Output(NamedTuple):
 
 
 @compiled
-def sample_time(index: int, total: int, end: float) -> float:
-    """Scaled time of a sample: the first at 0, the last at the end itself, none beyond."""
+def sample_time(m: Model, index: int) -> float:
+    """Scaled time of a sample: the first at the start, the last at the end itself, none beyond."""
+    total = m.scene.samples
     if index >= total:
         return math.inf
-    return end if index == total - 1 else index * (end / (total - 1))
+    if index == 0:
+        return float(m.scene.start)
+    if index == total - 1:
+        return float(m.scene.end)
+    return float((m.scene.first_sample + index) * ((m.scene.end - m.scene.start) / (total - 1)))

@@ -8,10 +8,11 @@ from gearidae.engine.energy.balance import accumulate_energy
 from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
-from gearidae.engine.events.schedule_knots import pass_knot
+from gearidae.engine.events.run_stop import stop_guard
+from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
 from gearidae.engine.extremes.follow import follow_extremes, note_rest
 from gearidae.engine.integrate import adams
-from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
+from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, W
@@ -73,8 +74,12 @@ def finish_step(
         note_rest(m, t, y)
         if action == CROWDED:
             driver.error = CHATTER
+        if m.scene.stop != 0 and stop_guard(m, y) <= 0.0:
+            driver.done = 1
     elif flag == STOP:
         if m.state.next_knot < m.scene.knot_count:
+            if keeps_checkpoint(m):
+                driver.since = CHECKPOINT_STEPS
             driver.events = pass_knot(m, t, events, driver.events)
             afresh = True
         else:

@@ -112,13 +112,13 @@ def state_for_sample(s: Stepper, t: float) -> None:
 def _sample(s: Stepper, rows: Floats) -> bool:
     """Write the samples up to the time reached; whether the block has room for them all."""
     m, driver, progress = s.m, s.m.work.driver, s.m.state.progress
-    sample = sample_time(progress.next_sample, m.scene.samples, m.scene.end)
+    sample = sample_time(m, progress.next_sample)
     while sample <= s.clock[0] and driver.rows < rows.shape[0]:
         state_for_sample(s, sample)
         observe(m, sample, s.dky, rows[driver.rows])
         driver.rows += 1
         progress.next_sample += 1
-        sample = sample_time(progress.next_sample, m.scene.samples, m.scene.end)
+        sample = sample_time(m, progress.next_sample)
     return sample > s.clock[0]
 
 
@@ -221,8 +221,8 @@ def run(
     out = Output.empty(len(problem.columns))
     if resume is not None:
         s.clock[0] = problem.restore(resume, s.y)
-    elif total > 0:
-        observe_at(problem.located.place, 0.0, s.y, out.rows[0])
+    if total > 0 and m.state.progress.next_sample == 0:
+        observe_at(problem.located.place, float(s.clock[0]), s.y, out.rows[0])
         m.work.driver.rows = m.state.progress.next_sample = 1
     place = problem.located.place
     elastic = bool(m.scene.nodes > 0)

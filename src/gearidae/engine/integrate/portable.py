@@ -72,7 +72,7 @@ def run(
     driver, progress = m.work.driver, m.state.progress
     driver.time = 0.0 if resume is None else problem.restore(resume, y)
     solver = _Solver(problem, m, y)
-    if resume is None:
+    if progress.next_sample == 0:
         yield from _samples(solver, out, y)
     solver.start(y)
     between = (np.zeros_like(y), np.zeros_like(y))
@@ -122,10 +122,7 @@ def _samples(solver: _Solver, out: Output, y: Floats) -> Iterator[Block]:
     """Write the samples up to the time reached; hands out full blocks on the way."""
     m, trail = solver.m, solver.trail
     driver, progress = m.work.driver, m.state.progress
-    total, end = int(m.scene.samples), float(m.scene.end)
-    while (
-        progress.next_sample < total and (due := sample_time(progress.next_sample, total, end)) <= driver.time
-    ):
+    while (due := sample_time(m, int(progress.next_sample))) <= driver.time:
         state = y if due == driver.time else trail.at(due)
         observe_at(solver.located.place, due, state, out.rows[driver.rows])
         progress.next_sample += 1

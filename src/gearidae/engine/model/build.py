@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from gearidae.engine.model.state import (
     LOAD,
     ROLLER,
     SCENE,
+    SCHEDULES,
+    SPEED,
+    STOPS,
     Floats,
     Model,
     Record,
@@ -31,13 +35,18 @@ from gearidae.engine.model.tables import Tables
 from gearidae.engine.model.tooth_pairs import contact_length
 from gearidae.engine.model.torques.harmonic import pack_harmonics
 from gearidae.engine.model.torques.law import largest_torque, law_address
-from gearidae.engine.model.torques.schedule import pack_schedule
+from gearidae.engine.model.torques.schedule import (
+    LEAST_CUBIC,
+    fastest_schedule,
+    pack_schedule,
+    segment_ends,
+)
 from gearidae.mesh.involute import Geometry
 from gearidae.records import sampled_columns
-from gearidae.scene import Drive, Load, Scene
+from gearidae.scene import Drive, Knots, Load, Scene
 from gearidae.scene.limits import check_reach, pairs_within_reach
 
-__all__ = ["make_problem"]
+__all__ = ["Begin", "make_problem"]
 
 STRIDE = 6  # accepted steps near contact that the energy balance integrates over at once
 SPAN = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
@@ -46,11 +55,22 @@ ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
 
 
+class Begin(NamedTuple):
+    """When a run begins [s], and how far the gear has turned by then in pitches, if it is not where the scene says."""
+
+    time: float = 0.0
+    place: float | None = None
+
+
+AT_ONCE = Begin()
+
+
 def make_problem(
     scene: Scene,
     nodes: Nodes | None = None,
     digest: tuple[float, ...] | None = None,
     columns: tuple[str, ...] | None = None,
+    begin: Begin = AT_ONCE,
 ) -> Problem:
     """Scale a scene and tabulate its force laws.
 
@@ -63,6 +83,8 @@ def make_problem(
         Of the scene whose checkpoints these are, if it is not this one.
     columns : tuple of str, optional
         What that scene samples.
+    begin : Begin, optional
+        Of a run that goes on from another; the problem's own start is then of no use.
 
     Raises
     ------
@@ -70,7 +92,7 @@ def make_problem(
         If the scene is beyond what the engine can do.
     """
     build = _gear_problem if scene.roller is None else _roller_problem
-    problem = build(scene, nodes)
+    problem = build(scene, nodes, begin)
     problem.columns = columns or problem.columns
     problem.method = scene.run.method
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
@@ -79,14 +101,14 @@ def make_problem(
         problem.depth = 1 if nodes is None else nodes.depth
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
-            problem.deeper = lambda: make_problem(scene, deeper, problem.digest, problem.columns)
+            problem.deeper = lambda: make_problem(scene, deeper, problem.digest, problem.columns, begin)
     elif scene.contact.model == "auto":
         bodies = scene.replace({"contact.model": "elastic"})
-        problem.elastic = lambda: make_problem(bodies, None, problem.digest, problem.columns)
+        problem.elastic = lambda: make_problem(bodies, None, problem.digest, problem.columns, begin)
     return problem
 
 
-def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
+def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
     assert gears
     assert mesh
@@ -101,6 +123,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     s.half_backlash = 0.5 * mesh.backlash / sigma
     s.damping = mesh.damping * speed / float(s.force_unit)
     s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)
+    s.viscous = load.viscous / geometry.base_radius_gear**2 * speed / float(s.force_unit)
+    s.speed_gain = drive.speed_gain / geometry.base_radius_pinion**2 * speed / float(s.force_unit)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
     s.dry = int(load.is_dry)
     s.rest_speed = 10.0 * scene.run.rtol
@@ -109,15 +133,18 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
     _set_slots(s, scene)
-    _add_torques(s, tables, scene)
+    _add_torques(s, tables, scene, begin.time)
+    _set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
     _add_static_error(s, tables, scene)
     add_nodes(s, tables, grid)
     # an error in the phase matters by the gap it opens where tip relief is steepest
     steepest = float(s.relief_curvature * s.reach)
     model = _model(s, tables, [1.0, 1.0, 1.0 / steepest if steepest > 0.0 else 1.0, 1.0])
     model.state.slip = np.sign(start.gear_speed) if s.dry else 1.0
+    for which in range(SCHEDULES):
+        ends = segment_ends(s.schedule[which], model.tables)
+        model.state.segment[which] = int((ends <= s.start).sum())
     for shaft, law in ((DRIVE, drive), (LOAD, load)):
-        model.state.segment[shaft] = sum(t <= 0.0 for t, _ in law.schedule)
         if law.law is not None:
             model.work.torque_law[shaft] = law_address(law.law.name)
     outside = start.mesh_phase - min(max(start.mesh_phase, 0.0), float(s.contact_ratio))
@@ -132,7 +159,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     return _begun(model, scene, [u, 0.0, start.mesh_phase, w], skipped)
 
 
-def _roller_problem(scene: Scene, nodes: Nodes | None) -> Problem:
+def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     roller = scene.roller
     assert roller is not None
     sigma = scene.surface.roughness
@@ -146,7 +173,7 @@ def _roller_problem(scene: Scene, nodes: Nodes | None) -> Problem:
     grid = choose_model(s, scene, bounds, nodes)
     add_contact(s, tables, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
     s.slots = s.histories = 1
-    _set_run(s, tables, scene, set())
+    _set_run(s, tables, scene, set(), begin.time)
     add_nodes(s, tables, grid)
     model = _model(s, tables, [1.0, 1.0])
     model.state.slip = 1.0
@@ -214,9 +241,24 @@ def _set_slots(s: Record, scene: Scene) -> None:
 def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
     """Bound of a shaft's prescribed torque [N m]; of its law, up to a speed [rad/s]."""
     steady = abs(shaft.torque) + sum(abs(h.amplitude) for h in shaft.harmonic)
+    if isinstance(shaft, Load):
+        steady += shaft.viscous * abs(speed)
     if shaft.law is not None:
         steady += largest_torque(shaft.law.name, shaft.law.parameters, speed, duration)
     return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
+
+
+def _largest_held(scene: Scene, speed: float, ratio: float) -> float:
+    """Bound of the torque [N m] that holds a speed: of the first difference, and to carry both gears along."""
+    assert scene.drive
+    assert scene.gears
+    knots = np.array(scene.drive.speed_knots())
+    inertia = scene.gears.pinion_inertia + scene.gears.gear_inertia / ratio**2
+    slopes = np.abs(np.diff(knots[:, 1]) / np.diff(knots[:, 0]))
+    most = scene.drive.speed_gain * float(np.ptp(knots[:, 1]))
+    return scene.drive.speed_gain * abs(float(knots[0, 1]) - speed) + min(
+        inertia * float(slopes.max(initial=0.0)), most
+    )
 
 
 def _reference_force(scene: Scene, mass: float) -> float:
@@ -225,7 +267,11 @@ def _reference_force(scene: Scene, mass: float) -> float:
     assert scene.load
     assert scene.initial
     geometry, speed, duration = scene.geometry, scene.initial.gear_speed, scene.run.duration
-    drive = _largest(scene.drive, speed * geometry.base_radius_gear / geometry.base_radius_pinion, duration)
+    ratio = geometry.base_radius_gear / geometry.base_radius_pinion
+    drive = _largest(scene.drive, speed * ratio, duration)
+    if scene.drive.speed is not None:
+        drive += _largest_held(scene, speed * ratio, ratio)
+        speed = max([abs(speed), *(abs(value) / ratio for _, value in scene.drive.speed_knots())])
     load = _largest(scene.load, speed, duration)
     force = max(
         drive / geometry.base_radius_pinion,
@@ -239,7 +285,7 @@ def _reference_force(scene: Scene, mass: float) -> float:
 # -- tables ----------------------------------------------------------------------------------------------------------
 
 
-def _add_torques(s: Record, tables: Tables, scene: Scene) -> None:
+def _add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
     """Lay out the torques of both shafts and the times of their knots, and set what the run follows from them."""
     assert scene.drive
     assert scene.load
@@ -255,27 +301,64 @@ def _add_torques(s: Record, tables: Tables, scene: Scene) -> None:
             len(harmonics),
             tables.add(pack_harmonics(harmonics, tau, unit)),
         )
-        own.knot_count, own.knots_at = len(law.schedule), tables.add(pack_schedule(law.schedule, tau, unit))
         own.law_torque, own.law_speed = unit, float(s.length_unit) / tau / radius
         if law.law is not None:
             own.law_count, own.law_at = len(law.law.parameters), tables.add(law.law.parameters)
-        knots |= {t / tau for t, _ in law.schedule if 0.0 < t < scene.run.duration}
         fastest = max([fastest, *(h.frequency for h in law.harmonic)])
-    _set_run(s, tables, scene, knots)
+    speed = float(s.length_unit) / tau / float(s.pinion_radius)
+    schedules = (
+        (DRIVE, scene.drive.schedule, force * float(s.pinion_radius)),
+        (LOAD, scene.load.schedule, force * float(s.gear_radius)),
+        (SPEED, scene.drive.speed_knots(), speed),
+    )
+    for which, schedule, unit in schedules:
+        knots |= _add_schedule(s, tables, which, schedule, unit)
+        omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
+        fastest = max(fastest, omega / (2.0 * math.pi * tau))
+    _set_run(s, tables, scene, knots, begin)
     # a torque that knows the speed vibrates with it, and is looked at in each step
-    s.balance_steps = STRIDE if scene.drive.law is None and scene.load.law is None else 1
+    knows_speed = scene.drive.law is not None or scene.load.law is not None or s.speed_gain != 0.0
+    s.balance_steps = 1 if knows_speed else STRIDE
     s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
 
 
-def _set_run(s: Record, tables: Tables, scene: Scene, knots: set[float]) -> None:
-    """Set the end of the run, its knots and what counts as chatter."""
-    s.end = scene.run.duration / float(s.time_unit)
-    times = sorted(knots)
+def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: float) -> set[float]:
+    """Lay out a schedule of values in a unit; return the times over tau at which the solver has to stop for it."""
+    tau, own = float(s.time_unit), s.schedule[which]
+    cubic = schedule.interpolation == "cubic" and len(schedule) >= LEAST_CUBIC
+    own.knot_count, own.cubic = len(schedule), int(cubic)
+    own.knots_at = tables.add(pack_schedule(schedule, tau, unit, cubic=cubic))
+    stops = (schedule[0], schedule[-1]) if cubic else schedule
+    return {t / tau for t, _ in stops}
+
+
+def _set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: float) -> None:
+    """Set start and end of the run, its knots and checkpoints, and what counts as chatter."""
+    tau = float(s.time_unit)
+    s.start, s.end = begin / tau, (begin + scene.run.duration) / tau
+    kept = {t / tau for t in scene.run.checkpoints}
+    times = sorted(t for t in knots | kept if s.start < t < s.end)
     # of knots that the solver cannot tell apart the last one serves for all: schedules enter every segment up to it
     following = [*times[1:], float(s.end)]
-    apart = [t for t, after in zip(times, following, strict=False) if after - t > KNOT_SPACING * after]
-    s.knot_count, s.knots_at = len(apart), tables.add(apart)
+    apart: list[float] = []
+    marks: list[float] = []
+    marked = False
+    for t, after in zip(times, following, strict=False):
+        marked |= t in kept
+        if after - t > KNOT_SPACING * after:
+            apart.append(t)
+            marks.append(float(marked))
+            marked = False
+    s.knot_count, s.knots_at, s.checkpoints_at = len(apart), tables.add(apart), tables.add(marks)
     s.root_limit, s.root_spacing = ROOT_LIMIT, ROOT_SPACING
+
+
+def _set_stop(s: Record, scene: Scene, place: float) -> None:
+    """Set what ends the run before its time."""
+    assert scene.gears
+    word, _, turns = scene.run.stop.partition(" ")
+    s.stop, s.stop_from = STOPS.index(word), place
+    s.stop_pitches = float(turns or 0.0) * scene.gears.gear_teeth
 
 
 def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:

@@ -22,6 +22,7 @@ from gearidae.engine.model.state import (
     GEARS,
     MATERIALS,
     PHASE,
+    SCHEDULES,
     STATE,
     Floats,
     Model,
@@ -29,6 +30,7 @@ from gearidae.engine.model.state import (
     empty_history,
 )
 from gearidae.engine.model.tooth_pairs import gap_and_rate
+from gearidae.engine.model.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 
 __all__ = ["check_histories", "check_state", "current_pairs", "refused", "require"]
@@ -149,15 +151,16 @@ def _check_columns(records: Record, dtype: np.dtype[Any], prefix: str) -> None:
 def _check_run(m: Model, s: Record) -> None:
     """Check time, schedules, roots, flags, extremes and counters."""
     scene = m.scene
-    require(0.0 <= s.time <= scene.end, "time", "within the run")
+    slack = 1e-12 * scene.start  # of a start that has been through other units
+    require(scene.start - slack <= s.time <= scene.end, "time", "within the run")
     knots = m.tables[scene.knots_at : scene.knots_at + scene.knot_count]
     require(_between(s.next_knot, knots, s.time), "next_knot", "the coming one")
-    for shaft in range(2):
-        own = scene.torque[shaft]
-        times = m.tables[own.knots_at : own.knots_at + 2 * own.knot_count : 2]
-        require(_between(s.segment[shaft], times, s.time), "segment", "that of the time")
+    for which in range(SCHEDULES):
+        times = segment_ends(scene.schedule[which], m.tables)
+        require(_between(s.segment[which], times, s.time), "segment", "that of the time")
     require(s.slip in (-1.0, 0.0, 1.0) and (scene.dry != 0 or s.slip == 1.0), "slip", "a direction")
     require(s.slipping in _FLAGS and s.bound_exceeded in _FLAGS, "flags", "0 or 1")
+    require(s.stop_armed in _FLAGS, "stop_armed", "0 or 1")
     require(set(s.near.tolist()) <= _FLAGS, "near", "0 or 1")
     require(s.last_flank in (-1, 0, 1), "last_flank", "a flank")
     require(0 <= s.roots <= scene.root_limit and s.last_root <= s.time, "roots", "before the time")
@@ -166,9 +169,9 @@ def _check_run(m: Model, s: Record) -> None:
     require(all(0 <= p[name] <= _WHOLE_HIGH for name in p.dtype.names), "counters", "positive")
     require(p.next_sample <= scene.samples, "next_sample", "of the run")
     if scene.samples > 1:
-        spacing = scene.end / (scene.samples - 1)
-        due = s.time / spacing
-        require(abs(p.next_sample - due) <= 2.0 + 1e-9 * due, "next_sample", "that of the time")
+        spacing = (scene.end - scene.start) / (scene.samples - 1)
+        due = (s.time - scene.start) / spacing
+        require(abs(p.next_sample - due) <= 2.0 + 1e-9 * s.time / spacing, "next_sample", "that of the time")
 
 
 def _between(index: int, times: Floats, time: float) -> bool:

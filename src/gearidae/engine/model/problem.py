@@ -19,6 +19,7 @@ from gearidae.engine.model.state import (
     GEARS,
     LOAD,
     MATERIALS,
+    SPEED,
     Floats,
     Model,
     V,
@@ -27,9 +28,11 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
+from gearidae.engine.model.torques.schedule import fastest_schedule
 from gearidae.engine.sundials.memory import Located
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Extremes
+from gearidae.sampling import first_sample
 
 __all__ = ["Problem"]
 
@@ -94,7 +97,8 @@ class Problem:
         m = self.model
         scene, state, work = (np.array([record])[0] for record in (m.scene, m.state, m.work))
         copy = Model(scene, state, work, m.tables.copy(), m.rows.copy())
-        copy.scene.end, copy.scene.knot_count = min(float(m.scene.end), end), 0
+        copy.scene.start, copy.scene.end = 0.0, min(float(m.scene.end), end)
+        copy.scene.knot_count = copy.scene.stop = 0
         return replace(self, model=copy, start=self.start.copy())
 
     def prepare(self, rtol: float, samples: int) -> Model:
@@ -108,6 +112,7 @@ class Problem:
         m = self.model
         s, first = m.scene, m.scene.error_weights_at
         s.rtol, s.samples = rtol, samples
+        s.first_sample = first_sample(float(s.start), float(s.end), samples)
         m.rows[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
         s.balance_error = ERRORS * rtol
         s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
@@ -120,9 +125,15 @@ class Problem:
         return m
 
     def _fastest(self, shaft: int, felt: float) -> float:
-        own = self.model.scene.torque[shaft]
-        harmonics = self.model.tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
-        return fastest_harmonic(harmonics, felt)
+        scene, tables = self.model.scene, self.model.tables
+        own = scene.torque[shaft]
+        harmonics = tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
+        fastest = max(
+            fastest_harmonic(harmonics, felt), fastest_schedule(scene.schedule[shaft], tables, felt)
+        )
+        if shaft == DRIVE and scene.speed_gain > 0.0:
+            fastest = max(fastest, fastest_schedule(scene.schedule[SPEED], tables, felt / scene.speed_gain))
+        return float(fastest)
 
     def balance(self, time: float, state: Floats, rates: Floats) -> EnergyBalance:
         """The energy balance at an accepted time.

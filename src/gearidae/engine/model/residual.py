@@ -95,8 +95,8 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
 
 @compiled
 def resisting_force(m: Model, t: float, w: float) -> float:
-    """Resistance at the gear over R2, scaled: dry in the direction of slip, and drag (Eq. 2)."""
-    force = m.scene.drag * w * abs(w)
+    """Resistance at the gear over R2, scaled: dry in the direction of slip, and both drags (Eq. 2)."""
+    force = m.scene.drag * w * abs(w) + m.scene.viscous * w
     if m.scene.dry != 0 and m.state.slip != 0.0:
         force += m.state.slip * max(torque_force(m, LOAD, t, w), 0.0)
     return force
@@ -167,7 +167,7 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
 
     The static error's own slopes are left out: it is small, and the Jacobian only steers Newton's iteration. So are the
     slopes of a torque law in the speed: a shaft takes many steps to follow a mild law, and each iteration reduces what
-    is left by the ratio of a step to that time.
+    is left by the ratio of a step to that time. A drive that holds a speed is not mild, and its slope is there.
 
     Parameters
     ----------
@@ -188,11 +188,12 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     a1, a2, damping = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, m.scene.damping
     out[:16] = 0.0
     out[0], out[1] = cj, a1 * force_u
-    out[4], out[5] = -1.0, cj + a1 * damping
+    gain = a1 * m.scene.speed_gain
+    out[4], out[5] = -1.0, cj + a1 * damping + gain
     out[9], out[10] = a1 * force_phase, cj
-    out[13], out[14], out[15] = cj, -m.scene.phase_rate, cj
+    out[13], out[14], out[15] = cj + gain, -m.scene.phase_rate, cj
     if not held(m):
         out[3] = -a2 * (force_u + relief_u)
         out[7] = -a2 * damping
         out[11] = -a2 * (force_phase + relief_phase)
-        out[15] += a2 * m.scene.drag * 2.0 * abs(w)
+        out[15] += a2 * (m.scene.drag * 2.0 * abs(w) + m.scene.viscous)

@@ -35,8 +35,11 @@ __all__ = [
     "PROGRESS",
     "ROLLER",
     "SCENE",
+    "SCHEDULES",
     "SLOTS_HIGH",
+    "SPEED",
     "STATE",
+    "STOPS",
     "TORQUE",
     "WORK",
     "Floats",
@@ -65,6 +68,10 @@ COAST: Final = 1
 
 LOAD: Final = 1
 """The gear's shaft among the torques; the pinion's is `DRIVE`."""
+
+SPEED: Final = 2
+SCHEDULES: Final = 3
+"""The speed that a drive holds among the schedules, beside both torques; and how many there are."""
 
 MATERIALS: Final = 2
 """Materials that share the surface: bare first, then coated."""
@@ -109,12 +116,16 @@ TORQUE: Final = _record(
     ("constant", _REAL),
     ("harmonic_count", _INT),  # (amplitude, angular frequency, phase) of each
     ("harmonics_at", _INT),
-    ("knot_count", _INT),  # (time, value) of each
-    ("knots_at", _INT),
     ("law_count", _INT),  # parameters of the law, whose address is in `WORK`
     ("law_at", _INT),
     ("law_torque", _REAL),  # units of the law's torque [N m] and of the shaft's speed [rad/s]
     ("law_speed", _REAL),
+)
+
+SCHEDULE: Final = _record(
+    ("knot_count", _INT),  # (time, value) of each, then the coefficients of the pieces of a cubic one
+    ("knots_at", _INT),
+    ("cubic", _INT),  # 1 for monotone cubics between the knots, 0 for straight lines
 )
 
 SCENE: Final = _record(
@@ -142,11 +153,17 @@ SCENE: Final = _record(
     ("start_radius", _REAL),  # pinion's radius of curvature where contact begins, in pitches
     ("sum_curvature", _REAL),  # 1 over the sum of both radii of curvature, per pitch
     ("damping", _REAL),  # viscous mesh damping
-    ("drag", _REAL),  # force per squared surface velocity
+    ("drag", _REAL),  # force per squared surface velocity,
+    ("viscous", _REAL),  # and per surface velocity
     ("dry", _INT),  # whether there is dry resistance at the gear
     ("error_count", _INT),  # harmonics of the static transmission error: order, amplitude / sigma, phase
     ("error_at", _INT),
     ("torque", TORQUE, (2,)),  # of the pinion (DRIVE) and of the gear (LOAD)
+    ("schedule", SCHEDULE, (SCHEDULES,)),  # of both torques and of the speed that the drive holds (SPEED),
+    (
+        "speed_gain",
+        _REAL,
+    ),  # and force over what the pinion's surface velocity is short of that; 0 if none is held
     # the contact
     ("cutoff", _REAL),  # gap beyond which the force is taken as zero
     ("contact_gap", _REAL),  # gap of contact onset and separation
@@ -177,10 +194,19 @@ SCENE: Final = _record(
     ("scale_at", _INT),  # what an error of 1 means for each state, among the tables
     ("error_weights_at", _INT),  # one over the absolute tolerance of each state, among the rows
     ("rtol", _REAL),
-    ("end", _REAL),
-    ("samples", _INT),  # in the whole run, the first at time 0; 0 for none
-    ("knot_count", _INT),  # times at which a schedule has a knot inside the run, among the tables
+    ("start", _REAL),  # time at which the run begins: 0, or the end of the run that it goes on from,
+    ("end", _REAL),  # and ends
+    ("samples", _INT),  # in the whole run, the first at its start; 0 for none
+    ("first_sample", _REAL),  # the start over the time between two samples
+    (
+        "knot_count",
+        _INT,
+    ),  # stops inside the run, knots of schedules and checkpoints, among the tables: times,
     ("knots_at", _INT),
+    ("checkpoints_at", _INT),  # and for each 1 if a checkpoint is kept there
+    ("stop", _INT),  # what ends the run before its time: see `STOPS`
+    ("stop_from", _REAL),  # place of the gear in pitches from which its turns are counted,
+    ("stop_pitches", _REAL),  # and how many pitches make the turns
     ("rest_speed", _REAL),  # smallest slip speed that counts as motion
     ("root_limit", _INT),  # roots in succession allowed to be closer than `root_spacing`, times 1 + t
     ("root_spacing", _REAL),
@@ -246,8 +272,11 @@ PROGRESS: Final = _record(  # of a driver
     ("flight_steps", _INT),
 )
 
+STOPS: Final = ("time", "sticks", "turns")
+"""What ends a run, by number."""
+
 PARTS: Final = (0.05, 0.5, 0.95)
-"""Where the parts of a run begin over which speeds are judged, as shares of its end: start-up, half, last twentieth."""
+"""Where the parts of a run begin over which speeds are judged, as shares of it: start-up, half, last twentieth."""
 
 PART: Final = _record(  # of a run, from where it begins to where the run stands
     ("begun", _INT),
@@ -295,10 +324,14 @@ STATE: Final = _record(
     ("near", _INT, (2,)),  # flank close enough for any pair to touch
     ("last_flank", _INT),  # flank of the last onset, -1 before the first
     ("bound_exceeded", _INT),  # 1 once a pair has been below the lowest gap
+    (
+        "stop_armed",
+        _INT,
+    ),  # 1 once the gear has moved forward, in a run that ends where its speed falls to zero
     ("last_root", _REAL),  # time of the last root, and how many have come in close succession
     ("roots", _INT),
     ("next_knot", _INT),  # index of the coming knot among all knots
-    ("segment", _INT, (2,)),  # the schedules' current segments: set at knots, never inside a step
+    ("segment", _INT, (SCHEDULES,)),  # the schedules' current segments: set at knots, never inside a step
     ("energy", ENERGY),
     ("progress", PROGRESS),
     ("extremes", EXTREMES),
@@ -413,6 +446,7 @@ WORK: Final = _record(
     ("adams", ADAMS),
     ("search", SEARCH),
     ("driver", DRIVER),
+    ("piece", _INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins
     ("elastic_service", _INT),  # where the compiled code of elastic contacts lies in this process
     ("torque_law", _INT, (2,)),  # and that of the torque law of either shaft; 0 without one
 )

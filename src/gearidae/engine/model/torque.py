@@ -8,8 +8,9 @@ those of the base circles.
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import Model
+from gearidae.engine.model.state import DRIVE, Model
 from gearidae.engine.model.torques.harmonic import harmonic_rate, harmonic_value
+from gearidae.engine.model.torques.held_speed import held_speed_rate, held_speed_value
 from gearidae.engine.model.torques.law import law_rate, law_value
 from gearidae.engine.model.torques.schedule import schedule_rate, schedule_value
 
@@ -24,20 +25,26 @@ def torque_force(m: Model, shaft: int, t: float, speed: float) -> float:
     value = schedule_value(m, shaft, t, value)
     if m.work.torque_law[shaft] != 0:
         value += law_value(m, shaft, t, speed)
+    if shaft == DRIVE and m.scene.speed_gain != 0.0:
+        value += held_speed_value(m, t, speed)
     return value
 
 
 @compiled
 def torque_rate(m: Model, shaft: int, t: float, speed: float, acceleration: float) -> float:
     """Rate of change of `torque_force` along the motion."""
-    rate = harmonic_rate(m, shaft, t) + schedule_rate(m, shaft)
+    rate = harmonic_rate(m, shaft, t) + schedule_rate(m, shaft, t)
     if m.work.torque_law[shaft] != 0:
         rate += law_rate(m, shaft, t, speed, acceleration)
+    if shaft == DRIVE and m.scene.speed_gain != 0.0:
+        rate += held_speed_rate(m, t, acceleration)
     return rate
 
 
 @compiled
 def is_constant(m: Model, shaft: int) -> bool:
     """Whether a shaft's torque never changes."""
-    own = m.scene.torque[shaft]
-    return own.harmonic_count == 0 and own.knot_count == 0 and m.work.torque_law[shaft] == 0
+    if shaft == DRIVE and m.scene.speed_gain != 0.0:
+        return False
+    fixed = m.scene.torque[shaft].harmonic_count == 0 and m.scene.schedule[shaft].knot_count == 0
+    return fixed and m.work.torque_law[shaft] == 0

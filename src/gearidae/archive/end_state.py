@@ -1,0 +1,81 @@
+"""The state in which a run ended, carried by its dataset, so that another run can go on from it.
+
+It is the engine's checkpoint as text (compressed, some kilobytes), an attribute of single runs: a dataset in memory has
+it as its archive does. Only the engine knows what its words mean, and compares each with the scene before it is used.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import hashlib
+import zlib
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+
+from gearidae.errors import SceneError
+from gearidae.records import Words
+
+__all__ = ["end_state_attributes", "end_state_of", "fingerprint", "packed_state"]
+
+_LARGEST: Final = 2**26
+"""Bytes of a state; those of elastic contacts take up to a megabyte."""
+
+
+def packed_state(words: Words) -> str:
+    """Write a checkpoint as text."""
+    return base64.b64encode(zlib.compress(np.ascontiguousarray(words).tobytes(), 6)).decode()
+
+
+def end_state_attributes(start: float, words: Words | None) -> dict[str, Any]:
+    """Attributes of a run's dataset: when it began, if not at 0, and the state in which it ended, if there is one."""
+    attributes: dict[str, Any] = {} if start == 0.0 else {"start_time": start}
+    if words is not None:
+        attributes["end_state"] = packed_state(words)
+    return attributes
+
+
+def fingerprint(words: Words) -> str:
+    """Tell one state from another."""
+    return hashlib.sha256(np.ascontiguousarray(words).tobytes()).hexdigest()[:16]
+
+
+def end_state_of(ds: xr.Dataset) -> tuple[Words, float]:
+    """Read the state in which a run ended, and when that run began [s].
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run.
+
+    Returns
+    -------
+    words : ndarray of 8-byte words
+    start : float
+
+    Raises
+    ------
+    SceneError
+        If the dataset has none, or it is damaged.
+    """
+    if "swept" in ds.attrs:
+        raise SceneError("start", "(a sweep)", "must be a single run")
+    text = ds.attrs.get("end_state")
+    if text is None:
+        status = str(ds.attrs.get("status", "no status"))[:40]
+        raise SceneError("start", f"(a run with status {status})", "carries no state to go on from")
+    try:
+        if not isinstance(text, str):
+            raise TypeError
+        unpack = zlib.decompressobj()
+        content = unpack.decompress(base64.b64decode(text, validate=True), _LARGEST)
+        if not unpack.eof or len(content) % 8:
+            raise ValueError
+        start = float(ds.attrs.get("start_time", 0.0))
+        if not 0.0 <= start < np.inf:
+            raise ValueError
+    except (TypeError, ValueError, binascii.Error, zlib.error):
+        raise SceneError("start", "end_state", "is damaged: it is no state that a run has left") from None
+    return np.frombuffer(content, np.float64).copy(), start

@@ -1,0 +1,296 @@
+"""Going on from the end of another run: its state in the units, contacts and torques of a new scene.
+
+Gears and mesh are the same; drive, load, coating and settings may differ. Time, motion, histories, energy balance and
+extremes go on. Where nothing but settings of the run differ, all units are the same and every number is kept to the
+last bit. A new torque changes the units of time and force, a new coating what asperities do:
+
+- Joined heights are places on the surface, and stay; where asperities cannot stretch so far any more they have let go.
+  A material that remembers nothing so far, or has not been there, starts with nothing stretched.
+- What the contacts store with the new materials less what they stored is booked as change of the model.
+- Where the contact was elastic it stays so, with its nodes carried to those of the new scene.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from gearidae.engine.changeover import carry_nodes, join_as_pairs, note_gaps, take_over
+from gearidae.engine.elastic.static_solve import settle_nodes
+from gearidae.engine.energy.contacts import stored_energy
+from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
+from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.integrate.start import rebase
+from gearidae.engine.model.build import Begin, make_problem
+from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.state import (
+    EMPTY,
+    EXTREMES,
+    GEARS,
+    MATERIALS,
+    PHASE,
+    PROGRESS,
+    Floats,
+    Model,
+    Record,
+    V,
+    W,
+)
+from gearidae.engine.model.tooth_pairs import set_joined
+from gearidae.engine.model.torques.schedule import segment_ends
+from gearidae.errors import SceneError
+from gearidae.scene import Scene
+
+__all__ = ["MAY_DIFFER", "Origin", "checkpoint_of_start", "end_of", "problem_from", "refuse_other_bodies"]
+
+MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
+"""Tables in which a run may differ from the one it goes on from; its own ``initial`` then says nothing."""
+
+_SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
+_FORCES: Final = ("largest_force", "smallest_force")
+_TIMES: Final = ("held_time", "largest_force_time", "smallest_force_time")
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a run goes on from.
+
+    Attributes
+    ----------
+    scene : Scene
+        Of the other run.
+    words : ndarray of 8-byte words
+        Its checkpoint, see `gearidae.engine.model.checkpoint`.
+    start : float
+        When the other run itself began [s].
+    time : float
+        When this one begins [s].
+    place : float
+        How far the gear has turned there, in pitches.
+    """
+
+    scene: Scene
+    words: Floats
+    start: float
+    time: float
+    place: float
+
+    @property
+    def begin(self) -> Begin:
+        """Where the new run begins."""
+        return Begin(self.time, self.place)
+
+
+def end_of(scene: Scene, words: Floats, start: float) -> Origin:
+    """Check a checkpoint against the scene of its run, and say where another run goes on from.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the run.
+    words : ndarray of 8-byte words
+        Its checkpoint.
+    start : float
+        When it began [s].
+
+    Raises
+    ------
+    SceneError
+        If the checkpoint is not of this scene, or a number is none that a run of it could have left.
+    """
+    problem, y = _restored(scene, words, start)
+    s = problem.model.state
+    end = start + scene.run.duration
+    time = end if s.time == problem.model.scene.end else float(s.time) * problem.time_unit
+    place = float(y[PHASE] + s.turns) if problem.model.scene.kind == GEARS else 0.0
+    return Origin(scene, words, start, time, place)
+
+
+def problem_from(scene: Scene, origin: Origin | None) -> Problem:
+    """Make the problem of a scene that goes on from another run, or begins for itself."""
+    if origin is None:
+        return make_problem(scene)
+    refuse_other_bodies(origin.scene, scene)
+    return make_problem(scene, begin=origin.begin)
+
+
+def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
+    """Return the checkpoint of a scene's problem from which a run begins that goes on from another.
+
+    Raises
+    ------
+    SceneError
+        If the scenes differ in what may not, or the state is none that a run of the new scene could have.
+    """
+    old, old_y = _restored(origin.scene, origin.words, origin.start)
+    new = problem_from(scene, origin)
+    new.prepare(scene.run.rtol, scene.run.sample_count)
+    new = _same_contact(old, new)
+    new.prepare(scene.run.rtol, scene.run.sample_count)
+    source, m = old.model, new.model
+    units = _Units(source, m)
+    y = new.start.copy()
+    units.convert_motion(old_y, y)
+    take_over(source, m)
+    units.convert_state(m.state)
+    same = float(source.scene.time_unit) == float(m.scene.time_unit)
+    time = float(source.state.time) if same else float(m.scene.start)
+    m.state.time = time
+    changed = _materials(source) != _materials(m)
+    _carry_contacts(old, old_y, new, y, changed=changed)
+    _begin_stretch(m)
+    _hold_or_slip(source, m, time, y)
+    rebase(m, y)
+    m.state.progress.restarts = 1
+    return new.checkpoint(time, y)
+
+
+def _restored(scene: Scene, words: Floats, start: float) -> tuple[Problem, Floats]:
+    """Return the problem of a run where it ended, with its state; everything read is checked."""
+    problem = make_problem(scene, begin=Begin(start, 0.0)).of_checkpoint(words)
+    problem.prepare(scene.run.rtol, scene.run.sample_count)
+    y = np.empty(problem.start.size)
+    problem.restore(words, y)
+    return problem, y
+
+
+def refuse_other_bodies(old: Scene, new: Scene) -> None:
+    """Refuse a scene that differs in what may not."""
+    before, after = old.to_dict(), new.to_dict()
+    for table in sorted({*before, *after} - {*MAY_DIFFER}):
+        one, other = before.get(table, {}), after.get(table, {})
+        for key in sorted({*one, *other}):
+            if one.get(key) != other.get(key):
+                raise SceneError(
+                    f"{table}.{key}",
+                    other.get(key, "(missing)"),
+                    f"must be {one.get(key, '(missing)')}, as in the run to go on from",
+                )
+
+
+def _same_contact(old: Problem, new: Problem) -> Problem:
+    """Return the new problem with nodes if the old one has some, in the same layout if there is one."""
+    if old.depth > 0 and new.elastic is not None:
+        new = new.elastic()
+    while 0 < new.depth < old.depth and new.deeper is not None:
+        new = new.deeper()
+    return new
+
+
+class _Units:
+    """Ratios of the units of two models."""
+
+    def __init__(self, old: Model, new: Model) -> None:
+        self.time = float(old.scene.time_unit / new.scene.time_unit)
+        self.force = float(old.scene.force_unit / new.scene.force_unit)
+        self.speed = 1.0 / self.time
+        self.energy = self.force  # lengths are in roughnesses in both
+
+    def convert_motion(self, old: Floats, new: Floats) -> None:
+        """Write the motion's states; deflections stay zero."""
+        motion = min(4, old.size, new.size) if new.size != 2 and old.size != 2 else 2
+        new[:motion] = old[:motion]
+        for place in (V, W) if motion == 4 else (V,):
+            new[place] = old[place] * self.speed
+
+    def convert_state(self, s: Record) -> None:
+        """Put a state into the new units, in place."""
+        s.last_root *= self.time
+        for name in s.energy.dtype.names:
+            s.energy[name] *= self.energy
+        for h in s.history:
+            h.gap_rate *= self.speed
+            h.lag *= self.energy
+            h.lag_power *= self.energy * self.speed
+            h.lag_rate *= self.energy * self.speed * self.speed
+        e: Any = s.extremes
+        for names, ratio in ((_SPEEDS, self.speed), (_FORCES, self.force), (_TIMES, self.time)):
+            for name in names:
+                e[name] *= ratio
+
+
+def _materials(m: Model) -> list[tuple[float, ...]]:
+    """What of the materials a history depends on, in roughnesses and newtons."""
+    return [
+        (
+            float(own.force_scale * m.scene.force_unit),
+            float(own.stretch_limit),
+            float(own.joining_energy),
+        )
+        for own in m.scene.material
+    ]
+
+
+def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:
+    """Carry what contacts remember to the new materials and nodes, and book the change of the stored energy."""
+    source, m = old.model, new.model
+    for k in range(int(m.scene.histories)):
+        if m.state.history[k].pair != EMPTY and changed:
+            _remember(source, m, k)
+    same_nodes = _carry_deflections(source, old_y, m, y)
+    if m.scene.nodes > 0 and (changed or not same_nodes):
+        settle_nodes(m, float(m.state.time), y)
+        note_gaps(m, y)
+    if changed or not same_nodes:
+        was = stored_energy(source, old_y)[0] * float(source.scene.force_unit / m.scene.force_unit)
+        m.state.energy.model_change += stored_energy(m, y)[0] - was
+
+
+def _carry_deflections(source: Model, old_y: Floats, m: Model, y: Floats) -> bool:
+    """Carry deflections and histories of nodes; whether they are the same to the last bit."""
+    if m.scene.nodes == 0:
+        return source.scene.nodes == 0
+    if source.scene.nodes == 0:
+        join_as_pairs(m, y)
+        return False
+    return carry_nodes(source, old_y, m, y)
+
+
+def _remember(source: Model, m: Model, k: int) -> None:
+    """Take a pair's joined heights to other materials."""
+    h = m.state.history[k]
+    for material in range(MATERIALS):
+        before, limit = source.scene.material[material], float(m.scene.material[material].stretch_limit)
+        joined = float(h.joined[material])
+        if before.stretch_limit == 0.0:  # it has remembered nothing
+            joined = float(h.gap)
+        joined = max(joined, float(h.gap) - limit)
+        if h.direction > 0.0:
+            joined = min(joined, float(h.gap))
+        h.joined[material] = joined
+        if limit > 0.0 and m.scene.nodes == 0:
+            set_joined(m, k, material, joined)
+        stretched = h.direction > 0.0 and joined + limit <= h.gap
+        h.fully_stretched[material] = int(limit > 0.0 and stretched)
+
+
+def _begin_stretch(m: Model) -> None:
+    """Begin the counters of the run, its schedules and the parts of it over which speeds are judged."""
+    s, time = m.state, float(m.state.time)
+    for name in PROGRESS.names or ():
+        s.progress[name] = 0
+    s.next_knot = 0
+    s.roots = 0
+    blank = np.zeros(1, EXTREMES)[0]
+    s.extremes["part"] = blank["part"]
+    s.extremes.fall = s.extremes.rise = 0.0
+    s.extremes.top = s.extremes.bottom = 0.0
+    for which in range(len(m.scene.schedule)):
+        ends = segment_ends(m.scene.schedule[which], m.tables)
+        s.segment[which] = int((ends <= time).sum())
+
+
+def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
+    """Set the direction of slip where there was no dry resistance, or none is left, or less than holds the gear."""
+    s = m.state
+    if m.scene.kind != GEARS:
+        return
+    if m.scene.dry == 0:
+        s.slip, s.slipping = 1.0, 0
+    elif source.scene.dry == 0:
+        s.slip, s.slipping = float(np.sign(y[W])), int(abs(y[W]) > m.scene.rest_speed)
+    s.stop_armed = 0
+    if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:
+        stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, 5)), 0)

@@ -1,0 +1,57 @@
+"""When samples are taken: uniformly, at whole multiples of their spacing where the run's start is one.
+
+So the samples of a run that goes on from another are those that a single run over both would have, to the last bit
+where the spacing is the same.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["first_sample", "sample_times"]
+
+_ON_GRID: Final = 1e-9
+"""Of a spacing: so close to a whole multiple a start counts as one."""
+
+
+def first_sample(start: float, end: float, count: int) -> float:
+    """Return the start over the spacing of the samples, a whole number where it is one but for rounding.
+
+    Parameters
+    ----------
+    start, end : float
+        Of the run, in any unit.
+    count : int
+        Samples, both ends included.
+    """
+    if start == 0.0 or count < 2:
+        return 0.0
+    due = start / ((end - start) / (count - 1))
+    whole = float(round(due)) if due < 2.0**52 else due
+    return whole if abs(due - whole) <= _ON_GRID * max(due, 1.0) else due
+
+
+def sample_times(start: float, duration: float, count: int) -> NDArray[np.float64]:
+    """Times of all samples of a run.
+
+    Parameters
+    ----------
+    start, duration : float
+        Of the run [s].
+    count : int
+        Samples, both ends included; 0 for none.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+        [s]; of a run that begins at 0, `numpy.linspace`.
+    """
+    if start == 0.0 or count < 2:
+        return np.linspace(0.0, duration, count)
+    first, spacing = first_sample(start, start + duration, count), duration / (count - 1)
+    grid = (first + np.arange(count, dtype=np.float64)) * spacing
+    grid[0], grid[-1] = start, start + duration
+    return grid

@@ -1,0 +1,212 @@
+"""Tables that stand for a schedule: columns of a CSV file, of arrays or of a DataFrame, with their units.
+
+``{file = "drive.csv", time = "t [ms]", value = "M [pN m]", interpolation = "cubic"}`` in a case file; in Python also
+``data`` (a DataFrame) in place of ``file``, arrays or pint quantities as ``time`` and ``value``, ``knots`` (pairs), or
+a DataFrame of two columns as it is. The unit of a column stands in brackets in its name; without, it is SI.
+
+``packed`` holds many knots as text: the bits of the numbers, as differences, sorted by significance, compressed.
+Nothing is lost; 10,000 knots at even times take some tens of kilobytes in place of half a megabyte.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.scene.tables import MOST_KNOTS
+from gearidae.scene.units import from_text
+
+__all__ = ["in_folder", "pack_knots", "read_schedule"]
+
+_KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
+_SOURCES: Final = ("file", "data", "knots", "packed")
+_LARGEST: Final = 50_000_000  # bytes of a file
+_UNIT: Final = re.compile(r"(.*?)\s*[\[(]\s*([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)\s*[\])]\s*")
+
+
+def read_schedule(value: object, unit: str) -> tuple[object, str]:
+    """Turn whatever stands for a schedule into pairs and the interpolation between them.
+
+    Parameters
+    ----------
+    value : object
+        A list or an array of pairs, a DataFrame of two columns, or a table as the module describes.
+    unit : str
+        SI unit of the values.
+
+    Returns
+    -------
+    pairs : object
+        [time, value] pairs, what they hold is still to be checked.
+    interpolation : str
+
+    Raises
+    ------
+    ValueError
+        If a table is none; the message names column and row.
+    """
+    if hasattr(value, "columns") and hasattr(value, "iloc"):
+        value = {"data": value}
+    if not isinstance(value, Mapping):
+        return value, str(getattr(value, "interpolation", "linear"))
+    if not value:
+        return value, "linear"
+    for key in value:
+        if key not in _KEYS:
+            raise ValueError(f"unknown key {str(key)[:40]!r}; a schedule's table has {', '.join(_KEYS)}")
+    interpolation = value.get("interpolation", "linear")
+    if interpolation not in ("linear", "cubic"):
+        raise ValueError(f"interpolation {str(interpolation)[:40]!r} must be 'linear' or 'cubic'")
+    sources = [key for key in _SOURCES if key in value]
+    if len(sources) > 1:
+        raise ValueError(f"has {' and '.join(sources)}; one of them is enough")
+    if "packed" in value:
+        return unpack_knots(value["packed"]), interpolation
+    if "knots" in value:
+        return value["knots"], interpolation
+    columns = _columns(value, sources[0] if sources else "")
+    times, values = (_numbers(*column, own) for column, own in zip(columns, ("s", unit), strict=True))
+    if len(times) != len(values):
+        raise ValueError(f"time has {len(times)} rows and value {len(values)}: they must be as many")
+    return np.column_stack([times, values]).tolist(), interpolation
+
+
+def in_folder(table: object, folder: Path) -> object:
+    """Let a file that a schedule's table names lie beside the case file that names it."""
+    if isinstance(table, Mapping) and isinstance(table.get("file"), str):
+        return {**table, "file": str(folder / table["file"])}
+    return table
+
+
+def pack_knots(knots: list[list[float]]) -> str:
+    """Write knots as text, exactly."""
+    bits = np.array(knots, "<f8").T.copy().view("<u8")
+    differences = np.diff(bits, axis=1, prepend=np.zeros((2, 1), "<u8")).ravel()
+    return base64.b64encode(zlib.compress(differences.view("u1").reshape(-1, 8).T.tobytes(), 9)).decode()
+
+
+def unpack_knots(text: object) -> list[list[float]]:
+    """Read what `pack_knots` has written.
+
+    Raises
+    ------
+    ValueError
+        If it is nothing of the kind, or more than a schedule may have.
+    """
+    try:
+        if not isinstance(text, str):
+            raise TypeError
+        room = 16 * MOST_KNOTS
+        content = zlib.decompressobj().decompress(base64.b64decode(text, validate=True), room + 1)
+    except (TypeError, ValueError, binascii.Error, zlib.error):
+        raise ValueError("packed knots are damaged") from None
+    if not content or len(content) % 16 or len(content) > room:
+        raise ValueError("packed knots are damaged")
+    differences = np.frombuffer(content, "u1").reshape(8, -1).T.copy().view("<u8").reshape(2, -1)
+    knots: list[list[float]] = np.cumsum(differences, axis=1, dtype="<u8").view("<f8").T.tolist()
+    return knots
+
+
+def _columns(table: Mapping[str, Any], source: str) -> tuple[tuple[str, Any], tuple[str, Any]]:
+    """Find the columns of time and value, each with its name."""
+    if not source:
+        if "time" not in table or "value" not in table:
+            raise ValueError("needs file, data or knots, or arrays as time and value")
+        return ("time", table["time"]), ("value", table["value"])
+    frame = _read_file(table["file"]) if source == "file" else table["data"]
+    if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
+        raise ValueError("data must be a DataFrame")
+    names = [str(name).strip() for name in frame.columns]
+    if "time" not in table and "value" not in table and len(names) == 2:
+        return (names[0], frame.iloc[:, 0]), (names[1], frame.iloc[:, 1])
+    for key in ("time", "value"):
+        if not isinstance(table.get(key), str):
+            raise ValueError(f"{key} must be the name of a column, one of {_listed(names)}")
+    time, value = (_column(frame, names, table[key]) for key in ("time", "value"))
+    return time, value
+
+
+def _column(frame: Any, names: list[str], wanted: str) -> tuple[str, Any]:
+    """Find a column by its name, or by the name without the unit, which the key may then have."""
+    wanted = wanted.strip()
+    if names.count(wanted) == 1:
+        return wanted, frame.iloc[:, names.index(wanted)]
+    bare = _split(wanted)[0]
+    if bare != wanted and names.count(bare) == 1:
+        return wanted, frame.iloc[:, names.index(bare)]
+    problem = "stands more than once among" if wanted in names else "is not among"
+    raise ValueError(f"column {wanted[:60]!r} {problem} the columns, {_listed(names)}")
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(repr(name[:40]) for name in names[:8]) + (", ..." if len(names) > 8 else "")
+
+
+def _read_file(file: object) -> Any:
+    """Read a CSV file as texts."""
+    if not isinstance(file, str | Path):
+        raise ValueError("file must be the name of a CSV file")
+    import pandas as pd  # a third of a second, and few scenes need it
+
+    path = Path(file)
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise ValueError(f"the file {path.name} is longer than {_LARGEST} bytes")
+        return pd.read_csv(
+            path, dtype=str, keep_default_na=False, skipinitialspace=True, nrows=MOST_KNOTS + 1, comment="#"
+        )
+    except FileNotFoundError:
+        raise ValueError(f"there is no file {path.name}") from None
+    except OSError as error:
+        raise ValueError(f"the file {path.name} cannot be read ({error.strerror})") from None
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
+        reason = str(error).strip().partition("\n")[0]
+        raise ValueError(f"the file {path.name} is no CSV table ({reason})") from None
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Split a column's name into the bare name and the unit."""
+    match = _UNIT.fullmatch(name)
+    return (match[1], match[2]) if match else (name, "")
+
+
+def _numbers(name: str, column: Any, unit: str) -> NDArray[np.float64]:
+    """Read a column in SI units; whatever is no finite number is named with its row, counted from 1."""
+    own_unit = _split(name)[1]
+    if hasattr(column, "magnitude") and hasattr(column, "units"):
+        own_unit, column = f"{column.units:~}" if str(column.units) else "", column.magnitude
+    try:
+        factor = from_text(f"1 {own_unit}", unit) if own_unit else 1.0
+    except ValueError as error:
+        raise ValueError(f"column {name[:60]!r}: {error}") from None
+    cells = np.asarray(column)
+    if cells.ndim != 1:
+        raise ValueError(f"column {name[:60]!r} must be one-dimensional")
+    if cells.size > MOST_KNOTS:
+        raise ValueError(f"has {cells.size} rows or more; there may be {MOST_KNOTS} knots at most")
+    numbers = np.empty(cells.size)
+    for row, cell in enumerate(cells.tolist()):
+        numbers[row] = _number(cell, name, row + 1)
+    return numbers * factor
+
+
+def _number(cell: object, name: str, row: int) -> float:
+    """Read one cell."""
+    where = f"column {name[:60]!r}, row {row}"
+    if cell is None or (isinstance(cell, str) and not cell.strip()):
+        raise ValueError(f"{where} is empty")
+    try:
+        number = float(cell)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{where} is {str(cell)[:40]!r}, no number") from None
+    if not np.isfinite(number):
+        raise ValueError(f"{where} is {number}, not a finite number")
+    return number

@@ -1,0 +1,288 @@
+"""Runs that go on from others: to the last bit where nothing has changed, consistently where something has."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.archive.end_state import end_state_of, packed_state
+from gearidae.errors import SceneError
+from gearidae.records import EventKind
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+DRIVERS = ("native", "sksundae")
+LOW = gd.preset("teodorescu2009_low_speed").replace(
+    {"run.duration": 2.0**-8, "run.samples": 65, "coating.sam_fraction": 0.6}
+)
+OVER_THE_CHAIN = (
+    *("min_gear_speed", "max_gear_speed", "largest_mesh_force", "smallest_mesh_force"),
+    *("stick_time", "mesh_exits", "reversals"),
+)
+SAMPLES = 65  # of each half; halves of powers of two make the times of samples equal to the last bit
+
+
+def shortened(case, model, backend):
+    """Scene of a case over a short time that both drivers get through within seconds; a power of two."""
+    scene = gd.load_case(case)
+    changes = {"contact.model": model, "run.samples": SAMPLES, "run.rtol": 1e-6}
+    share = 2.0 ** -(4 + 4 * (model == "elastic") + 3 * (backend == "sksundae"))
+    half = 2.0 ** math.floor(math.log2(share * scene.run.duration))
+    if scene.roller is not None:  # the impact is in the second half
+        half = 2.0 ** math.floor(math.log2(0.6 * scene.roller.height / scene.roller.speed))
+    return scene.replace(changes | {"run.duration": half}), half
+
+
+def assert_same(joined, whole):
+    np.testing.assert_array_equal(joined, whole)
+
+
+def assert_continued(first, second, whole):
+    """Both halves are the whole run, but for what is judged over each run's own time."""
+    assert_same(np.concatenate([first.time, second.time[1:]]), whole.time)
+    for name, variable in whole.data_vars.items():
+        if variable.dims == ("time",):
+            assert_same(np.concatenate([first[name], second[name][1:]]), variable)
+        elif variable.dims == ("event",):
+            assert_same(np.concatenate([first[name], second[name]]), variable)
+    for name in OVER_THE_CHAIN:
+        if name in whole:
+            assert_same(second[name], whole[name])
+    for name in ("steps", "restarts", "residual_evaluations", "guard_evaluations"):
+        assert first.attrs[name] + second.attrs[name] == whole.attrs[name]
+    assert second.attrs["energy_balance"] == whole.attrs["energy_balance"]
+    words = [end_state_of(ds)[0] for ds in (second, whole)]
+    assert words[0].size == words[1].size
+
+
+@pytest.mark.parametrize("backend", DRIVERS)
+@pytest.mark.parametrize("model", ["asperity", "elastic"])
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+def test_a_run_cut_in_two_is_the_uninterrupted_one_to_the_last_bit(case, model, backend):
+    scene, half = shortened(case, model, backend)
+    first = gd.simulate(scene, backend=backend)
+    second = gd.simulate(scene, backend=backend, start=first)
+    both = {"run.duration": 2 * half, "run.samples": 2 * SAMPLES - 1, "run.checkpoints": [half]}
+    whole = gd.simulate(scene.replace(both), backend=backend)
+    assert_continued(first, second, whole)
+    assert second.attrs["start_time"] == half
+    assert second.attrs["t_end"] == 2 * half
+
+
+def test_a_checkpoint_is_no_event_and_changes_next_to_nothing():
+    plain = gd.simulate(LOW)
+    kept = gd.simulate(LOW.replace({"run.checkpoints": ["1 ms", "2 ms"]}))
+    assert kept.attrs["restarts"] == plain.attrs["restarts"] + 2
+    assert not (kept.event_kind == EventKind.SCHEDULE_KNOT).any()
+    # some tens of tolerances, as between any two step sequences
+    np.testing.assert_allclose(kept.gear_speed, plain.gear_speed, rtol=1e-4)
+
+
+def test_memory_archive_and_chain_of_archives_are_the_same(tmp_path):
+    first = gd.simulate(LOW, archive=tmp_path / "first.nc")
+    kept = gd.simulate(LOW)
+    assert first.attrs["end_state"] == kept.attrs["end_state"]
+    second = gd.simulate(LOW, start=tmp_path / "first.nc", archive=tmp_path / "second.nc")
+    again = gd.simulate(LOW, start=kept)
+    for name in ("time", "gear_speed", "event_time", "event_pair"):
+        assert_same(second[name], again[name])
+    third = gd.simulate(LOW, start=tmp_path / "second.nc")
+    assert third.time[0] == second.time[-1] == 2 * LOW.run.duration
+    assert third.gear_speed[0] == pytest.approx(float(second.gear_speed[-1]), rel=1e-12)
+    assert third.gear_angle[0] == pytest.approx(float(second.gear_angle[-1]), rel=1e-12)
+
+
+def test_a_continued_run_is_resumed_with_its_start(tmp_path):
+    target = tmp_path / "second.nc"
+    first = gd.simulate(LOW)
+    finished = gd.simulate(LOW, start=first, archive=target)
+    assert gd.simulate(LOW, start=first, archive=target, resume=True).identical(finished)
+    with pytest.raises(SceneError, match="began elsewhere"):
+        gd.simulate(LOW, archive=target, resume=True)
+    with pytest.raises(SceneError, match="began elsewhere"):
+        gd.simulate(LOW, start=finished, archive=target, resume=True)
+
+
+def balance_closes(ds):
+    balance = json.loads(ds.attrs["energy_balance"])
+    return abs(balance["residual"]) <= balance["residual_bound"]
+
+
+CHANGES = {
+    "torque": {"drive.torque": 9e-18},
+    "load": {"load.torque": 2e-18, "load.viscous": 1e-18},
+    "worn": {"coating.sam_fraction": 0.4},
+    "fresh": {"coating.sam_fraction": 1.0},
+    "bare": {"coating.sam_fraction": 0.0},
+    "stickier": {"coating.energy": 0.3},
+    "tolerance": {"run.rtol": 1e-8, "run.samples": "off"},
+    "method": {"run.method": "bdf"},
+    "speed": {"drive.torque": 0.0, "drive.speed": 6.0, "drive.speed_gain": 1e-17},
+}
+
+
+@pytest.mark.parametrize("model", ["asperity", "elastic"])
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_changed_scene_goes_on_from_the_same_motion(change, model):
+    scene = LOW.replace({"contact.model": model, "run.duration": 2.0**-9})
+    first = gd.simulate(scene)
+    second = gd.simulate(scene.replace({"run.samples": 33} | CHANGES[change]), start=first)
+    assert second.attrs["status"] == "finished"
+    assert balance_closes(second)
+    if second.sizes["time"]:
+        for name in ("gear_speed", "pinion_speed", "gear_angle", "transmission_error"):
+            assert float(second[name][0]) == pytest.approx(float(first[name][-1]), rel=1e-9, abs=1e-18)
+        assert second.time[0] == first.time[-1]
+
+
+def test_a_worn_run_does_what_its_coating_makes_it_do():
+    """After a change of the coating the energy that contacts store has jumped, and that is booked."""
+    first = gd.simulate(LOW)
+    same = gd.simulate(LOW, start=first)
+    worn = gd.simulate(LOW.replace({"coating.sam_fraction": 0.3}), start=first)
+    change = [json.loads(ds.attrs["energy_balance"])["model_change"] for ds in (same, worn)]
+    assert change[0] == 0.0
+    assert change[1] != 0.0
+    assert abs(worn.gear_speed - same.gear_speed).max() > 1e-3
+
+
+def test_time_goes_on_for_torques():
+    """A harmonic and a schedule of the second run are read at the time that goes on."""
+    flight = LOW.replace(
+        {"mesh.backlash": 4e-6, "initial.gap": 2e-6, "drive.torque": 0.0, "load.drag": 0.0, "run.rtol": 1e-9}
+    )
+    t0, inertia = LOW.run.duration, LOW.gears.pinion_inertia
+    first = gd.simulate(flight)
+    knots = [(0.0, 0.0), (1.25 * t0, 0.0), (1.5 * t0, 2e-18)]
+    wave = {"amplitude": 1e-18, "frequency": 300.0, "phase": 0.3}
+    second = gd.simulate(flight.replace({"drive.schedule": knots, "drive.harmonic": wave}), start=first)
+    omega = 2 * math.pi * 300
+    swing = 1e-18 / omega * (math.sin(omega * 2 * t0 + 0.3) - math.sin(omega * t0 + 0.3))
+    gained = (swing + 2e-18 * (0.125 + 0.5) * t0) / inertia
+    assert float(second.pinion_speed[-1] - first.pinion_speed[-1]) == pytest.approx(gained, rel=1e-6)
+    assert (second.event_kind == EventKind.SCHEDULE_KNOT).sum() == 2
+
+
+REFUSED = [
+    ({"surface.roughness": "7 nm"}, "surface.roughness"),
+    ({"mesh.backlash": "0.3 um"}, "mesh.backlash"),
+    ({"gears.pinion_inertia": 2e-20}, "gears.pinion_inertia"),
+    ({"contact.asperity": "dmt"}, "contact.asperity"),
+]
+
+
+@pytest.mark.parametrize(("change", "key"), REFUSED, ids=[key for _, key in REFUSED])
+def test_what_may_not_differ_is_named(change, key):
+    first = gd.simulate(LOW)
+    with pytest.raises(SceneError, match=f"{key}.*as in the run to go on from"):
+        gd.simulate(LOW.replace(change), start=first)
+
+
+def test_bad_starts(tmp_path):
+    first = gd.simulate(LOW)
+    with pytest.raises(SceneError, match="roller"):
+        gd.simulate(gd.preset("roller_slow"), start=first)
+    with pytest.raises(SceneError, match="cannot be read"):
+        gd.simulate(LOW, start=tmp_path / "none.nc")
+    with pytest.raises(SceneError, match="must be a dataset of a run"):
+        gd.simulate(LOW, start=5)
+    bare = first.copy()
+    del bare.attrs["end_state"]
+    with pytest.raises(SceneError, match="carries no state"):
+        gd.simulate(LOW, start=bare)
+    sweep = gd.sweep(LOW.replace({"run.duration": 1e-4}), {"coating.sam_fraction": [0.5, 1.0]})
+    with pytest.raises(SceneError, match="must be a single run"):
+        gd.simulate(LOW, start=sweep)
+    with pytest.raises(SceneError, match=r"t_end.*must lie after"):
+        gd.simulate(LOW, start=first, t_end=1e-4)
+    ended = gd.simulate(LOW, start=first, t_end=1.5 * LOW.run.duration)
+    assert ended.time[-1] == pytest.approx(1.5 * LOW.run.duration)
+
+
+def test_a_damaged_state_is_refused_or_checked():
+    """Text that is none, words cut short, another layout, another scene, and numbers that no run leaves."""
+    first = gd.simulate(LOW)
+    words, _ = end_state_of(first)
+    text = first.attrs["end_state"]
+
+    def refused(**attributes):
+        with pytest.raises(SceneError):
+            gd.simulate(LOW, start=first.assign_attrs(attributes))
+
+    refused(end_state="x")
+    refused(end_state=7)
+    refused(end_state=text[: len(text) // 2])
+    refused(end_state=packed_state(words[:-3]))
+    refused(start_time=float("nan"))
+    refused(start_time="x")
+    refused(start_time=1.0)
+    refused(scene=json.dumps(LOW.replace({"coating.sam_fraction": 0.7}).to_dict()))
+    for place, value in ((0, 1.0), (1, 5.0), (5, 3.0), (6, 9.0)):
+        changed = words.copy()
+        changed[place] = value
+        refused(end_state=packed_state(changed))
+    changed = words.copy()
+    changed[-1] = math.nan
+    refused(end_state=packed_state(changed))
+
+
+@pytest.mark.parametrize("backend", DRIVERS)
+def test_a_stop_after_turns_is_exact_and_knows_no_samples(backend):
+    """The gear has turned by N turns to the root's accuracy, whatever is sampled."""
+    scene = LOW.replace({"run.duration": 0.05, "run.samples": 2001, "run.stop": "turns 0.004"})
+    ends = []
+    for samples in (2001, 11, "off"):
+        ds = gd.simulate(scene, samples=samples, backend=backend)
+        assert ds.attrs["status"] == "finished"
+        ends.append(ds.attrs["t_end"])
+        if samples == 2001:
+            turned = float(ds.gear_angle[-1] - ds.gear_angle[0])
+            assert turned <= 0.004 * 2 * math.pi
+            assert turned == pytest.approx(0.004 * 2 * math.pi, rel=1e-2)
+    assert len(set(ends)) == 1
+    on = gd.simulate(scene, backend=backend)
+    more = gd.simulate(scene, start=on, backend=backend)
+    assert more.attrs["t_end"] > 1.9 * ends[0]
+    # speeds differ by the ringing about the mean alone
+    assert more.attrs["t_end"] - more.attrs["start_time"] == pytest.approx(ends[0], rel=0.02)
+
+
+def test_a_stop_at_sticking_is_where_the_speed_falls_to_zero():
+    """A viscous run-down cannot stop; one with dry resistance does, at the time that its closed form has."""
+    inertia, dry, speed = 6.1052e-20, 3e-18, 1.5
+    flight = LOW.replace(
+        {"mesh.backlash": 4e-6, "initial.gap": 2e-6, "drive.torque": 0.0, "load.drag": 0.0, "run.rtol": 1e-9}
+    )
+    scene = flight.replace({"load.torque": 40 * dry, "run.stop": "sticks", "run.duration": 0.02})
+    ds = gd.simulate(scene)
+    expected = inertia * speed / (40 * dry)
+    assert ds.attrs["t_end"] == pytest.approx(expected, rel=1e-7)
+    assert float(ds.stick_time) == pytest.approx(ds.attrs["t_end"], rel=1e-9)
+    assert float(ds.time[-1]) <= ds.attrs["t_end"]
+
+
+def test_a_block_may_end_the_run(tmp_path):
+    seen = []
+
+    def enough(block):
+        seen.append(block.time)
+        return len(seen) == 2
+
+    scene = LOW.replace({"run.duration": 0.5, "run.samples": 100_001})
+    ds = gd.simulate(scene, on_block=enough, archive=tmp_path / "run.nc")
+    assert ds.attrs["status"] == "stopped"
+    assert len(seen) == 2
+    assert 0 < ds.sizes["time"] < 100_001
+    assert float(ds.time[-1]) <= seen[-1]
+    assert gd.open_archive(tmp_path / "run.nc").attrs["status"] == "stopped"
+
+
+BAD_STOPS = ["never", "turns", "turns -1", "turns x", "turns 1e99", 5, "turns nan"]
+
+
+@pytest.mark.parametrize("stop", BAD_STOPS)
+def test_bad_stops(stop):
+    with pytest.raises(SceneError, match=r"run\.stop"):
+        LOW.replace({"run.stop": stop})

@@ -1,0 +1,87 @@
+"""Derivatives of runs: closed forms, another method, and the trap of small steps."""
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.errors import SceneError
+
+I1, I2, W0, T = 1.5263e-20, 6.1052e-20, 1.5, 0.004
+LOW = gd.preset("teodorescu2009_low_speed")
+FLIGHT = LOW.replace(
+    {
+        "mesh.backlash": 4e-6,
+        "initial.gap": 2e-6,
+        "run.duration": T,
+        "run.samples": 2,
+        "load.drag": 0.0,
+        "load.viscous": 200 * I2,
+    }
+)
+
+
+def last(name):
+    return lambda ds: float(ds[name][-1])
+
+
+def test_a_linear_and_a_curved_dependence_in_flight():
+    """dw1/dM1 = T/I1, and d/dc of w0 exp(-c T/I2)."""
+    torque = gd.studies.sensitivity(FLIGHT, "drive.torque", of=last("pinion_speed"))
+    assert abs(torque.value - T / I1) <= torque.uncertainty <= 1e-2 * T / I1
+    exact = -T / I2 * W0 * math.exp(-200 * T)
+    with ThreadPoolExecutor(2) as executor:
+        drag = gd.studies.sensitivity(
+            FLIGHT, "load.viscous", of=last("gear_speed"), accuracy=1e-4, executor=executor
+        )
+    assert abs(drag.value - exact) <= drag.uncertainty <= 1e-4 * abs(exact)
+    assert drag.figure == pytest.approx(W0 * math.exp(-200 * T), rel=1e-5)
+
+
+def test_the_trap_of_a_small_step():
+    """In a ringing contact at rtol 1e-6 a relative step of 1e-7 finds noise; the study does not."""
+    scene = LOW.replace({"run.duration": 0.004, "run.samples": 2, "coating.sam_fraction": 0.6})
+    found = gd.studies.sensitivity(scene, "drive.torque", of=last("gear_speed"))
+    torque = scene.drive.torque
+    tight = scene.replace({"run.rtol": 1e-11})
+    values = [
+        float(gd.simulate(tight.replace({"drive.torque": torque * (1 + s * 1e-4)})).gear_speed[-1])
+        for s in (1, -1)
+    ]
+    reference = (values[0] - values[1]) / (2e-4 * torque)
+    assert abs(found.value - reference) <= found.uncertainty
+    assert found.uncertainty <= 0.05 * abs(reference)
+    naive = [
+        float(gd.simulate(scene.replace({"drive.torque": torque * (1 + s * 1e-7)})).gear_speed[-1])
+        for s in np.linspace(-1, 1, 5)
+    ]
+    slopes = np.diff(naive) / (0.5e-7 * torque)
+    assert np.abs(slopes - reference).max() > 10 * found.uncertainty
+
+
+def test_a_jump_is_told_by_its_uncertainty():
+    """A figure that jumps at the input has no derivative."""
+    torque = LOW.drive.torque
+
+    def step(ds):
+        return float(float(ds.pinion_speed[-1]) > 4 * W0 + torque * T / I1)
+
+    found = gd.studies.sensitivity(FLIGHT, "drive.torque", of=step)
+    assert found.uncertainty >= 0.25 * abs(found.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "of", "message"),
+    [
+        ("drive.nothing", "final_speed", "drive.nothing"),
+        ("contact.model", "final_speed", "must hold a number"),
+        ("load.torque", "final_speed", "is zero"),
+        ("drive.torque", "nothing", "must be one of"),
+        ("drive.torque", "gear_speed", "must be one of"),
+    ],
+)
+def test_bad_input(key, of, message):
+    with pytest.raises(SceneError, match=message):
+        gd.studies.sensitivity(FLIGHT, key, of=of)
