@@ -88,6 +88,16 @@ def test_rounded_speeds_are_not_taken_for_wear(rate, maps, speeds):
         assert not found.conclusive or found.low < 0.97 < found.high
 
 
+@pytest.mark.parametrize("rate", [100e3, 25e3, 10e3])
+@pytest.mark.parametrize("title", TITLES)
+def test_a_tone_is_not_taken_for_ringing(rate, title, maps, speeds):
+    """Once 0.736 [0.734, 0.738]: 3 kHz of something else, stronger than the ringing of 1.4 kHz."""
+    signal = record(speeds["auto", 1.0, 0.97], rate)
+    found = assess(signal + 0.01 * np.sin(2.0 * np.pi * 3e3 * signal.time), maps[title])
+    assert found.verdict == "does not fit"
+    assert "is there before them too" in found.explanation
+
+
 def test_an_offset_that_shifts_the_windows_stays_in_the_interval(maps):
     """Of 1.3 % of the speed: each window lies later than the one before, and the torque is taken for 3 % larger."""
     offset = CONDITIONS["offset of 0.02 rad/s"]

@@ -101,13 +101,17 @@ def test_info_and_report_show_them(path, capfd, monkeypatch):
 def test_info_and_report_of_a_sweep_say_whose_they_are(path, capfd):
     gd.sweep(LOW, {"coating.sam_fraction": [1.0, 0.5]}, archive=path)
     assert main(["info", str(path)]) == 0
-    words = "for the scene that the runs were derived from: sam_fraction may change it"
-    assert words in " ".join(capfd.readouterr().out.split())
-    assert words in build_report(gd.open_archive(path))
+    words = "for the scene that the runs were derived from: {} may change it"
+    assert words.format("sam_fraction") in " ".join(capfd.readouterr().out.split())
+    assert words.format("coating.sam_fraction") in build_report(gd.open_archive(path))
 
 
-def test_an_archive_without_them_is_judged_by_its_scene(path, capfd):
+def test_an_archive_without_them_is_judged_by_its_scene(path, capfd, tmp_path):
     save(gd.simulate(LOW), path)
+    assert "How far the model holds" not in build_report(gd.open_archive(path))
+    assert main(["report", str(path), "-o", str(tmp_path / "run.html")]) == 0
+    assert "<td>5.13e-08</td>" in (tmp_path / "run.html").read_text(encoding="utf-8")
+    capfd.readouterr()
     assert "validity" not in gd.open_archive(path).attrs
     assert main(["info", str(path)]) == 0
     assert "expected asperities in contact 5.13e-08 !" in " ".join(capfd.readouterr().out.split())

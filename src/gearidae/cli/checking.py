@@ -11,10 +11,10 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.validity_table import show_validity
-from gearidae.runs.pair_contact import contact_subject
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
+from gearidae.scene.validity_row import contact_subject
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -46,7 +46,7 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     """
     scene = read_scene(case, settings)
     show_rows(_rows(scene))
-    show_validity(validity_rows(scene), about=contact_subject(scene))
+    show_validity(validity_rows(scene), about=contact_subject(roller=scene.roller is not None))
     for doubt in doubts(scene):
         say(f"Warning: {doubt}")
     return DONE

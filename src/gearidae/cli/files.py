@@ -9,7 +9,7 @@ from pathlib import Path
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive.select import scene_of, swept_dims
+from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import archive_facts, say_json
 from gearidae.cli.output import say
@@ -17,7 +17,7 @@ from gearidae.cli.tables import show_account, show_outcomes, show_rows
 from gearidae.cli.validity_table import show_validity
 from gearidae.errors import SceneError
 from gearidae.runs.kept_validity import validity_of
-from gearidae.runs.pair_contact import contact_subject
+from gearidae.scene.validity_row import contact_subject
 
 __all__ = ["describe", "write_case"]
 
@@ -90,7 +90,7 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
     show_rows(_description(archive, ds))
     show_outcomes(ds)
     show_account(ds)
-    show_validity(validity_of(ds), about=contact_subject(gd.Scene.from_dict(scene_of(ds)), swept_dims(ds)))
+    show_validity(validity_of(ds), about=contact_subject(roller=is_roller(ds), swept=swept_dims(ds)))
     return DONE
 
 

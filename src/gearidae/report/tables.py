@@ -14,12 +14,11 @@ import xarray as xr
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.pieces import pieces
-from gearidae.archive.select import runs, scene_of, swept_dims
+from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
 from gearidae.records import EventKind
 from gearidae.report import html
-from gearidae.runs.kept_validity import validity_of
-from gearidae.runs.pair_contact import contact_subject
-from gearidae.scene import Scene, describe_keys
+from gearidae.scene import describe_keys
+from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, holds_rows, rows_from_json
 
 __all__ = [
     "account_table",
@@ -177,11 +176,15 @@ def parameter_tables(ds: xr.Dataset) -> str:
 
 
 def validity_table(ds: xr.Dataset) -> str:
-    """List how far the model holds for the scene; an exclamation mark marks a limit that is exceeded."""
+    """List the limits of the model that an archive carries, marked where they are exceeded; nothing if it has none."""
+    kept = ds.attrs.get(ATTRIBUTE, "")
+    if not holds_rows(kept):
+        return ""
     rows = [
-        (row.quantity, row.value, "" if row.holds else "!", row.limit, row.verdict) for row in validity_of(ds)
+        (row.quantity, row.value, "" if row.holds else "!", row.limit, row.verdict)
+        for row in rows_from_json(kept)
     ]
-    about = contact_subject(Scene.from_dict(scene_of(ds)), swept_dims(ds))
+    about = contact_subject(roller=is_roller(ds), swept=list(json.loads(ds.attrs.get("swept", "{}"))))
     caption = f"Limits of the model: contact {about}. ! marks a limit that is exceeded."
     return html.table(("quantity", "value", "", "limit", "what follows"), rows, caption=caption)
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
     from gearidae.scene.surface import Surface
 
-__all__ = ["PairContact", "contact_subject", "pair_contact"]
+__all__ = ["PairContact", "pair_contact"]
 
 Floats = NDArray[np.float64]
 
@@ -183,28 +183,6 @@ def pair_contact(scene: Scene) -> PairContact:
     geometry = scene.geometry
     radius = float(curvature_radii(geometry, geometry.approach)[2])
     return PairContact(parts, scene.contact.asperity, radius, scene.gears.face_width)
-
-
-def contact_subject(scene: Scene, swept: tuple[str, ...] = ()) -> str:
-    """Say in words which contact the estimates are made for.
-
-    Parameters
-    ----------
-    scene : Scene
-    swept : tuple of str, optional
-        Dimensions along which the runs of a sweep differ.
-
-    Returns
-    -------
-    str
-    """
-    if scene.roller is not None:
-        contact = "of the roller at its closest approach, with rigid bodies"
-    else:
-        contact = "of one pair at the pitch point, at rest under the mean torque"
-    if not swept:
-        return contact
-    return f"{contact}, for the scene that the runs were derived from: {', '.join(swept)} may change it"
 
 
 def _inwards(sigma: float, finest: float, *, beyond: bool) -> Iterator[Floats]:

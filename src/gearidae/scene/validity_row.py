@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-__all__ = ["ATTRIBUTE", "ValidityRow", "holds_rows", "rows_from_json", "rows_to_json"]
+__all__ = ["ATTRIBUTE", "ValidityRow", "contact_subject", "holds_rows", "rows_from_json", "rows_to_json"]
 
 ATTRIBUTE = "validity"
 """Name of the attribute."""
@@ -51,6 +51,29 @@ class ValidityRow:
     number: float
     bound: float
     unit: str
+
+
+def contact_subject(*, roller: bool, swept: Sequence[str] = ()) -> str:
+    """Say in words which contact the rows are about.
+
+    Parameters
+    ----------
+    roller : bool
+        Whether the scene is that of a roller, else of gears.
+    swept : sequence of str, optional
+        Keys or dimensions in which the runs of a sweep differ.
+
+    Returns
+    -------
+    str
+    """
+    if roller:
+        contact = "of the roller at its closest approach, with rigid bodies"
+    else:
+        contact = "of one pair at the pitch point, at rest under the mean torque"
+    if not swept:
+        return contact
+    return f"{contact}, for the scene that the runs were derived from: {', '.join(swept)} may change it"
 
 
 def rows_to_json(rows: Iterable[ValidityRow]) -> str:
