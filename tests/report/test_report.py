@@ -15,6 +15,7 @@ from gearidae.cli import main
 from gearidae.records import EventKind
 from gearidae.report import build_report, write_report
 from gearidae.report.series import pack
+from gearidae.scene.prefixes import with_prefix
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 NASTY = '</script><script>alert(1)</script><b>"&'
@@ -183,7 +184,7 @@ def test_run_that_ended_early(single):
 
 def test_account_of_a_run(single, swept):
     told = json.loads(single.attrs["account"])
-    assert f"work of the drive {told['drive_work']:.6g} J" in Page(build_report(single)).text
+    assert f"work of the drive {with_prefix(told['drive_work'], 'J', 6)}" in Page(build_report(single)).text
     assert "Account of the run" not in Page(build_report(swept)).text
 
 

@@ -27,9 +27,8 @@ from gearidae.archive.disk import commit, disk_errors, open_file, read_at, sync,
 from gearidae.archive.end_state import packed_state
 from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
-from gearidae.archive.lock import WriterLock
+from gearidae.archive.lock import WriterLock, take_or_refuse
 from gearidae.archive.variables import EVENTS
-from gearidae.errors import SceneError
 from gearidae.records import Block, Statistics
 from gearidae.sampling import first_sample
 
@@ -110,7 +109,7 @@ class GrowingArchive:
 
     def __init__(self, path: Path, template: xr.Dataset, held: WriterLock | None = None) -> None:
         self.path = path
-        self._held = held or _taken(path)
+        self._held = held or take_or_refuse(path)
         self._template = template
         self._columns = [
             str(name) for name, variable in template.data_vars.items() if variable.dims == ("time",)
@@ -150,7 +149,7 @@ class GrowingArchive:
         SceneError
             If another process is writing that file.
         """
-        held = _taken(path)
+        held = take_or_refuse(path)
         sizes = {
             "time": samples,
             "event": max(samples, EVENT_ROOM),
@@ -409,11 +408,3 @@ def _lay_out(path: Path, template: xr.Dataset, sizes: Mapping[str, int], duratio
 def _part(path: Path) -> Path:
     """Name of the file in the making; there is one at most, since its maker holds the lock."""
     return path.with_name(f".{path.name}.part")
-
-
-def _taken(path: Path) -> WriterLock:
-    """Take the right to write an archive, or refuse."""
-    held = WriterLock.take(path)
-    if held is None:
-        raise SceneError("archive", path, "is being written by another run")
-    return held

@@ -16,7 +16,9 @@ from typing import Final, Self
 
 from filelock import FileLock, Timeout, lock_descriptor
 
-__all__ = ["WriterLock", "is_locked"]
+from gearidae.errors import SceneError
+
+__all__ = ["WriterLock", "is_locked", "take_or_refuse"]
 
 _PATIENCE: Final = 0.03
 """Time [s] for which a writer tries: whoever asks whether there is one holds the lock for some microseconds."""
@@ -65,6 +67,20 @@ class WriterLock:
                 missing_ok=True
             )  # still locked: who waits for it notices, and starts over
         held.release()
+
+
+def take_or_refuse(archive: Path) -> WriterLock:
+    """Mark an archive as being written.
+
+    Raises
+    ------
+    SceneError
+        If another has done so.
+    """
+    held = WriterLock.take(archive)
+    if held is None:
+        raise SceneError("archive", archive, "is being written by another run")
+    return held
 
 
 def is_locked(archive: Path) -> bool:

@@ -18,6 +18,7 @@ from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
 from gearidae.records import EventKind
 from gearidae.report import html
 from gearidae.scene import describe_keys
+from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, holds_rows, rows_from_json
 
 __all__ = [
@@ -32,7 +33,7 @@ __all__ = [
 
 _GEAR_HEADINGS = ("outcome", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
 _ROLLER_HEADINGS = (
-    "outcome", "peak force (uN)", "pull-off force (uN)", "restitution", "impacts", "status"
+    "outcome", "peak force", "pull-off force", "restitution", "impacts", "status"
 )  # fmt: skip
 _PROVENANCE = (
     ("title", "title"),
@@ -108,14 +109,14 @@ def account_table(ds: xr.Dataset) -> str:
     told = json.loads(ds.attrs.get("account", "{}"))
     kept = balance_in_attributes(ds)
     rows = [
-        (words, _number(float(told[name]) if isinstance(told[name], int) else told[name]), unit)
+        (words, _measure(told[name], unit))
         for name, words, unit in _ACCOUNT
         if told.get(name) not in (None, "")
     ]
-    rows += [(words, _number(kept[name]), unit) for name, words, unit in _ENERGY_BALANCE if kept.get(name)]
+    rows += [(words, _measure(kept[name], unit)) for name, words, unit in _ENERGY_BALANCE if kept.get(name)]
     if not rows:
         return ""
-    return html.table(("quantity", "value", "unit"), rows, caption="Account of the run", numeric=(1,))
+    return html.table(("quantity", "value"), rows, caption="Account of the run", numeric=(1,))
 
 
 def event_table(ds: xr.Dataset) -> str:
@@ -198,12 +199,12 @@ def provenance_list(ds: xr.Dataset) -> str:
 
 
 def _outcome_cells(outcome: GearOutcome | RollerOutcome) -> list[str]:
-    numbers: tuple[float, ...]
     if isinstance(outcome, RollerOutcome):
-        numbers = (outcome.peak_force * 1e6, outcome.pull_off_force * 1e6, outcome.restitution)
+        forces = (outcome.peak_force, outcome.pull_off_force)
+        numbers = [*(_measure(force, "N") for force in forces), _number(outcome.restitution)]
     else:
-        numbers = (outcome.min_speed, outcome.max_speed)
-    return [outcome.words, *map(_number, numbers), str(outcome.impacts), outcome.status]
+        numbers = [_number(outcome.min_speed), _number(outcome.max_speed)]
+    return [outcome.words, *numbers, str(outcome.impacts), outcome.status]
 
 
 def _flatten(tables: dict[str, Any], swept: dict[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -224,6 +225,13 @@ def _value(value: Any) -> str:
 def _values(values: list[Any]) -> str:
     shown = [_value(value) for value in values]
     return ", ".join(shown if len(shown) <= 12 else [*shown[:6], "...", *shown[-3:]])
+
+
+def _measure(value: Any, unit: str) -> str:
+    """Write a quantity with a prefix; angular speeds and texts have none."""
+    if isinstance(value, str) or unit == "rad/s":
+        return f"{_number(value)} {unit}".rstrip()
+    return with_prefix(float(value), unit, 6)
 
 
 def _number(value: Any) -> str:

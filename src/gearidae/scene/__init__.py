@@ -8,6 +8,7 @@ from gearidae.scene.knots import Knots
 from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.scene import Scene, describe_key, describe_keys
+from gearidae.scene.shown import differences, nearest_preset
 from gearidae.scene.surface import MATERIAL_NAMES, Coating, Contact, Material, Surface
 from gearidae.scene.torque import Drive, Harmonic, Load
 
@@ -32,7 +33,9 @@ __all__ = [
     "Surface",
     "describe_key",
     "describe_keys",
+    "differences",
     "dump_case",
     "load_case",
+    "nearest_preset",
     "preset",
 ]

@@ -14,6 +14,7 @@ from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import check_gaps, check_reach, check_stretch
 from gearidae.scene.run import Initial, Roller, Run
+from gearidae.scene.showing import as_html, as_line
 from gearidae.scene.surface import Coating, Contact, Material, Surface
 from gearidae.scene.torque import Drive, Load
 
@@ -217,16 +218,12 @@ class Scene(Group):
 
     def __repr__(self) -> str:
         """Return a line that says what the scene is, and how it differs from the nearest preset."""
-        from gearidae.scene.shown import as_line
-
         return as_line(self)
 
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
         """Return a table of all keys with units, those that differ from the nearest preset marked."""
-        from gearidae.scene.shown import as_html
-
         return as_html(self)
 
     @classmethod

@@ -5,15 +5,14 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-from gearidae.scene.keys import find_key
 from gearidae.scene.prefixes import with_prefix
+from gearidae.scene.presets import PRESETS, preset
+from gearidae.scene.scene import Scene, describe_key
+from gearidae.scene.showing import as_html, as_line
 
-if TYPE_CHECKING:
-    from gearidae.scene.scene import Scene
-
-__all__ = ["as_html", "as_line", "differences", "nearest_preset", "value_text"]
+__all__ = ["differences", "flat", "nearest_preset", "value_text"]
 
 _NEAR: Final = 12
 """Keys in which a scene may differ from a preset that it is compared with."""
@@ -23,7 +22,8 @@ _PREFIXED: Final = ("m", "s", "N", "J", "Pa", "Hz", "W")
 """Units that take a prefix where a text begins with them."""
 
 
-def as_line(scene: Scene) -> str:
+@as_line.register
+def _line(scene: Scene) -> str:
     """Write what a scene is in one line.
 
     Parameters
@@ -54,7 +54,8 @@ def as_line(scene: Scene) -> str:
     return f"<Scene {scene.name!r}: {', '.join(parts)}>"
 
 
-def as_html(scene: Scene) -> str:
+@as_html.register
+def _table(scene: Scene) -> str:
     """Write a scene as an HTML table of its keys, those that differ from the nearest preset marked.
 
     Parameters
@@ -114,8 +115,6 @@ def nearest_preset(scene: Scene) -> str:
     str
         The preset of the scene's own name, if there is one of the same kind.
     """
-    from gearidae.scene.presets import PRESETS, preset
-
     same = [name for name in PRESETS if ("roller" in PRESETS[name]) == (scene.roller is not None)]
     if scene.name in same:
         return scene.name
@@ -138,8 +137,6 @@ def differences(scene: Scene, name: str) -> dict[str, tuple[object, object]]:
     dict of str to tuple
         Dotted key to the values in the preset and in the scene; None where there is none.
     """
-    from gearidae.scene.presets import preset
-
     old, new = flat(preset(name).to_dict()), flat(scene.to_dict())
     keys = [*new, *(key for key in old if key not in new)]
     return {
@@ -177,7 +174,7 @@ def value_text(key: str, value: object) -> str:
         return _knots(value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return str(value)
-    unit = _unit(key)
+    unit = describe_key(key).unit
     if unit == "rad":
         return f"{math.degrees(value):.6g} deg"
     if unit in ("", "1"):
@@ -185,13 +182,6 @@ def value_text(key: str, value: object) -> str:
     if unit.split(" ")[0].split("/")[0].split("^")[0] in _PREFIXED and unit != "rad/s":
         return with_prefix(value, unit, 6)
     return f"{value:.6g} {unit}"
-
-
-def _unit(key: str) -> str:
-    """SI unit of a key."""
-    from gearidae.scene.scene import Scene
-
-    return find_key(Scene, key).unit
 
 
 def _knots(value: list[Any] | tuple[Any, ...]) -> str:
