@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
@@ -107,6 +108,7 @@ def _summary(scene: Scene, swept: tuple[str, ...]) -> str:
     return f"{what}{each} The attribute 'scene' holds the complete input in SI units."
 
 
+@cache
 def _software() -> str:
     """Name what computed the numbers, with versions."""
     parts = [f"gearidae {gearidae.__version__}"]
