@@ -27,6 +27,8 @@ LIGHT = {
     "signal": "gd.analysis.read_signal(sys.argv[1])",
     "words": "from gearidae.analysis.verdict import outcomes; outcomes(ds)",
     "account": "from gearidae.analysis.run_summary import account; account(ds)",
+    "accessor": "ds.gearidae.scene; ds.gearidae.verdicts(); ds.gearidae.to_dataframe(); ds.gearidae.events()",
+    "chain": "gd.concat([ds.isel(event=slice(0))], 'time')",
     "checkpoints": "from gearidae.archive import GrowingArchive",
 }
 

@@ -113,6 +113,8 @@ def test_what_cannot_be_joined_is_named(run, whole):
     refused([run], "speeds", "dim")
     refused([whole, whole.isel(torque=[0])], KEY, "drive.torque")
     refused([xr.Dataset()], KEY, "dataset")
+    late = gd.simulate(other)
+    refused([run, late.assign_coords(time=late.time + 1e-3)], KEY, "time", "one time axis")
     kept = gd.sweep(LOW, {KEY: [0.3]}, keep=["samples"])
     refused([gd.sweep(LOW, {KEY: [0.6]}), kept], KEY, "keep")
 
@@ -155,6 +157,16 @@ def test_a_chain_may_change_its_torque_and_is_judged_by_its_last(run):
     joined = gd.concat([first, second.assign_attrs(scene=json.dumps(scene))], "time")
     assert joined.gearidae.scene.drive.torque == 9e-18
     assert joined.gearidae.verdicts().final_speed[0] == run.final_speed
+
+
+def test_a_chain_that_says_when_it_began(run):
+    """Where runs tell their start, it is believed, and that of the first is the whole's."""
+    first, second = cut_in_two(run, 5)
+    middle = float(second.time[0])
+    joined = gd.concat([first, second.assign_attrs(start_time=middle)], "time")
+    assert "start_time" not in joined.attrs
+    assert json.loads(joined.attrs["chain"])[1]["start"] == middle
+    refused([first, second.assign_attrs(start_time=0.5 * middle)], "time", "time", "does not go on from it")
 
 
 def test_what_is_no_chain(run, whole):

@@ -74,6 +74,9 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
         coords={name: each for name, each in variables.items() if name in last.coords},
         attrs={name: value for name, value in last.attrs.items() if name != "account"},
     )
+    ds.attrs.pop("start_time", None)
+    if "start_time" in singles[0].attrs:
+        ds.attrs["start_time"] = singles[0].attrs["start_time"]
     for name in _SUMS:
         ds.attrs[name] = sum(part.attrs[name] for part in singles)
     for name in ("backend", "method"):
@@ -132,7 +135,9 @@ def _refuse_jump(before: xr.Dataset, after: xr.Dataset, name: str) -> None:
 
 
 def _start(run: xr.Dataset) -> float:
-    """When a run begins [s], as far as it has samples or events."""
+    """When a run begins [s]; without that number, where its samples or events do."""
+    if "start_time" in run.attrs:
+        return float(run.attrs["start_time"])
     firsts = [float(run[name][0]) for name in ("time", "event_time") if name in run and run[name].size]
     return min(firsts, default=math.inf)
 

@@ -69,6 +69,7 @@ def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
     order = _order(axes, scenes)
     scenes, found = [scenes[place] for place in order], [found[place] for place in order]
     _refuse_differences(scenes, [key for axis in axes for key in axis])
+    _refuse_other_times(found)
     keep = kept_in(parts[0].attrs, scenes[0])
     for number, part in enumerate(parts):
         if part.attrs.get("keep") != parts[0].attrs.get("keep"):
@@ -190,6 +191,19 @@ def _refuse_differences(scenes: Sequence[Scene], swept: Sequence[str]) -> None:
             key, ours, theirs = found
             raise SceneError(
                 key, theirs, f"is {ours} in the first run: runs may differ in {', '.join(swept)} only"
+            )
+
+
+def _refuse_other_times(found: Sequence[_Run]) -> None:
+    """Refuse runs that do not share one time axis, as far as each of them goes."""
+    times = [each.single["time"].values for each in found if "time" in each.single.dims]
+    longest = max(times, key=len, default=np.empty(0))
+    for time in times:
+        if not np.array_equal(time, longest[: len(time)]):
+            raise SceneError(
+                "time",
+                f"{time[0]:g} to {time[-1]:g} s",
+                "differs between the runs, which share one time axis",
             )
 
 
