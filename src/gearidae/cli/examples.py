@@ -24,5 +24,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "assess": ("gearidae assess signal.csv --map map.nc",),
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset teodorescu2009"),
+    "schema": ("gearidae schema -o gearidae.schema.json",),
     "info": ("gearidae info mine.nc",),
 }
