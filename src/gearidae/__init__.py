@@ -9,6 +9,7 @@ Public names are loaded on first use, so that ``import gearidae`` itself stays c
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from gearidae.lazy import lazy_names, when_imported
@@ -94,9 +95,7 @@ __getattr__, __dir__ = lazy_names(globals(), _HOME)
 
 def _results(ds: Any) -> Any:
     """Make the accessor `ds.gearidae`, `gearidae.analysis.accessor.Results`."""
-    from gearidae.analysis.accessor import Results
-
-    return Results(ds)
+    return import_module("gearidae.analysis.accessor").Results(ds)
 
 
 def _register() -> None:
