@@ -11,7 +11,18 @@ from pathlib import Path
 
 from cyclopts import Argument
 
-from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, RUN, SAM_FRACTION, SAMPLES, TIME, Variable
+from gearidae.archive.variables import (
+    ENERGY_BALANCE,
+    EVENTS,
+    EXTREMES,
+    OF_SWEPT_RUN,
+    RUN,
+    SAM_FRACTION,
+    SAMPLES,
+    TIME,
+    VERDICT,
+    Variable,
+)
 from gearidae.cli.session import app
 from gearidae.engine.model import state
 from gearidae.records import EventKind, Flank
@@ -57,7 +68,10 @@ def dataset_tables() -> str:
         ("Samples", SAMPLES.values()),
         ("Events", EVENTS.values()),
         ("Status and statistics of a run", RUN.values()),
+        ("Extremes of a run", EXTREMES.values()),
         ("Energy balance of a run", ENERGY_BALANCE.values()),
+        ("Of every run of a sweep besides", OF_SWEPT_RUN.values()),
+        ("Of every run of a sweep that keeps parts of its runs", VERDICT.values()),
     )
     headings = ("name", "dimensions", "unit", "what it is")
     parts = []

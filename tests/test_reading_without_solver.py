@@ -28,6 +28,8 @@ LIGHT = {
     "words": "from gearidae.analysis.verdict import outcomes; outcomes(ds)",
     "account": "from gearidae.analysis.run_summary import account; account(ds)",
     "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 12",
+    "accessor": "ds.gearidae.scene; ds.gearidae.verdicts(); ds.gearidae.to_dataframe(); ds.gearidae.events()",
+    "chain": "gd.concat([ds.isel(event=slice(0))], 'time')",
     "checkpoints": "from gearidae.archive import GrowingArchive",
 }
 

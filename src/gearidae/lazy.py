@@ -1,14 +1,20 @@
-"""Public names that are loaded on first use (PEP 562), so that importing a package costs next to nothing."""
+"""Public names that are loaded on first use (PEP 562), so that importing a package costs next to nothing.
+
+Likewise what is to be done once another package has been imported, without importing it.
+"""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
-__all__ = ["lazy_names"]
+__all__ = ["lazy_names", "when_imported"]
 
 
 class _Door(ModuleType):
@@ -50,3 +56,44 @@ def lazy_names(
         return sorted({*namespace, *home})
 
     return load, names
+
+
+def when_imported(name: str, call: Callable[[], None]) -> None:
+    """Call a function as soon as a package has been imported; now if it has been.
+
+    Parameters
+    ----------
+    name : str
+        Of the package.
+    call : callable
+        May import the package.
+    """
+    if name in sys.modules:
+        call()
+    else:
+        sys.meta_path.insert(0, _Waiting(name, call))
+
+
+class _Waiting(MetaPathFinder):
+    """Finds nothing by itself; lets the import of one package be followed by a call, and steps aside."""
+
+    def __init__(self, name: str, call: Callable[[], None]) -> None:
+        self._name, self._call = name, call
+
+    def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        """Return what the other finders find, with a loader that calls afterwards."""
+        if fullname != self._name:
+            return None
+        sys.meta_path.remove(self)
+        spec = find_spec(fullname)
+        if spec is None or spec.loader is None:
+            return spec
+        execute, call = spec.loader.exec_module, self._call
+
+        def exec_module(module: ModuleType) -> None:
+            execute(module)
+            call()
+
+        # the loader itself stays what it is: it also finds the files that belong to the package
+        spec.loader.exec_module = exec_module  # type: ignore[method-assign]
+        return spec

@@ -93,3 +93,41 @@ def test_it_goes_along_with_the_dataset():
     assert ds.assign_attrs(a=1).equals(ds.copy(deep=True))
     assert not ds.equals(ds.assign_coords(time=TIMES + 1.0))
     xr.testing.assert_identical(in_memory(ds), plain())
+
+
+PARTS = st.tuples(st.integers(0, 30), st.integers(1, 31)).map(
+    lambda ends: slice(min(ends), max(*ends, min(ends) + 7))
+)
+
+
+@given(PARTS, PARTS, st.sampled_from(["inner", "outer", "left", "right"]))
+def test_alignment(one, other, how):
+    """Two archives, or parts of them, are aligned as they would be in memory."""
+
+    def aligned(ds, file):
+        return xr.align(file(ds, one), file(ds, other), join=how)
+
+    found = aligned(plain(), lambda ds, part: _in_file(ds.isel(time=part)))
+    wanted = aligned(plain(), lambda ds, part: ds.isel(time=part))
+    for mine, theirs in zip(found, wanted, strict=True):
+        np.testing.assert_array_equal(mine["time"], theirs["time"])
+        np.testing.assert_array_equal(mine["speed"], theirs["speed"])
+
+
+@given(PARTS, st.sampled_from([None, "nearest", "pad", "backfill"]))
+def test_reindexing_like_another(part, method):
+    coarse = plain().isel(time=part)
+    coarse = coarse.assign_coords(time=coarse["time"] + 0.01 if method else coarse["time"])
+    found = looked_up().reindex_like(_in_file(coarse), method=method)
+    np.testing.assert_array_equal(found["speed"], plain().reindex_like(coarse, method=method)["speed"])
+
+
+def test_another_kind_of_index_is_told_how_to_be_met():
+    with pytest.raises(ValueError, match=r'drop_indexes\("time"\)'):
+        looked_up().reindex(time=TIMES[::2])
+    usual = looked_up().drop_indexes("time").set_xindex("time")
+    np.testing.assert_array_equal(usual.reindex(time=TIMES[::2])["speed"], np.arange(0.0, 31.0, 2.0))
+
+
+def _in_file(ds):
+    return with_times(ds.drop_vars("time"), ds["time"].variable.to_base_variable())

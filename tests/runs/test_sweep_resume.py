@@ -302,7 +302,7 @@ def test_every_number_survives(tmp_path):
         run = Solution(np.arange(float(count)), samples, events, statistics, "finished", "", 0.1 * count)
         kept = KeptRuns(tmp_path / "a.nc", LOW, "native")
         kept.keep(LOW, run)
-        back = kept.take(LOW)
+        back, *judged = kept.take(LOW)
         for mine, theirs in [
             (run.time, back.time),
             *zip(run.samples.values(), back.samples.values(), strict=True),
@@ -313,3 +313,4 @@ def test_every_number_survives(tmp_path):
         assert list(back.samples) == list(run.samples)
         assert (back.statistics, back.status, back.message) == (statistics, "finished", "")
         assert back.reached == 0.1 * count
+        assert judged == ["", 0]

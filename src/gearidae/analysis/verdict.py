@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.analysis.kept_verdicts import kept_fields
 from gearidae.analysis.sampled_extremes import extremes_of_samples
 from gearidae.analysis.verdict_table import Outcomes, Shown
 from gearidae.archive.extremes import extremes_of
@@ -169,6 +170,9 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     SceneError
         If the dataset carries no scene.
     """
+    if "verdict" in ds.variables:  # judged when the run ended, of which not everything is there
+        kind = RollerOutcome if is_roller(ds) else GearOutcome
+        return [kind(**fields) for fields in kept_fields(ds)]
     if is_roller(ds):
         return Outcomes(_roller(label, run) for label, run in runs(ds))
     scheduled = _is_scheduled(scene_of(ds))

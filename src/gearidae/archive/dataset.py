@@ -14,14 +14,18 @@ from numpy.typing import NDArray
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.energy import balance_attribute, balance_numbers
 from gearidae.archive.extremes import extreme_variables
+from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import provenance, surface_regimes
+from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.variables import (
     ENERGY_BALANCE,
     EVENTS,
+    OF_SWEPT_RUN,
     RUN,
     SAM_FRACTION,
     SAMPLES,
     TIME,
+    Variable,
     by_name,
     columns,
 )
@@ -95,6 +99,9 @@ def combine(
     swept: Mapping[str, Sequence[Any]],
     scenes: Sequence[Scene],
     solutions: Sequence[Solution],
+    *,
+    keep: Keep = EVERYTHING,
+    samples: SampleTable | None = None,
 ) -> xr.Dataset:
     """Stack the runs of a sweep into one dataset.
 
@@ -107,53 +114,43 @@ def combine(
     scenes, solutions : sequence
         The runs in the order of ``itertools.product`` over the swept values (the last key changes fastest). A
         run that produced nothing has empty arrays and says why in its status.
+    keep : Keep, optional
+        Which variables the dataset has; by default all.
+    samples : SampleTable, optional
+        Holds the samples, if the solutions do not.
 
     Returns
     -------
     xarray.Dataset
         As `to_dataset`, with one dimension per swept key in front of ``time``. Samples that a run did not
         reach are NaN. Events are ragged and therefore lie on one flat ``event`` dimension, labelled by
-        ``event_<dimension>``. Status, solver statistics and energy balance are variables along the swept dimensions,
-        the statistics' totals attributes.
+        ``event_<dimension>``. Scene, status, solver statistics and energy balance are variables along the swept
+        dimensions, the statistics' totals attributes.
     """
     names = dimension_names(swept)
     dims = tuple(names.values())
     shape = tuple(len(values) for values in swept.values())
     labels = {names[key]: key_labels(key, names[key], values) for key, values in swept.items()}
+    if samples is None:
+        longest = max(len(solution.time) for solution in solutions)
+        samples = SampleTable(keep.columns(scene), len(solutions), longest)
+        solutions = [samples.take(number, each) for number, each in enumerate(solutions)]
+    variables: dict[Hashable, Any] = {
+        name: ((*dims, "time"), table.reshape(*shape, -1), SAMPLES[name].attributes)
+        for name, table in samples.columns().items()
+    }
+    if keep.events:
+        variables |= _events_of_sweep(labels, scenes, solutions)
+    of_runs = _of_runs(scenes, solutions, keep)
+    extremes = extreme_variables(scene, solutions, dims, shape)
+    for name, (variable, values) in of_runs.items():
+        if keep.holds(name):
+            variables[name] = (dims, values.reshape(shape), variable.attributes)
+    variables |= {name: each for name, each in extremes.items() if keep.holds(str(name))}
 
-    time = max((solution.time for solution in solutions), key=len)
-    variables: dict[Hashable, Any] = {}
-    for name in _columns(scene):
-        stacked = np.empty((len(solutions), len(time)))
-        for row, solution in zip(stacked, solutions, strict=True):
-            samples = _samples(solution, name)
-            row[: len(samples)] = samples
-            row[len(samples) :] = np.nan
-        variables[name] = ((*dims, "time"), stacked.reshape(*shape, len(time)), SAMPLES[name].attributes)
-
-    fractions = np.array([each.coating.sam_fraction for each in scenes])
-    variables |= _event_variables(solutions, fractions)
-    counts = [len(solution.events) for solution in solutions]
-    for position, (dim, label) in enumerate(labels.items()):
-        if dim != "sam_fraction":
-            index = np.unravel_index(np.arange(len(solutions)), shape)[position]
-            attributes = {
-                "long_name": f"{dim} of the run the event belongs to",
-                "units": label.attrs["units"],
-            }
-            variables[f"event_{dim}"] = (("event",), np.repeat(label.values[index], counts), attributes)
-
-    for name, variable in RUN.items():
-        source = [s if name in ("status", "message") else s.statistics for s in solutions]
-        values = np.array([getattr(each, name) for each in source], dtype=variable.dtype)
-        variables[name] = (dims, values.reshape(shape), variable.attributes)
-    variables |= extreme_variables(scene, solutions, dims, shape)
-    kept = [balance_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
-    for name, variable in ENERGY_BALANCE.items():
-        values = np.array([numbers.get(name, math.nan) for numbers in kept])
-        variables[name] = (dims, values.reshape(shape), variable.attributes)
-
-    coords: dict[Hashable, Any] = {"time": ("time", time, TIME.attributes)}
+    coords: dict[Hashable, Any] = {}
+    if keep.columns(scene):
+        coords["time"] = ("time", samples.time, TIME.attributes)
     coords.update(labels)
     if "sam_fraction" not in dims:
         coords["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
@@ -164,12 +161,54 @@ def combine(
         attrs={
             **provenance(scene, f"swept {len(solutions)} runs", swept=tuple(swept)),
             "swept": json.dumps(dict(swept), allow_nan=False),
+            **({} if keep.names is None else {"keep": json.dumps(keep.asked)}),
             "status": "finished" if done == len(solutions) else "partial",
             "message": "" if done == len(solutions) else f"{done} of {len(solutions)} runs finished",
             **_totals(solutions),
             **surface_regimes(scene),
         },
     )
+
+
+def _of_runs(
+    scenes: Sequence[Scene], solutions: Sequence[Solution], keep: Keep
+) -> dict[str, tuple[Variable, NDArray[Any]]]:
+    """One value a run: how it ended, its statistics, its input and its energy balance."""
+    found: dict[str, tuple[Variable, NDArray[Any]]] = {}
+    for name, variable in RUN.items():
+        source = [s if name in ("status", "message") else s.statistics for s in solutions]
+        found[name] = variable, np.array([getattr(each, name) for each in source], dtype=variable.dtype)
+    found["reached"] = OF_SWEPT_RUN["reached"], np.array([reached(solution) for solution in solutions])
+    skipped = [json.dumps(solution.statistics.skipped, default=int) for solution in solutions]
+    found["skipped"] = OF_SWEPT_RUN["skipped"], np.array(skipped)
+    if keep.holds("scene"):
+        inputs = np.empty(
+            len(scenes), dtype=object
+        )  # in an array of text every entry is as long as the longest
+        inputs[:] = [json.dumps(each.to_dict(), allow_nan=False) for each in scenes]
+        found["scene"] = OF_SWEPT_RUN["scene"], inputs
+    kept = [balance_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
+    for name, variable in ENERGY_BALANCE.items():
+        found[name] = variable, np.array([numbers.get(name, math.nan) for numbers in kept])
+    return found
+
+
+def _events_of_sweep(
+    labels: Mapping[str, xr.Variable], scenes: Sequence[Scene], solutions: Sequence[Solution]
+) -> dict[Hashable, Any]:
+    """Events of all runs, one after the other, with the labels of their runs."""
+    variables = _event_variables(solutions, np.array([each.coating.sam_fraction for each in scenes]))
+    counts = [len(solution.events) for solution in solutions]
+    shape = tuple(label.size for label in labels.values())
+    for position, (dim, label) in enumerate(labels.items()):
+        if dim != "sam_fraction":
+            index = np.unravel_index(np.arange(len(solutions)), shape)[position]
+            attributes = {
+                "long_name": f"{dim} of the run the event belongs to",
+                "units": label.attrs["units"],
+            }
+            variables[f"event_{dim}"] = (("event",), np.repeat(label.values[index], counts), attributes)
+    return variables
 
 
 def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
@@ -247,6 +286,6 @@ def _totals(solutions: Sequence[Solution]) -> dict[str, Any]:
     totals["wall_time"] = math.fsum(each.wall_time for each in statistics)
     for name in ("backend", "method"):
         totals[name] = ", ".join(sorted({getattr(each, name) for each in statistics} - {""}))
-    skipped = statistics[0].skipped if len(statistics) == 1 else [each.skipped for each in statistics]
-    totals["skipped"] = json.dumps(skipped, default=int)
+    if len(statistics) == 1:
+        totals["skipped"] = json.dumps(statistics[0].skipped, default=int)
     return totals

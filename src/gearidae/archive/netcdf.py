@@ -16,11 +16,13 @@ from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import sync
 from gearidae.archive.growing import is_growing, trimmed
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
+from gearidae.archive.keep import kept_in
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
-from gearidae.archive.variables import EVENTS, columns
+from gearidae.archive.variables import EVENTS, VERDICT, columns
 from gearidae.errors import SceneError
+from gearidae.scene import Scene
 
 __all__ = ["check_target", "open_archive", "save"]
 
@@ -201,11 +203,23 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     scene = readable_scene(ds.attrs["scene"])
     if scene is None:
         raise SceneError("archive", path, "is damaged: its scene is not readable")
-    expected = ("time", *columns(is_roller="roller" in scene), *EVENTS)
-    missing = [name for name in expected if name not in ds.variables]
+    missing = [name for name in _expected(ds, scene) if name not in ds.variables]
     wrong = f"it lacks {', '.join(missing)}" if missing else wrong_attribute(ds)
     if wrong:
         raise SceneError("archive", path, f"is damaged: {wrong}")
+
+
+def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
+    """Variables that an archive has at least."""
+    sampled = columns(is_roller="roller" in scene)
+    if "keep" not in ds.attrs:
+        return ("time", *sampled, *EVENTS)
+    try:
+        keep = kept_in(ds.attrs, Scene.from_dict(scene))
+    except SceneError as error:
+        raise SceneError("archive", ds.encoding.get("source", ""), f"is damaged: {error}") from None
+    some = tuple(name for name in sampled if keep.holds(name))
+    return (*(("time",) if some else ()), *some, *(EVENTS if keep.events else ()), "status", *VERDICT)
 
 
 def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,20 @@ import xarray as xr
 
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
-from gearidae.archive.variables import columns
+from gearidae.archive.variables import EXTREMES, columns
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
-__all__ = ["is_roller", "motion_samples", "run_scene", "run_value", "runs", "scene_of", "swept_dims"]
+__all__ = [
+    "is_roller",
+    "motion_samples",
+    "own_events",
+    "run_scene",
+    "run_value",
+    "runs",
+    "scene_of",
+    "swept_dims",
+]
 
 
 def scene_of(ds: xr.Dataset) -> dict[str, Any]:
@@ -29,7 +39,7 @@ def scene_of(ds: xr.Dataset) -> dict[str, Any]:
     Returns
     -------
     dict
-        Of a sweep, the scene that its runs were derived from.
+        Of a sweep, the scene that its runs were derived from; of a run picked from one, its own.
 
     Raises
     ------
@@ -37,7 +47,8 @@ def scene_of(ds: xr.Dataset) -> dict[str, Any]:
         If the dataset carries none.
     """
     try:
-        scene = json.loads(ds.attrs["scene"])
+        own = "scene" in ds.variables and not ds["scene"].dims
+        scene = json.loads(ds["scene"].item() if own else ds.attrs["scene"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise SceneError(
             "dataset", type(ds).__name__, "must come from simulate, sweep or open_archive"
@@ -54,8 +65,9 @@ def is_roller(ds: xr.Dataset) -> bool:
 
 def swept_dims(ds: xr.Dataset) -> tuple[str, ...]:
     """Dimensions along which the runs of a dataset differ; none for a single run."""
-    sample = next((ds[name] for name in columns(is_roller(ds)) if name in ds), None)
-    return () if sample is None else tuple(str(dim) for dim in sample.dims if dim != "time")
+    of_runs = ("status", *columns(is_roller(ds)), *EXTREMES)
+    found = next((ds[name] for name in of_runs if name in ds), None)
+    return () if found is None else tuple(str(dim) for dim in found.dims if dim != "time")
 
 
 def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
@@ -74,9 +86,12 @@ def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
         The run, without swept dimensions.
     """
     dims = swept_dims(ds)
-    for place in np.ndindex(*(ds.sizes[dim] for dim in dims)):
+    ds = own_events(ds)
+    events = _events_of_runs(ds, dims)
+    for number, place in enumerate(np.ndindex(*(ds.sizes[dim] for dim in dims))):
         run = ds.isel(dict(zip(dims, place, strict=True)))
-        yield {dim: run[dim].item() for dim in dims}, _own_events(run)
+        run = own_events(run) if events is None else run.isel(event=events[number])
+        yield {dim: run[dim].item() for dim in dims}, run
 
 
 def run_value(run: xr.Dataset, name: str) -> Any:
@@ -101,10 +116,17 @@ def run_scene(run: xr.Dataset) -> Scene:
     SceneError
         If the dataset carries no scene.
     """
+    if (dims := swept_dims(run)) and any(run.sizes[dim] != 1 for dim in dims):
+        raise SceneError("dataset", f"runs along {', '.join(dims)}", "must be a single run: pick one")
+    run = run.squeeze(dims) if dims else run
     scene = Scene.from_dict(scene_of(run))
+    if "scene" in run.variables:
+        return scene
     swept: Mapping[str, list[Any]] = json.loads(run.attrs.get("swept", "{}"))
     changes = {}
     for key, dim in dimension_names(swept).items():
+        if dim not in run.coords:
+            raise SceneError("dataset", f"without {dim}", "must be a run of a sweep: its scene is not known")
         value = run[dim].item()
         if run[dim].attrs.get("comment"):  # values that are neither numbers nor words are numbered
             if not (isinstance(value, int) and 0 <= value < len(swept[key])):
@@ -133,14 +155,40 @@ def motion_samples(run: xr.Dataset) -> int:
     return samples
 
 
-def _own_events(run: xr.Dataset) -> xr.Dataset:
-    """Drop the events of other runs, which stay behind when a run is picked from a sweep."""
-    if "swept" not in run.attrs:
-        return run
-    labels = [
-        name for name in map(str, run.coords) if name not in run.dims and f"event_{name}" in run.variables
-    ]
-    own = np.ones(run.sizes.get("event", 0), dtype=bool)
-    for name in labels:
-        own &= run[f"event_{name}"].values == run[name].item()
-    return run if own.all() else run.isel(event=own)
+def own_events(ds: xr.Dataset) -> xr.Dataset:
+    """Drop the events of other runs, which xarray leaves behind when runs are picked from a sweep.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Runs of a sweep, or one of them.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the events only that carry the labels of its runs.
+    """
+    if "swept" not in ds.attrs or "event" not in ds.dims:
+        return ds
+    own = np.ones(ds.sizes["event"], dtype=bool)
+    for name in map(str, ds.coords):
+        if name not in ("time", "event") and f"event_{name}" in ds.variables and ds[name].ndim < 2:
+            own &= np.isin(ds[f"event_{name}"].values, ds[name].values)
+    return ds if own.all() else ds.isel(event=own)
+
+
+def _events_of_runs(ds: xr.Dataset, dims: tuple[str, ...]) -> list[slice | np.ndarray[Any, Any]] | None:
+    """Places of each run's events, found in one pass; None where labels do not tell the runs apart."""
+    if "event" not in ds.dims or not dims or any(f"event_{dim}" not in ds.variables for dim in dims):
+        return None
+    indexes = [ds.get_index(dim) for dim in dims]
+    if not all(index.is_unique for index in indexes):
+        return None
+    places = [index.get_indexer(ds[f"event_{dim}"].values) for index, dim in zip(indexes, dims, strict=True)]
+    shape = tuple(ds.sizes[dim] for dim in dims)
+    number = np.ravel_multi_index(places, shape) if len(places[0]) else np.empty(0, dtype=np.int64)
+    order = np.argsort(number, kind="stable")
+    bounds = np.searchsorted(number[order], np.arange(int(np.prod(shape)) + 1))
+    if np.array_equal(order, np.arange(len(order))):
+        return [slice(first, last) for first, last in pairwise(bounds)]
+    return [order[first:last] for first, last in pairwise(bounds)]

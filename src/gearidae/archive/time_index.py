@@ -101,6 +101,27 @@ class TimeIndex(xr.Index):
             return False
         return self._times is other._times or bool(self._times.equals(other._times))  # type: ignore[no-untyped-call]
 
+    def join(self, other: xr.Index, how: str = "inner") -> TimeIndex:
+        """Find the labels of both indexes (``inner``), or of either (``outer``); these are kept in memory."""
+        ours, theirs = self.to_pandas_index(), other.to_pandas_index()
+        both = ours.intersection(theirs) if how == "inner" else ours.union(theirs)
+        times = xr.Variable(self._times.dims, np.sort(both.to_numpy()), self._times.attrs)
+        return type(self)(self._name, times)
+
+    def reindex_like(
+        self, other: Self, method: Any = None, tolerance: Any = None
+    ) -> dict[Hashable, np.ndarray[Any, Any]]:
+        """Find the places of another index's labels; -1 where a label is not there."""
+        labels = other.to_pandas_index()
+        return {self._name: self.to_pandas_index().get_indexer(labels, method=method, tolerance=tolerance)}
+
+    def __repr__(self) -> str:
+        """Say what it is and, for xarray's message where two kinds of index meet, how to get the usual one."""
+        size = self._times.size
+        return (
+            f'TimeIndex({size} times, in their file; ds.drop_indexes("time").set_xindex("time") reads them)'
+        )
+
     def rename(self, name_dict: Mapping[Any, Hashable], dims_dict: Mapping[Any, Hashable]) -> Self:
         """Give the coordinate another name."""
         times = self._times.copy(deep=False)

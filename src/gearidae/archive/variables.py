@@ -22,11 +22,13 @@ __all__ = [
     "ENERGY_BALANCE",
     "EVENTS",
     "EXTREMES",
+    "OF_SWEPT_RUN",
     "ROLLER_EXTREMES",
     "RUN",
     "SAMPLES",
     "SAM_FRACTION",
     "TIME",
+    "VERDICT",
     "Variable",
     "by_name",
     "columns",
@@ -114,6 +116,17 @@ _RUN = (
     Variable("restarts", (), "1", "restarts of the solver at order one", np.int64),
     Variable("guard_evaluations", (), "1", "evaluations of the event functions", np.int64),
     Variable("wall_time", (), "s", "wall time in the solver"),
+    Variable("backend", (), "1", "driver of the solver that ran", np.str_),
+    Variable("method", (), "1", "formulas that the run began with", np.str_),
+)
+_OF_SWEPT_RUN = (
+    Variable("reached", (), "s", "simulated time reached"),
+    Variable("skipped", (), "1", "what the scene did not need, by name, as JSON", np.str_),
+    Variable("scene", (), "1", "input of the run in SI units, as JSON", np.object_),
+)
+_VERDICT = (
+    Variable("verdict", (), "1", "outcome of the run in one word", np.str_),
+    Variable("impacts", (), "1", "contacts made (onset events)", np.int64),
 )
 _ENERGY_BALANCE = (
     Variable("drive_work", (), "J", "work of the drive"),
@@ -178,6 +191,10 @@ EXTREMES: Mapping[str, Variable] = {
     variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES)
 }
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
+OF_SWEPT_RUN: Mapping[str, Variable] = {variable.name: variable for variable in _OF_SWEPT_RUN}
+"""What every run of a sweep has besides; of a single run these are attributes, or follow from them."""
+VERDICT: Mapping[str, Variable] = {variable.name: variable for variable in _VERDICT}
+"""What a run of a sweep leaves behind that keeps only parts of its runs."""
 
 
 def columns(is_roller: bool, is_elastic: bool = False) -> tuple[str, ...]:
@@ -193,6 +210,8 @@ def by_name() -> dict[str, Variable]:
         **SAMPLES,
         **EVENTS,
         **RUN,
+        **OF_SWEPT_RUN,
+        **VERDICT,
         **ENERGY_BALANCE,
         **EXTREMES,
     }

@@ -88,6 +88,14 @@ def sweep(
         bool, Parameter(help="Resume an interrupted sweep; its finished runs are reused.")
     ] = False,
     overwrite: Overwrite = False,
+    keep: Annotated[
+        list[str] | None,
+        Parameter(
+            help="What each run leaves behind: variables, or verdict, extremes, statistics, energy_balance, scene, "
+            "samples, events; repeatable. Default: everything.",
+            consume_multiple=True,
+        ),
+    ] = None,
 ) -> int:
     """Run a scene for several values of one or more keys, into one archive.
 
@@ -106,6 +114,7 @@ def sweep(
         zipped=zipped,
         resume=resume,
         overwrite=overwrite,
+        keep=keep,
     )
 
 
@@ -301,3 +310,11 @@ def info(archive: Annotated[Path, Parameter(help="Archive to describe.")], *, as
     from gearidae.cli.files import describe
 
     return describe(archive, as_json=as_json)
+
+
+@app.command
+def schema(*, output: Output = None, overwrite: Overwrite = False) -> int:
+    """Print the JSON Schema of case files, by which editors complete and check them, or write it to a file."""
+    from gearidae.cli.schema import write_schema
+
+    return write_schema(output, overwrite=overwrite)

@@ -28,5 +28,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset start_up"),
+    "schema": ("gearidae schema -o gearidae.schema.json",),
     "info": ("gearidae info mine.nc", "gearidae info mine.nc --json"),
 }

@@ -105,10 +105,10 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
     yield "status", str(ended), ""
     for dim in swept_dims(ds):
         yield f"swept: {dim}", _values(ds[dim]), str(ds[dim].attrs["units"])
-    samples = ds.sizes["time"]
+    samples = ds.sizes.get("time", 0)
     span = f"{samples} samples, 0 to {float(ds['time'][-1]):g} s" if samples else "no samples"
     yield "time", span, f"requested {attributes['t_end']:g} s at rtol {attributes['rtol']:g}"
-    yield "events", str(ds.sizes["event"]), ""
+    yield "events", str(ds.sizes["event"]) if "event" in ds.sizes else "not kept", ""
     for name in ("steps", "residual_evaluations", "jacobian_evaluations", "restarts"):
         yield name.replace("_", " "), str(attributes[name]), ""
     yield "wall time", f"{attributes['wall_time']:.3g} s", f"backend {attributes['backend']}"

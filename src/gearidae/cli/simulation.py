@@ -95,6 +95,7 @@ def sweep_case(
     zipped: bool,
     resume: bool,
     overwrite: bool,
+    keep: Sequence[str] | None = None,
 ) -> int:
     """Run a sweep, write its archive, print the outcome of each run.
 
@@ -112,6 +113,8 @@ def sweep_case(
         Whether the values of all keys are combined in pairs instead of in all combinations.
     resume : bool
         Whether to resume an interrupted sweep.
+    keep : sequence of str or None
+        What each run leaves behind; None for everything.
 
     Returns
     -------
@@ -139,10 +142,12 @@ def sweep_case(
             jobs=workers,
             zipped=zipped,
             resume=resume,
+            keep=keep,
         )
     show_outcomes(ds)
     say(f"Archive: {target}")
-    failed = [(label, run) for label, run in runs(ds) if run_value(run, "status") != "finished"]
+    unfinished = () if (ds["status"] == "finished").all() else runs(ds)
+    failed = [(label, run) for label, run in unfinished if run_value(run, "status") != "finished"]
     for label, run in failed:
         complain(f"{label_text(label)}: {run_value(run, 'message') or run_value(run, 'status')}")
     return UNFINISHED if failed else DONE

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearidae.archive.select import scene_of
+from gearidae.archive.select import is_roller, scene_of
+from gearidae.archive.variables import EVENTS, columns
 from gearidae.errors import SceneError
 from gearidae.report import html
 from gearidae.report.pictures import pictures
@@ -49,8 +50,11 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     Raises
     ------
     SceneError
-        If the dataset carries no scene.
+        If the dataset carries no scene, or its runs have not kept all samples and events.
     """
+    missing = [each for each in (*columns(is_roller(ds)), *EVENTS) if each not in ds.variables]
+    if missing:
+        raise SceneError("report", ", ".join(missing), "have not been kept: keep samples and events (keep=)")
     name = str(scene_of(ds).get("name", "gearidae"))
     main = "\n".join(
         part

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import netCDF4
 import numpy as np
 
+from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["KeptRuns", "folder_beside"]
 
-_LAYOUT = 2
+_LAYOUT = 3
 """Version of the files' layout."""
 _OURS = re.compile(r"\.?[0-9a-f]{64}(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
 """Names of our files, finished or cut off while they were written."""
@@ -56,15 +57,18 @@ class KeptRuns:
         Any scene of the sweep.
     backend : str
         The driver that runs, ``native`` or ``sksundae``.
+    keep : Keep, optional
+        What each run leaves behind; by default everything.
     """
 
-    def __init__(self, archive: Path, scene: Scene, backend: str) -> None:
+    def __init__(self, archive: Path, scene: Scene, backend: str, keep: Keep = EVERYTHING) -> None:
         self.folder = folder_beside(archive)
         self._circumstances = {
             "layout": _LAYOUT,
             "schema": SCHEMA_VERSION,
             "software": provenance(scene, "")["source"],
             "backend": backend,
+            **({} if keep.names is None else {"keep": keep.asked}),
         }
         self._warned = False
 
@@ -77,8 +81,8 @@ class KeptRuns:
         text = json.dumps({**self._circumstances, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def keep(self, scene: Scene, solution: Solution) -> None:
-        """Write a finished run.
+    def keep(self, scene: Scene, solution: Solution, verdict: str = "", impacts: int = 0) -> None:
+        """Write a finished run, or what it leaves behind and how it was judged.
 
         A run that cannot be kept is no reason to stop; that is said in one warning for the sweep.
         """
@@ -87,7 +91,7 @@ class KeptRuns:
         try:
             self.folder.mkdir(exist_ok=True)
             try:
-                _write(part, key, solution)
+                _write(part, key, solution, {"verdict": verdict, "impacts": impacts})
                 part.replace(self._path(key))
             finally:
                 part.unlink(missing_ok=True)
@@ -96,8 +100,11 @@ class KeptRuns:
                 warnings.warn(f"finished runs cannot be kept in {self.folder} ({error})", stacklevel=2)
             self._warned = True
 
-    def take(self, scene: Scene) -> Solution | None:
-        """Read a run back; None, and a warning, if its file is damaged or not what its name says."""
+    def take(self, scene: Scene) -> tuple[Solution, str, int] | None:
+        """Read a run back, with its verdict and its impacts.
+
+        None, and a warning, if its file is damaged or not what its name says.
+        """
         key = self.key(scene)
         path = self._path(key)
         if not path.is_file():
@@ -137,13 +144,14 @@ class KeptRuns:
         return [path for path in self.folder.iterdir() if _OURS.fullmatch(path.name)]
 
 
-def _write(path: Path, key: str, solution: Solution) -> None:
+def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> None:
     """Two tables and a header in the classic format: a tenth of the time that an archive takes."""
     samples = np.stack([solution.time, *solution.samples.values()])
     events = np.stack([getattr(solution.events, name).astype(np.float64) for name in _EVENTS])
     header = json.dumps(
         {
             "key": key,
+            "judged": judged,
             "columns": list(solution.samples),
             "statistics": {name: getattr(solution.statistics, name) for name in _STATISTICS},
             "status": solution.status,
@@ -172,7 +180,7 @@ def _write(path: Path, key: str, solution: Solution) -> None:
         )
 
 
-def _read(path: Path, key: str) -> Solution:
+def _read(path: Path, key: str) -> tuple[Solution, str, int]:
     """Rebuild what `_write` wrote; ValueError if the file is another's or damaged."""
     with netCDF4.Dataset(path, "r") as file:
         file.set_auto_maskandscale(False)
@@ -188,7 +196,7 @@ def _read(path: Path, key: str) -> Solution:
         raise ValueError("it is of another scene, setting or version")
     columns = {name: row.copy() for name, row in zip(header["columns"], samples[1:], strict=True)}
     table = {name: row.astype(dtype) for (name, dtype), row in zip(_EVENTS.items(), events, strict=True)}
-    return Solution(
+    solution = Solution(
         samples[0].copy(),
         columns,
         Events(**table),
@@ -199,6 +207,7 @@ def _read(path: Path, key: str) -> Solution:
         None if header["balance"] is None else EnergyBalance(**header["balance"]),
         None if header.get("extremes") is None else Extremes(**header["extremes"]),
     )
+    return solution, str(header["judged"]["verdict"]), int(header["judged"]["impacts"])
 
 
 def _checksum(header: str, *tables: np.ndarray[Any, np.dtype[np.float64]]) -> str:

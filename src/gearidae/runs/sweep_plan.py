@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import json
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from gearidae.archive import combine, dimension_names
-from gearidae.archive.dataset import key_labels
-from gearidae.archive.provenance import provenance
+from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.sample_table import SampleTable
+from gearidae.archive.stack import Axis, held, stack, swept_values, zipped_keys
 from gearidae.errors import SceneError
 from gearidae.records import Solution
 
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
 __all__ = ["SweepPlan", "plan_sweep"]
 
 _ONE_TIME_AXIS = ("run.duration", "run.samples")
-
-Axis = dict[str, list[Any]]
-"""Values of the keys that are walked together along one dimension; the first key labels it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,42 +44,33 @@ class SweepPlan:
     @property
     def swept(self) -> str:
         """Values of every key, as the attribute ``swept`` of the result holds them."""
-        return json.dumps({key: axis[key] for axis in self.axes for key in axis}, allow_nan=False)
+        return swept_values(self.axes)
 
     @property
     def zipped(self) -> str:
         """Keys that are walked together, as the attribute ``zipped`` of the result; empty without any."""
-        return ", ".join(itertools.chain(*(axis for axis in self.axes if len(axis) > 1)))
+        return zipped_keys(self.axes)
 
-    def stack(self, solutions: Sequence[Solution]) -> xr.Dataset:
+    def stack(
+        self, solutions: Sequence[Solution], *, keep: Keep = EVERYTHING, samples: SampleTable | None = None
+    ) -> xr.Dataset:
         """Put the runs into one dataset.
 
         Parameters
         ----------
         solutions : sequence of Solution
             In the order of the scenes.
+        keep : Keep, optional
+            Which variables the dataset has; by default all.
+        samples : SampleTable, optional
+            Holds the samples, if the solutions do not.
 
         Returns
         -------
         xarray.Dataset
             See `gearidae.sweep`.
         """
-        leaders = {leader: axis[leader] for axis in self.axes for leader in [next(iter(axis))]}
-        ds = combine(self.base, leaders, self.scenes, solutions)
-        if not self.zipped:
-            return ds
-        names = dimension_names([key for axis in self.axes for key in axis])
-        renamed = {
-            short: names[key] for key, short in dimension_names(leaders).items() if short != names[key]
-        }
-        ds = ds.rename(renamed | {f"event_{short}": f"event_{name}" for short, name in renamed.items()})
-        for axis in self.axes:
-            leader, *others = axis
-            ds = ds.assign_coords({names[key]: key_labels(key, names[leader], axis[key]) for key in others})
-        about = provenance(self.base, "", swept=tuple(" with ".join(axis) for axis in self.axes))
-        return ds.assign_attrs(
-            title=about["title"], summary=about["summary"], swept=self.swept, zipped=self.zipped
-        )
+        return stack(self.base, self.axes, self.scenes, solutions, keep=keep, samples=samples)
 
 
 def plan_sweep(
@@ -121,7 +108,7 @@ def plan_sweep(
     for group, length in zip(groups, map(len, steps), strict=True):
         stride //= length
         own = [scenes[index * stride] for index in range(length)]
-        axis = {key: [_held(scene, key) for scene in own] for key in group}
+        axis = {key: [held(scene, key) for scene in own] for key in group}
         leader = next(iter(axis))
         for index, value in enumerate(axis[leader]):
             if value in axis[leader][:index]:
@@ -183,13 +170,3 @@ def _groups(listed: dict[str, list[Any]], zipped: bool | Collection[str]) -> lis
     for key in [key for group in groups for key in group]:
         listed[key] = listed.pop(key)
     return groups
-
-
-def _held(scene: Scene, key: str) -> Any:
-    """Value of a dotted key in SI units, as plain data."""
-    value: Any = scene.to_dict()
-    for part in key.split("."):
-        if isinstance(value, list) and not part.isdigit():
-            value = value[0]  # a list of one may go without its number
-        value = value[int(part)] if isinstance(value, list) else value.get(part)
-    return value

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import os
-import threading
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from concurrent.futures import Executor, Future, as_completed
+from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearidae.archive import check_target, open_archive, save
+from gearidae.archive.keep import EVERYTHING, Keep, read_keep
 from gearidae.archive.provenance import provenance
 from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.records import Solution
+from gearidae.runs.batch import Batch
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, stop
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.kept_validity import with_validity
-from gearidae.runs.running import prepare, runs_in_threads, solve, unsolved
+from gearidae.runs.running import prepare, runs_in_threads
 from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def sweep(
     jobs: int | None = None,
     zipped: bool | Collection[str] = False,
     resume: bool = False,
+    keep: Iterable[str] | str | None = None,
 ) -> xr.Dataset:
     """Run a scene for every combination of some keys' values, or for values that are walked together.
 
@@ -80,6 +82,11 @@ def sweep(
     resume : bool, optional
         Take the runs that an unfinished sweep into `archive` has kept, and compute the others only. An archive
         that holds this very sweep already is returned as it is.
+    keep : iterable of str, optional
+        What each run leaves behind: names of variables (``min_gear_speed``, ``gear_speed``) and of groups of them
+        (``extremes``, ``statistics``, ``energy_balance``, ``scene``, ``samples``, ``events``). Everything by default,
+        and no more than ``verdict`` (with ``impacts``, ``status``, ``wall_time`` and when a gear stuck) for an empty
+        list, or ``["verdict"]``. Without samples the runs are made with ``run.samples = "off"``.
 
     Returns
     -------
@@ -106,6 +113,9 @@ def sweep(
     >>> ds.gear_speed.sel(sam_fraction=0.5).min()  # doctest: +SKIP
     """
     base = prepare(scene, rtol=rtol, t_end=t_end, samples=samples, backend=backend)
+    parts = read_keep(keep, base)
+    if not parts.columns(base):
+        base = base.replace({"run.samples": "off"})
     plan = plan_sweep(base, over, zipped=zipped)
     check_jobs(jobs)
     check_executor(executor)
@@ -113,14 +123,22 @@ def sweep(
         archive,
         plan.scenes,
         backend,
-        partial(_whole, plan=plan, backend=backend),
+        partial(_whole, plan=plan, backend=backend, keep=parts),
+        keep=parts,
         overwrite=overwrite,
         resume=resume,
     )
     if whole is not None:
         return whole
     ds, interrupted = run_plan(
-        plan, kept if resume else None, kept, executor, backend=backend, jobs=jobs, progress=progress
+        plan,
+        kept if resume else None,
+        kept,
+        executor,
+        keep=parts,
+        backend=backend,
+        jobs=jobs,
+        progress=progress,
     )
     if archive is not None:
         save(with_validity(ds, plan.base), archive, overwrite=overwrite or resume)
@@ -142,6 +160,7 @@ def run_plan(
     kept: KeptRuns | None,
     executor: Executor | None,
     *,
+    keep: Keep = EVERYTHING,
     backend: str,
     jobs: int | None,
     progress: bool | SweepProgress,
@@ -155,6 +174,8 @@ def run_plan(
         Where to take finished runs from, and where to keep those that finish.
     executor, backend, jobs, progress
         As for `sweep`.
+    keep : Keep, optional
+        What each run leaves behind; by default everything.
 
     Returns
     -------
@@ -167,9 +188,9 @@ def run_plan(
     if not releases_gil and jobs is None:
         workers = 1
     with sweep_progress(progress, len(plan.scenes)) as report:
-        batch = _Batch(plan.scenes, backend, report, kept)
+        batch = Batch(plan, backend, report, kept, keep)
         if former is not None:
-            batch.take(former)
+            batch.take_kept(former)
         if executor is not None:
             interrupted = batch.run(executor, in_process=False)
         else:
@@ -177,7 +198,7 @@ def run_plan(
                 interrupted = batch.run(own, in_process=releases_gil)
                 if interrupted and own is not None:
                     stop(own)
-    return plan.stack(batch.solutions()), interrupted
+    return batch.dataset(), interrupted
 
 
 def prepare_archive(
@@ -186,6 +207,7 @@ def prepare_archive(
     backend: str,
     whole: Callable[[Path], xr.Dataset | None],
     *,
+    keep: Keep = EVERYTHING,
     overwrite: bool,
     resume: bool,
 ) -> tuple[KeptRuns | None, xr.Dataset | None]:
@@ -200,6 +222,8 @@ def prepare_archive(
     whole : callable
         Told the archive that is there: its content if it holds all of these runs, None if some are missing; raises
         `SceneError` if it is of others.
+    keep : Keep, optional
+        What each run leaves behind; by default everything.
 
     Returns
     -------
@@ -218,7 +242,7 @@ def prepare_archive(
             raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
         return None, None
     target = check_target(archive, overwrite=True)
-    kept = KeptRuns(target, scenes[0], choose_backend(backend))
+    kept = KeptRuns(target, scenes[0], choose_backend(backend), keep)
     count = kept.count()
     if resume:
         if count:
@@ -241,15 +265,18 @@ def prepare_archive(
     return kept, None
 
 
-def _whole(target: Path, plan: SweepPlan, backend: str) -> xr.Dataset | None:
+def _whole(target: Path, plan: SweepPlan, backend: str, keep: Keep) -> xr.Dataset | None:
     """Return the archive of this very sweep, None if runs of it are missing; refuse any other file."""
     try:
         ds = open_archive(target)
     except SceneError as error:
         raise SceneError("archive", target, f"exists and cannot be resumed: it {error.allowed}") from None
-    expected = provenance(plan.base, "") | {"swept": plan.swept, "zipped": plan.zipped}
+    asked = "" if keep.names is None else json.dumps(keep.asked)
+    expected = provenance(plan.base, "") | {"swept": plan.swept, "zipped": plan.zipped, "keep": asked}
     differing = [
-        name for name in ("scene", "swept", "zipped", "source") if ds.attrs.get(name, "") != expected[name]
+        name
+        for name in ("scene", "swept", "zipped", "keep", "source")
+        if ds.attrs.get(name, "") != expected[name]
     ]
     if differing or ds.attrs["backend"] not in ("", choose_backend(backend)):
         ds.close()
@@ -263,105 +290,3 @@ def _whole(target: Path, plan: SweepPlan, backend: str) -> xr.Dataset | None:
         return ds
     ds.close()
     return None
-
-
-class _Batch:
-    """The runs of one sweep on their way through an executor."""
-
-    def __init__(
-        self, scenes: Sequence[Scene], backend: str, report: SweepProgress, kept: KeptRuns | None
-    ) -> None:
-        self._scenes = scenes
-        self._backend = backend
-        self._report = report
-        self._kept = kept
-        self._done: dict[int, Solution] = {}
-        self._reached = [0.0] * len(scenes)
-        self._cancelled = threading.Event()
-
-    @property
-    def left(self) -> int:
-        """Number of runs that are to be computed."""
-        return len(self._scenes) - len(self._done)
-
-    def take(self, former: KeptRuns) -> None:
-        """Read the runs that an unfinished sweep has kept."""
-        for number, scene in enumerate(self._scenes):
-            solution = former.take(scene)
-            if solution is not None:
-                self._done[number] = solution
-                self._reached[number] = 1.0
-        self._report(sum(self._reached), len(self._scenes))
-
-    def run(self, executor: Executor | None, *, in_process: bool) -> bool:
-        """Compute all runs; return whether Ctrl-C ended it early."""
-        try:
-            if executor is None:
-                for number in self._missing():
-                    self._finish(number, _outcome(partial(self._solve_here, number)))
-            else:
-                self._submit(executor, in_process=in_process)
-        except KeyboardInterrupt:
-            self._cancelled.set()
-            return True
-        return False
-
-    def solutions(self) -> list[Solution]:
-        """Solutions in the order of the scenes."""
-        missing = unsolved("interrupted", "the sweep was interrupted before this run was finished")
-        return [self._done.get(number, missing) for number in range(len(self._scenes))]
-
-    def _missing(self) -> list[int]:
-        return [number for number in range(len(self._scenes)) if number not in self._done]
-
-    def _submit(self, executor: Executor, *, in_process: bool) -> None:
-        futures: dict[Future[Solution], int] = {}
-        try:
-            for number in self._missing():
-                if in_process:
-                    future = executor.submit(self._solve_here, number)
-                else:
-                    future = executor.submit(solve, self._scenes[number], self._backend)
-                futures[future] = number
-            for future in as_completed(futures):
-                self._finish(futures[future], _outcome(future.result))
-        except BaseException:
-            self._cancelled.set()
-            for future, number in futures.items():
-                if not future.cancel() and future.done() and future.exception() is None:
-                    self._note(number, future.result())
-            raise
-
-    def _solve_here(self, number: int) -> Solution:
-        duration = self._scenes[number].run.duration
-
-        def on_progress(time: float, events: int) -> None:
-            if self._cancelled.is_set():
-                raise KeyboardInterrupt  # the only way to end a thread's run is from inside
-            self._reached[number] = time / duration
-            self._report(sum(self._reached), len(self._scenes))
-
-        return solve(self._scenes[number], self._backend, on_progress)
-
-    def _finish(self, number: int, solution: Solution) -> None:
-        if solution.status == "interrupted":
-            raise KeyboardInterrupt
-        self._note(number, solution)
-        self._reached[number] = 1.0
-        self._report(sum(self._reached), len(self._scenes))
-
-    def _note(self, number: int, solution: Solution) -> None:
-        if number not in self._done:
-            self._done[number] = solution
-            if self._kept is not None and solution.status == "finished":
-                self._kept.keep(self._scenes[number], solution)
-
-
-def _outcome(result: Callable[[], Solution]) -> Solution:
-    """Return a run's result; one that died with its worker (out of memory) must not take the others along."""
-    try:
-        return result()
-    except SceneError:
-        raise
-    except Exception as error:
-        return unsolved("crashed", f"{type(error).__name__}: {error}")

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Annotated, Any
 
-from pydantic import GetCoreSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from gearidae.scene.units import from_text
@@ -63,6 +64,22 @@ class _Bounded:
         """Let pydantic call `read` in place of its own conversion."""
         return core_schema.no_info_plain_validator_function(self.read)
 
+    def limits(self) -> dict[str, float]:
+        """Return the limits as JSON Schema has them."""
+        named = {
+            "exclusiveMinimum": self.above,
+            "minimum": self.at_least,
+            "exclusiveMaximum": self.below,
+            "maximum": self.at_most,
+        }
+        return {name: limit for name, limit in named.items() if limit is not None}
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Describe what may stand here: a number within the limits."""
+        return {"type": "integer", **self.limits()}
+
     def read(self, value: object) -> float:
         """Turn what the user gave into a number within the limits."""
         raise NotImplementedError
@@ -82,6 +99,14 @@ class Quantity(_Bounded):
 
     unit: str
     shown: tuple[str, int] | None = None
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Describe what may stand here: a number in SI units, or a text with a unit."""
+        unit = "no unit" if self.unit == "1" else f"a unit of {self.unit}"
+        number = {"type": "number", **self.limits(), "description": self.unit}
+        return {"anyOf": [number, {"type": "string", "description": f"a number with {unit}"}]}
 
     def read(self, value: object) -> float:
         """Read a number in SI or a text with a unit.
@@ -160,6 +185,14 @@ class Count(_Bounded):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampling(Count):
     """How often to sample: a whole number of samples, a rate, or ``"off"``."""
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Describe what may stand here."""
+        number = {"type": "integer", **self.limits()}
+        rate = {"type": "string", "description": "a rate with its unit"}
+        return {"anyOf": [number, {"const": "off"}, rate]}
 
     def read(self, value: object) -> int | str:  # type: ignore[override]
         """Read a number of samples, or a text that is a rate or ``"off"``.

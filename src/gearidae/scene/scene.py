@@ -14,6 +14,7 @@ from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import check_gaps, check_reach, check_stretch
 from gearidae.scene.run import Initial, Roller, Run
+from gearidae.scene.schema import json_schema
 from gearidae.scene.showing import as_html, as_line
 from gearidae.scene.surface import Coating, Contact, Material, Surface
 from gearidae.scene.torque import Drive, Load
@@ -250,6 +251,17 @@ class Scene(Group):
             if not isinstance(key, str):
                 raise SceneError(str(shorten(key)), "(key)", "keys must be texts")
         return cls(**data)
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Describe what a case file may hold, for editors; see `gearidae.scene.schema.json_schema`.
+
+        Returns
+        -------
+        dict
+            A JSON Schema (draft 2020-12), ready for JSON.
+        """
+        return json_schema(cls)
 
     @classmethod
     def _unknown(cls, key: str, known: list[str]) -> str:

@@ -13,6 +13,8 @@ from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
+    from gearidae.runs.plausibility import doubts
+    from gearidae.runs.run_time import run_time
     from gearidae.runs.validity import validity
     from gearidae.studies.coating_map import coating_map, open_map
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
@@ -24,10 +26,12 @@ if TYPE_CHECKING:
 __all__ = [
     "coating_map",
     "contact_resonance",
+    "doubts",
     "effective_mass",
     "natural_frequency",
     "open_map",
     "resting_gap",
+    "run_time",
     "sensitivity",
     "starting_torque",
     "static_starting_torque",
@@ -40,10 +44,12 @@ __all__ = [
 _HOME = {
     "coating_map": "coating_map",
     "contact_resonance": "equilibrium",
+    "doubts": "gearidae.runs.plausibility",
     "effective_mass": "gearidae.runs.estimates",
     "natural_frequency": "equilibrium",
     "open_map": "coating_map",
     "resting_gap": "gearidae.runs.estimates",
+    "run_time": "gearidae.runs.run_time",
     "sensitivity": "sensitivity",
     "starting_torque": "starting_torque",
     "static_starting_torque": "starting_torque",

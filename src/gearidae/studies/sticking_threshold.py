@@ -157,7 +157,8 @@ class _Pool:
         done = {each.value for each in self.runs}
         todo = sorted({value for value in values if value not in done})
         scenes = [self.scene.replace({self.over: value}) for value in todo]
-        found = [None if self.kept is None else self.kept.take(each) for each in scenes]
+        taken = [None if self.kept is None else self.kept.take(each) for each in scenes]
+        found = [None if each is None else each[0] for each in taken]
         left = [each for each, solution in zip(scenes, found, strict=True) if solution is None]
         run = map if self.executor is None else self.executor.map
         fresh = run(run_until, left, [self.exits] * len(left), [self.backend] * len(left))

@@ -96,15 +96,17 @@ def make_problem(
     problem.columns = columns or problem.columns
     problem.method = scene.run.method
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
+    # handed on by value: a problem that referred to itself would wait for the garbage collector with all its tables
+    told = (problem.digest, problem.columns, begin)
     count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
     if count > 0:
         problem.depth = 1 if nodes is None else nodes.depth
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
-            problem.deeper = lambda: make_problem(scene, deeper, problem.digest, problem.columns, begin)
+            problem.deeper = lambda: make_problem(scene, deeper, *told)
     elif scene.contact.model == "auto":
         bodies = scene.replace({"contact.model": "elastic"})
-        problem.elastic = lambda: make_problem(bodies, None, problem.digest, problem.columns, begin)
+        problem.elastic = lambda: make_problem(bodies, None, *told)
     return problem
 
 

@@ -1,0 +1,167 @@
+"""Runs that go on from each other, read as one run."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.energy import balance_in_attributes
+from gearidae.archive.joint import history_of, part_name, software_of
+from gearidae.archive.select import run_scene
+from gearidae.archive.single import single_run
+from gearidae.archive.variables import RUN
+from gearidae.errors import SceneError
+from gearidae.scene.differences import first_difference
+
+__all__ = ["chained"]
+
+_MAY_DIFFER = ("name", "run", "drive", "load", "coating", "initial")
+"""What may change from run to run of a chain; what starts from another run's end has no start of its own."""
+_CONTINUOUS = ("gear_speed", "pinion_speed", "gear_angle", "transmission_error", "height", "speed")
+"""What cannot jump where one run goes on from another."""
+_SEAM = 1e3
+"""Tolerances by which a state may differ on both sides of a seam, over its range: each run reads it from its own dense
+output."""
+_SUMS = ("wall_time", *(name for name, variable in RUN.items() if variable.dtype is np.int64))
+
+
+def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Join the runs of a chain along time; see `gearidae.concat`.
+
+    Parameters
+    ----------
+    parts : sequence of xarray.Dataset
+        Single runs, in their order.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    SceneError
+        If they do not follow each other.
+    """
+    scenes = [run_scene(part) for part in parts]
+    singles = [single_run(part) for part in parts]
+    for number, scene in enumerate(scenes[1:], 1):
+        found = first_difference(scenes[0], scene, ignored=_MAY_DIFFER)
+        if found is not None:
+            raise SceneError(
+                found[0], found[2], f"of {part_name(number)} must be {found[1]}, as in the first"
+            )
+    _refuse_other_samples(singles)
+    cut = [singles[0]]
+    for number, (before, after) in enumerate(pairwise(singles), 1):
+        cut.append(after.isel(time=slice(_seam(before, after, part_name(number)), None)))
+    last = singles[-1]
+    variables = {
+        str(name): (
+            each.dims,
+            np.concatenate([part[name].values for part in cut]) if each.dims else each.values,
+            each.attrs,
+        )
+        for name, each in last.variables.items()
+    }
+    ds = xr.Dataset(
+        {name: each for name, each in variables.items() if name not in last.coords},
+        coords={name: each for name, each in variables.items() if name in last.coords},
+        attrs={name: value for name, value in last.attrs.items() if name != "account"},
+    )
+    ds.attrs.pop("start_time", None)
+    if "start_time" in singles[0].attrs:
+        ds.attrs["start_time"] = singles[0].attrs["start_time"]
+    for name in _SUMS:
+        ds.attrs[name] = sum(part.attrs[name] for part in singles)
+    for name in ("backend", "method"):
+        ds.attrs[name] = ", ".join(sorted({part.attrs.get(name, "") for part in singles} - {""}))
+    links = [link for part in singles for link in _links(part)]
+    return ds.assign_attrs(
+        chain=json.dumps(links, allow_nan=False),
+        history=history_of(parts, f"joined {len(parts)} runs along time"),
+        **software_of(parts),
+    )
+
+
+def _refuse_other_samples(singles: Sequence[xr.Dataset]) -> None:
+    """Refuse runs that have not the same variables."""
+    for number, single in enumerate(singles):
+        differing = {str(name) for name in singles[0].variables} ^ {str(name) for name in single.variables}
+        if differing:
+            shown = ", ".join(sorted(differing))
+            raise SceneError(part_name(number), shown, "must be in all runs of the chain, or in none")
+
+
+def _seam(before: xr.Dataset, after: xr.Dataset, name: str) -> int:
+    """Return how many samples of a run are those that the run before ended with; refuse what is no continuation."""
+    end, start = _end(before), _start(after)
+    width = 1e-9 * max(abs(end), abs(start))
+    if start < end - width:
+        raise SceneError(
+            "time",
+            f"{start:g} s",
+            f"is where {name} begins, before the end of the one before, {end:g} s: it does not go on from it "
+            "(gearidae.simulate(start=...))",
+        )
+    if not (before.sizes["time"] and after.sizes["time"]):
+        return 0
+    if start <= end + width:
+        _refuse_jump(before, after, name)
+        return 1
+    if start - end > 1.5 * max(_spacing(before), _spacing(after)):
+        raise SceneError(
+            "time", f"{start:g} s", f"is where {name} begins: from {end:g} s to then a run is missing"
+        )
+    return 0
+
+
+def _refuse_jump(before: xr.Dataset, after: xr.Dataset, name: str) -> None:
+    tolerance = _SEAM * max(before.attrs["rtol"], after.attrs["rtol"])
+    for variable in _CONTINUOUS:
+        if variable not in after:
+            continue
+        old, new = float(before[variable][-1]), float(after[variable][0])
+        extent = max(float(abs(part[variable]).max()) for part in (before, after))
+        if abs(new - old) > tolerance * extent:
+            raise SceneError(
+                variable, f"{new:g}", f"at the start of {name} must be {old:g}, as the run before ended"
+            )
+
+
+def _start(run: xr.Dataset) -> float:
+    """When a run begins [s]; without that number, where its samples or events do."""
+    if "start_time" in run.attrs:
+        return float(run.attrs["start_time"])
+    firsts = [float(run[name][0]) for name in ("time", "event_time") if name in run and run[name].size]
+    return min(firsts, default=math.inf)
+
+
+def _end(run: xr.Dataset) -> float:
+    """When a run ends [s]."""
+    lasts = [float(run[name][-1]) for name in ("time", "event_time") if name in run and run[name].size]
+    if "time" in balance_in_attributes(run) and not (run.sizes.get("time", 0)):
+        lasts.append(balance_in_attributes(run)["time"])
+    return max(lasts, default=0.0)
+
+
+def _spacing(run: xr.Dataset) -> float:
+    return float(np.diff(run["time"].values[:2])[0]) if run.sizes["time"] > 1 else 0.0
+
+
+def _links(run: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Where a run begins and ends, with its scene; of a chain, its runs."""
+    if "chain" in run.attrs:
+        yield from json.loads(run.attrs["chain"])
+        return
+    start, end = _start(run), max(_end(run), balance_in_attributes(run).get("time", 0.0))
+    yield {
+        "start": None if math.isinf(start) else start,
+        "end": end,
+        "scene": json.loads(run.attrs["scene"]),
+    }

@@ -1,0 +1,254 @@
+"""Several datasets joined into one: runs and sweeps along a swept key, or the runs of a chain along time."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.chain import chained
+from gearidae.archive.dataset import dimension_names
+from gearidae.archive.energy import balance_in_attributes, balance_of
+from gearidae.archive.joint import history_of, part_name, software_of
+from gearidae.archive.keep import kept_in
+from gearidae.archive.select import run_value, runs, scene_of
+from gearidae.archive.single import single_run
+from gearidae.archive.stack import Axis, held, stack
+from gearidae.archive.variables import ENERGY_BALANCE, EXTREMES, RUN, VERDICT
+from gearidae.errors import SceneError
+from gearidae.records import Events, Solution, Statistics
+from gearidae.scene import Scene, describe_keys
+from gearidae.scene.differences import first_difference
+
+__all__ = ["concat"]
+
+
+def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
+    """Join runs and sweeps into one dataset.
+
+    Parameters
+    ----------
+    datasets : iterable of xarray.Dataset
+        Single runs, sweeps, or selections from sweeps.
+    dim : str
+        The key in which they differ (``coating.sam_fraction``) or the name of its dimension (``sam_fraction``); or
+        ``time`` for a chain of runs, each of which goes on where the one before has ended.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `gearidae.sweep` returns it, with the runs in the order given: scenes, events, statistics, extremes and
+        energy balance of each are its own. Of a chain, as `gearidae.simulate` returns it: the samples and events of
+        all, their statistics added up; energy balance and extremes, which each run carries on from the one before, are
+        those of the last, and so are scene and status. The attribute ``chain`` holds where each run begins and ends,
+        and its scene.
+
+    Raises
+    ------
+    SceneError
+        If the datasets cannot be joined: they differ in another key, which is named, or have the same value of this
+        one; or the runs of a chain do not follow each other.
+    """
+    parts = list(datasets)
+    if not parts:
+        raise SceneError("concat", "[]", "needs at least one dataset")
+    for number, part in enumerate(parts):
+        if not isinstance(part, xr.Dataset):
+            raise SceneError(part_name(number), type(part).__name__, "must be a dataset")
+        scene_of(part)
+    if dim == "time":
+        return chained(parts)
+    key = _key_of(parts, dim)
+    axes = _axes(parts, key)
+    found = [_Run(run, single_run(run)) for part in parts for _, run in runs(part)]
+    scenes = [Scene.from_dict(scene_of(each.single)) for each in found]
+    order = _order(axes, scenes)
+    scenes, found = [scenes[place] for place in order], [found[place] for place in order]
+    _refuse_differences(scenes, [key for axis in axes for key in axis])
+    _refuse_other_times(found)
+    keep = kept_in(parts[0].attrs, scenes[0])
+    for number, part in enumerate(parts):
+        if part.attrs.get("keep") != parts[0].attrs.get("keep"):
+            raise SceneError(
+                "keep", part.attrs.get("keep"), f"of {part_name(number)} must be that of the first"
+            )
+    base = Scene.from_dict(scene_of(parts[0]))
+    ds = stack(base, axes, scenes, [_solution(each.single) for each in found], keep=keep)
+    ds = _with_numbers(ds, parts, found)
+    return ds.assign_attrs(
+        history=history_of(parts, f"joined {len(parts)} datasets along {dim}"), **software_of(parts)
+    )
+
+
+class _Run(NamedTuple):
+    """A run as it was picked from its dataset, and by itself."""
+
+    picked: xr.Dataset
+    single: xr.Dataset
+
+
+def _key_of(parts: Sequence[xr.Dataset], dim: str) -> str:
+    """Find the key that a dimension is named after."""
+    known = [info.key for info in describe_keys()]
+    swept = [key for part in parts for axis in _own_axes(part) for key in axis]
+    candidates = [dim] if dim in (*known, *swept) else []
+    for key in (*swept, *known):
+        if dim in (key.rpartition(".")[2], key.replace(".", "_")) and key not in candidates:
+            candidates.append(key)
+    if len(candidates) > 1:
+        differing = [
+            key for key in candidates if key in swept or len({str(_value(p, key)) for p in parts}) > 1
+        ]
+        candidates = differing or candidates
+    if len(candidates) != 1:
+        allowed = (
+            f"could be {' or '.join(candidates)}: name the key" if candidates else "is no key of a scene"
+        )
+        raise SceneError("dim", dim, allowed)
+    return candidates[0]
+
+
+def _value(part: xr.Dataset, key: str) -> Any:
+    try:
+        return held(Scene.from_dict(scene_of(part)), key)
+    except (AttributeError, LookupError, TypeError):
+        return None
+
+
+def _own_axes(part: xr.Dataset) -> list[Axis]:
+    """The axes of a dataset that still are dimensions, with the values that are left."""
+    swept = json.loads(part.attrs.get("swept", "{}"))
+    axes: dict[str, Axis] = {}
+    for key, name in dimension_names(swept).items():
+        if name in part.coords and part[name].dims:
+            values = part[name].values.tolist()
+            if part[name].attrs.get("comment"):
+                values = [swept[key][number] for number in values]
+            axes.setdefault(str(part[name].dims[0]), {})[key] = values
+    return [_led(axis, dim, swept) for dim, axis in axes.items()]
+
+
+def _led(axis: Axis, dim: str, swept: dict[str, Any]) -> Axis:
+    """Put the key that names the dimension in front."""
+    names = dimension_names(swept)
+    return dict(sorted(axis.items(), key=lambda entry: names[entry[0]] != dim))
+
+
+def _axes(parts: Sequence[xr.Dataset], key: str) -> list[Axis]:
+    """Axes of the whole: those of the parts, of which the one of `key` is walked from part to part."""
+    own = [_own_axes(part) for part in parts]
+    with_key = [next((axis for axis in axes if key in axis), None) for axes in own]
+    rest = [[axis for axis in axes if key not in axis] for axes in own]
+    for number, axes in enumerate(rest):
+        mine, first = ({k: v for axis in each for k, v in axis.items()} for each in (axes, rest[0]))
+        for other in {**first, **mine}:
+            if mine.get(other) != first.get(other):
+                shown = mine.get(other, "(not swept)")
+                raise SceneError(
+                    other, shown, f"of {part_name(number)} must be as in the first: {first.get(other)}"
+                )
+    together = {tuple(axis) if axis else (key,) for axis in with_key}
+    if len(together) > 1:
+        keys = sorted({each for one in together for each in one} - {key})
+        raise SceneError(keys[0], f"zipped with {key}", "must be so in all datasets")
+    joined: Axis = {each: [] for each in together.pop()}
+    for part, axis in zip(parts, with_key, strict=True):
+        for each, values in joined.items():
+            values.extend(axis[each] if axis else [_value(single_run(part) if not rest[0] else part, each)])
+    leader = next(iter(joined))
+    for number, value in enumerate(joined[leader]):
+        if value in joined[leader][:number]:
+            raise SceneError(leader, value, "stands in the datasets twice")
+    place = next((number for number, axis in enumerate(own[0]) if key in axis), 0)
+    return [*rest[0][:place], joined, *rest[0][place:]]
+
+
+def _order(axes: Sequence[Axis], scenes: Sequence[Scene]) -> list[int]:
+    """Places of the runs in the order of the whole: the last axis changes fastest."""
+    shape = tuple(len(next(iter(axis.values()))) for axis in axes)
+    places: dict[int, int] = {}
+    for number, scene in enumerate(scenes):
+        index = []
+        for axis in axes:
+            leader = next(iter(axis))
+            value = held(scene, leader)
+            if value not in axis[leader]:
+                raise SceneError(leader, value, "is not among the values of the datasets")
+            index.append(axis[leader].index(value))
+        places[int(np.ravel_multi_index(index, shape))] = number
+    return [places[number] for number in range(math.prod(shape))]
+
+
+def _refuse_differences(scenes: Sequence[Scene], swept: Sequence[str]) -> None:
+    """Name the first key in which runs differ that is not swept."""
+    for scene in scenes[1:]:
+        found = first_difference(scenes[0], scene, ignored=("name", *swept))
+        if found is not None:
+            key, ours, theirs = found
+            raise SceneError(
+                key, theirs, f"is {ours} in the first run: runs may differ in {', '.join(swept)} only"
+            )
+
+
+def _refuse_other_times(found: Sequence[_Run]) -> None:
+    """Refuse runs that do not share one time axis, as far as each of them goes."""
+    times = [each.single["time"].values for each in found if "time" in each.single.dims]
+    longest = max(times, key=len, default=np.empty(0))
+    for time in times:
+        if not np.array_equal(time, longest[: len(time)]):
+            raise SceneError(
+                "time",
+                f"{time[0]:g} to {time[-1]:g} s",
+                "differs between the runs, which share one time axis",
+            )
+
+
+def _solution(run: xr.Dataset) -> Solution:
+    """Turn a single run's dataset back into what it was made from, as far as `stack` needs it."""
+    samples = {str(n): each.values for n, each in run.data_vars.items() if each.dims == ("time",)}
+    events: dict[str, Any] = {name: np.empty(0) for name in ("time", "kind", "pair", "flank", "gap_rate")}
+    if "event" in run.dims:
+        events = {name: run[f"event_{name}"].values for name in events}
+    numbers = {name: _number(run, name) for name in RUN if name not in ("status", "message")}
+    statistics = Statistics(**numbers, skipped=json.loads(run.attrs.get("skipped", "{}")))
+    reached = balance_in_attributes(run).get("time", run.attrs["t_end"])
+    return Solution(
+        run["time"].values if "time" in run.dims else np.empty(0),
+        samples,
+        Events(**events),
+        statistics,
+        run.attrs["status"],
+        run.attrs["message"],
+        float(reached),
+    )
+
+
+def _number(run: xr.Dataset, name: str) -> Any:
+    try:
+        return run_value(run, name)
+    except KeyError:  # has not been kept
+        return "" if RUN[name].dtype is np.str_ else 0
+
+
+def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_Run]) -> xr.Dataset:
+    """Put in what is taken from the runs' datasets as it is: extremes, energy balances, verdicts, and totals."""
+    dims, shape = ds["status"].dims, ds["status"].shape
+    for name, variable in {**EXTREMES, **VERDICT}.items():
+        if all(name in each.picked and not each.picked[name].dims for each in found):
+            values = np.array([each.picked[name].item() for each in found], dtype=variable.dtype)
+            ds[name] = (dims, values.reshape(shape), variable.attributes)
+    balances = [balance_of(each.single) or {} for each in found]
+    for name in ENERGY_BALANCE:
+        if name in ds:
+            values = np.array([balance.get(name, math.nan) for balance in balances])
+            ds[name] = (dims, values.reshape(shape), ds[name].attrs)
+    for name, variable in RUN.items():
+        if name not in ds and name in ds.attrs:  # of runs that have not kept theirs the parts know the sum
+            told = [part.attrs[name] for part in parts]
+            is_text = variable.dtype is np.str_
+            ds.attrs[name] = ", ".join(sorted({*told} - {""})) if is_text else sum(told)
+    return ds

@@ -1,0 +1,154 @@
+"""What the runs of a sweep leave behind: everything, or the parts that are asked for by their names."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearidae.archive.variables import (
+    ENERGY_BALANCE,
+    EVENTS,
+    EXTREMES,
+    OF_SWEPT_RUN,
+    ROLLER_EXTREMES,
+    RUN,
+    VERDICT,
+    columns,
+)
+from gearidae.errors import SceneError
+from gearidae.records import Solution
+from gearidae.scene.group import did_you_mean, shorten
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["EVERYTHING", "GROUPS", "Keep", "kept_in", "read_keep"]
+
+GROUPS = ("verdict", "extremes", "statistics", "energy_balance", "scene", "samples", "events")
+"""Names that stand for several variables, or for one, from the smallest to the largest."""
+_ALWAYS = ("status", "message", "wall_time", *VERDICT)
+_IN_WORDS = ("stick_time", "stick_exits")
+"""What the words of a gear's verdict say besides."""
+
+
+@dataclass(frozen=True, slots=True)
+class Keep:
+    """The parts of its runs that a sweep keeps.
+
+    Attributes
+    ----------
+    asked : tuple of str
+        What was asked for, sorted; the attribute ``keep`` of the dataset.
+    names : frozenset of str or None
+        The variables that are kept; None for all.
+    """
+
+    asked: tuple[str, ...] = ()
+    names: frozenset[str] | None = None
+
+    def holds(self, name: str) -> bool:
+        """Whether a variable is kept."""
+        return self.names is None or name in self.names
+
+    def columns(self, scene: Scene) -> tuple[str, ...]:
+        """List the sampled columns that are kept."""
+        return tuple(name for name in _columns(scene) if self.holds(name))
+
+    @property
+    def events(self) -> bool:
+        """Whether events are kept."""
+        return self.holds("event_time")
+
+    def thinned(self, solution: Solution) -> Solution:
+        """Return a run without the samples and the events that are not kept."""
+        if self.names is None:
+            return solution
+        samples = {name: values for name, values in solution.samples.items() if self.holds(name)}
+        time = solution.time if samples else solution.time[:0].copy()
+        reached = solution.reached
+        if reached is None and len(solution.time):
+            reached = float(solution.time[-1])
+        events = solution.events
+        if not self.events:
+            none = {
+                name: np.empty(0, getattr(events, name).dtype)
+                for name in ("time", "kind", "pair", "flank", "gap_rate")
+            }
+            events = replace(events, **none)
+        return replace(solution, time=time, samples=samples, events=events, reached=reached)
+
+
+EVERYTHING = Keep()
+
+
+def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
+    """Read what the runs of a sweep are to leave behind.
+
+    Parameters
+    ----------
+    keep : iterable of str, str or None
+        Names of variables and of `GROUPS`; None for everything. The verdict with what its words say, the status and
+        the wall time are kept in any case.
+    scene : Scene
+        What the runs have in common.
+
+    Returns
+    -------
+    Keep
+
+    Raises
+    ------
+    SceneError
+        If a name is not known in such a scene.
+    """
+    if keep is None:
+        return EVERYTHING
+    asked = (keep,) if isinstance(keep, str) else keep
+    if not isinstance(asked, Iterable):
+        raise SceneError("keep", shorten(keep), "must be a list of variables, such as verdict or gear_speed")
+    asked = list(asked)
+    extremes = list(EXTREMES if scene.roller is None else ROLLER_EXTREMES)
+    members: dict[str, tuple[str, ...]] = {
+        "verdict": tuple(VERDICT),
+        "extremes": tuple(extremes),
+        "statistics": tuple(RUN),
+        "energy_balance": tuple(ENERGY_BALANCE),
+        "scene": ("scene",),
+        "samples": _columns(scene),
+        "events": (*EVENTS, "impacts"),
+    }
+    single = (*RUN, *OF_SWEPT_RUN, *extremes, *ENERGY_BALANCE, *_columns(scene), *VERDICT)
+    members |= {name: (name,) for name in single if name not in members}
+    names = set(_ALWAYS) | (set(_IN_WORDS) if scene.roller is None else set())
+    for name in asked:
+        if not isinstance(name, str) or name not in members:
+            meant = did_you_mean(str(name), members) or f"known are {', '.join(GROUPS)} and single variables"
+            raise SceneError("keep", shorten(name), f"is nothing that a run of this scene leaves; {meant}")
+        names.update(members[name])
+    return Keep(tuple(sorted({*asked, "verdict"})), frozenset(names))
+
+
+def kept_in(attributes: Any, scene: Scene) -> Keep:
+    """Read the attribute ``keep`` of a dataset; everything if it has none.
+
+    Raises
+    ------
+    SceneError
+        If it is not what `read_keep` asked for.
+    """
+    text = attributes.get("keep")
+    if text is None:
+        return EVERYTHING
+    try:
+        asked = json.loads(text)
+    except (TypeError, ValueError):
+        asked = [shorten(text)]
+    return read_keep(asked, scene)
+
+
+def _columns(scene: Scene) -> tuple[str, ...]:
+    return columns(scene.roller is not None, scene.contact.model == "elastic")

@@ -1,0 +1,56 @@
+"""One run taken out of a sweep: the dataset that it would have been by itself."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import xarray as xr
+
+from gearidae.archive.provenance import provenance, surface_regimes
+from gearidae.archive.select import own_events, run_scene, swept_dims
+from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN, RUN
+
+__all__ = ["single_run"]
+
+
+def single_run(ds: xr.Dataset) -> xr.Dataset:
+    """Make the dataset of a single run of one that was picked from a sweep.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        With one run: picked by ``sel`` or ``isel``, or a single run, which is returned as it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the scene, the statistics, the energy balance and the events of that run alone, where `gearidae.simulate`
+        puts them.
+
+    Raises
+    ------
+    SceneError
+        If there are several runs, or their scene is not known.
+    """
+    if "swept" not in ds.attrs:
+        return ds
+    scene = run_scene(ds)
+    ds = own_events(ds.squeeze(swept_dims(ds)))
+    found: dict[str, Any] = {name: ds[name].item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
+    reached = found.pop("reached", scene.run.duration)
+    energies = {name: float(ds[name]) for name in ENERGY_BALANCE if name in ds}
+    swept = [str(name) for name in ds.coords if name not in ("time", "event", "sam_fraction")]
+    gone = {*found, *energies, "reached", *swept, *(f"event_{name}" for name in swept)}
+    single = ds.drop_vars([name for name in gone if name in ds.variables])
+    of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
+    single.attrs = {
+        **provenance(scene, ""),
+        **{name: ds.attrs[name] for name in of_sweep if name in ds.attrs},
+        **found,
+        **surface_regimes(scene),
+    }
+    if len(energies) == len(ENERGY_BALANCE) and not any(map(math.isnan, energies.values())):
+        single.attrs["energy_balance"] = json.dumps({"time": float(reached), **energies}, allow_nan=False)
+    return single

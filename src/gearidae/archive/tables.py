@@ -1,0 +1,122 @@
+"""Datasets as pandas tables: time series and events."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from gearidae.archive.select import own_events, swept_dims
+from gearidae.archive.variables import EVENTS
+from gearidae.errors import SceneError
+from gearidae.records import EventKind, Flank
+
+__all__ = ["LARGEST_TABLE", "event_table", "run_labels", "time_series"]
+
+LARGEST_TABLE = 2**31
+"""Size of a table [bytes] above which it is refused unless more is allowed."""
+
+
+def time_series(
+    ds: xr.Dataset, variables: Sequence[str] | None = None, *, largest: float = LARGEST_TABLE
+) -> pd.DataFrame:
+    """Make a table of the samples.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep.
+    variables : sequence of str, optional
+        Which of the sampled variables; by default all.
+    largest : float, optional
+        Size that the table may have [bytes].
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each sample, by its ``time`` [s]; a column for each variable, in SI units. Of a sweep the runs stand
+        one below the other, with a column for each swept key in front; samples that a run did not reach are NaN.
+
+    Raises
+    ------
+    SceneError
+        If there is no such sampled variable, or the table would be too large.
+    """
+    sampled = [str(name) for name, each in ds.data_vars.items() if "time" in each.dims]
+    wanted = sampled if variables is None else [variables] if isinstance(variables, str) else list(variables)
+    for name in wanted:
+        if name not in sampled:
+            raise SceneError("variables", name, f"must be sampled: {', '.join(sampled) or 'nothing is'}")
+    dims = swept_dims(ds)
+    shape = tuple(ds.sizes[dim] for dim in dims)
+    rows, columns = math.prod(shape) * ds.sizes.get("time", 0), 1 + len(dims) + len(wanted)
+    if 8 * rows * columns > largest:
+        raise SceneError(
+            "to_dataframe",
+            f"{rows:.3g} rows of {columns} columns",
+            f"would take {8e-9 * rows * columns:.3g} GB: pick runs (ds.sel), samples (ds.isel(time=slice(None, None, "
+            "10))) or variables=[...] first, or allow it by largest=",
+        )
+    if not wanted:
+        return pd.DataFrame(index=pd.Index([], dtype=np.float64, name="time"))
+    time = pd.Index(np.tile(ds["time"].values, math.prod(shape)), name="time")
+    labels = {name: np.repeat(values, ds.sizes["time"]) for name, values in run_labels(ds, dims).items()}
+    values = {name: ds[name].transpose(*dims, "time").values.ravel() for name in wanted}
+    return pd.DataFrame({**labels, **values}, index=time)
+
+
+def event_table(ds: xr.Dataset) -> pd.DataFrame:
+    """Make a table of the events.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep, or runs picked from one.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each event of these runs: the swept keys, ``time`` [s], ``kind`` and ``flank`` in words (as
+        categories), ``pair``, ``gap_rate`` [m/s] and ``sam_fraction``.
+
+    Raises
+    ------
+    SceneError
+        If the events have not been kept.
+    """
+    if "event" not in ds.dims:
+        raise SceneError("events", "(missing)", "have not been kept: sweep with keep=[..., 'events']")
+    ds = own_events(ds)
+    labels = [str(name) for name in ds.data_vars if str(name).startswith("event_") and name not in EVENTS]
+    columns: dict[str, Any] = {name.removeprefix("event_"): ds[name].values for name in labels}
+    columns["sam_fraction"] = ds["event_sam_fraction"].values
+    columns["time"] = ds["event_time"].values
+    columns["kind"] = _in_words(ds["event_kind"].values, EventKind)
+    columns["pair"] = ds["event_pair"].values
+    columns["flank"] = _in_words(ds["event_flank"].values, Flank)
+    columns["gap_rate"] = ds["event_gap_rate"].values
+    return pd.DataFrame(columns)
+
+
+def run_labels(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, Any]:
+    """Return the swept keys' values, of zipped ones too, each as one array with an entry for each run."""
+    shape = tuple(ds.sizes[dim] for dim in dims)
+    along = [name for name in ds.coords if ds[name].dims and set(ds[name].dims) <= set(dims)]
+    found = {}
+    for name in sorted(map(str, along), key=lambda one: (one not in dims, dims.index(str(ds[one].dims[0])))):
+        place = dims.index(str(ds[name].dims[0]))
+        spread = np.unravel_index(np.arange(math.prod(shape)), shape)[place]
+        found[name] = ds[name].values[spread]
+    return found
+
+
+def _in_words(values: np.ndarray[Any, Any], kinds: type[EventKind] | type[Flank]) -> pd.Categorical:
+    """Give flags their names."""
+    numbers = [kind.value for kind in kinds]
+    words = [kind.name.lower() for kind in kinds]
+    codes = np.searchsorted(numbers, values)
+    return pd.Categorical.from_codes(codes, categories=words)

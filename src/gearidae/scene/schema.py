@@ -1,0 +1,69 @@
+"""The JSON Schema of a scene, by which editors complete and check case files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
+
+__all__ = ["DIALECT", "json_schema"]
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+_GEAR_TABLES = ("gears", "mesh", "drive", "initial")
+
+
+def json_schema(model: type[Scene]) -> dict[str, Any]:
+    """Describe what a case file may hold.
+
+    Types, limits, units and meanings are those of the scene's own fields. What no single key can say, for instance that
+    flanks may not overlap at the start, is checked when the scene is made.
+
+    Parameters
+    ----------
+    model : type of Scene
+
+    Returns
+    -------
+    dict
+        A JSON Schema (draft 2020-12). A quantity is a number in SI units or a text with a unit.
+    """
+    schema = model.model_json_schema()
+    _walk(schema)
+    schema["properties"]["$schema"] = {"type": "string", "description": "where this schema is"}
+    return {
+        "$schema": DIALECT,
+        **schema,
+        "title": "gearidae case file",
+        "description": "One scene: a pair of gears, or a roller in their place. Numbers are in SI units.",
+        "oneOf": [
+            {"required": list(_GEAR_TABLES), "not": {"required": ["roller"]}},
+            {
+                "required": ["roller"],
+                "not": {"anyOf": [{"required": [table]} for table in (*_GEAR_TABLES, "load")]},
+            },
+        ],
+    }
+
+
+def _walk(schema: Any) -> None:
+    """Fit pydantic's schema to a case file, which has no null, and may give one entry for a list of one."""
+    if isinstance(schema, list):
+        for each in schema:
+            _walk(each)
+    if not isinstance(schema, dict):
+        return
+    for each in schema.values():
+        _walk(each)
+    choices = schema.get("anyOf", [])
+    if {"type": "null"} in choices:
+        kept = [choice for choice in choices if choice != {"type": "null"}]
+        del schema["anyOf"]
+        if schema.get("default", 0) is None:
+            del schema["default"]
+        schema |= kept[0] if len(kept) == 1 else {"anyOf": kept}
+    items = schema.get("items")
+    if schema.get("type") == "array" and isinstance(items, dict) and ("$ref" in items or "anyOf" in items):
+        schema["anyOf"] = [{"type": "array", "items": schema.pop("items")}, dict(items)]
+        del schema["type"]
