@@ -28,7 +28,7 @@ for name, scene in (("start_up", start_up), ("running", running), ("braking", br
     run = gd.simulate(scene, start=run, archive=f"{name}.nc")
     print(
         f"{name}: {float(run.time[0]) * 1e3:.2f} to {run.attrs['t_end'] * 1e3:.2f} ms, "
-        f"{float(run.gear_speed[-1]):.0f} rad/s"
+        f"{float(run.final_speed):.0f} rad/s"
     )
 balance = json.loads(run.attrs["energy_balance"])
 print(f"the drive has done {balance['drive_work'] * 1e15:.0f} fJ since the start")

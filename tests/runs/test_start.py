@@ -182,7 +182,7 @@ def test_what_may_not_differ_is_named(change, key):
 
 def test_bad_starts(tmp_path):
     first = gd.simulate(LOW)
-    with pytest.raises(SceneError, match="roller"):
+    with pytest.raises(SceneError, match=r"gears.*must be given, as in the run"):
         gd.simulate(gd.preset("roller_slow"), start=first)
     with pytest.raises(SceneError, match="cannot be read"):
         gd.simulate(LOW, start=tmp_path / "none.nc")

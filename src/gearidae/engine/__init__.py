@@ -1,7 +1,8 @@
 """The engine: one residual, its guards and histories, and two drivers that integrate it with SUNDIALS IDA."""
 
-from gearidae.engine.backend import Ended, OnBlock, Start, choose_backend, follow, kept_at, outlook, solve
+from gearidae.engine.backend import choose_backend, follow, kept_at, outlook, solve
 from gearidae.engine.continuing import Origin, end_of, refuse_other_bodies
+from gearidae.engine.run_ends import Ended, OnBlock, Start
 
 __all__ = [
     "Ended",

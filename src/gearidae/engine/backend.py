@@ -5,8 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from gearidae.engine.continuing import Origin, checkpoint_of_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.integrate.driver import Block, Ending
 from gearidae.engine.model.problem import Problem
+from gearidae.engine.run_ends import Ended, OnBlock, Start
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics, sampled_columns
@@ -140,66 +140,6 @@ def _run_bodies(
         if statistics.ending is not Ending.TOO_DEEP or problem.deeper is None or resume is None:
             return
         statistics.ending = Ending.FINISHED
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """Where a run begins: at the beginning, or at a checkpoint of an earlier run.
-
-    Attributes
-    ----------
-    checkpoint : ndarray, optional
-        From a `Block` of a run of the same scene by the same backend.
-    origin : Origin, optional
-        The end of another run that this one goes on from; without a checkpoint, it begins there.
-    statistics : Statistics
-        The solver's counters there.
-    time, wall_time : float
-        Simulated time and wall time until there [s].
-    events : int
-        Number of events until there.
-    """
-
-    checkpoint: NDArray[np.float64] | None = None
-    origin: Origin | None = None
-    statistics: Statistics = field(default_factory=Statistics)
-    time: float = 0.0
-    wall_time: float = 0.0
-    events: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Ended:
-    """How a run ended.
-
-    Attributes
-    ----------
-    statistics : Statistics
-    status : str
-        ``finished``, ``interrupted`` (by Ctrl-C), or the named reason why the run ended early.
-    message : str
-        The status in a sentence; empty when finished.
-    reached : float
-        Simulated time reached [s].
-    balance : EnergyBalance, optional
-        The latest energy balance; None if the run did not begin.
-    extremes : Extremes, optional
-        The latest extremes, likewise.
-    checkpoint : ndarray, optional
-        That of the end; None where the run ended between two.
-    """
-
-    statistics: Statistics
-    status: str
-    message: str
-    reached: float
-    balance: EnergyBalance | None = None
-    extremes: Extremes | None = None
-    checkpoint: NDArray[np.float64] | None = None
-
-
-OnBlock: TypeAlias = Callable[[Block], object]
-"""What is told every block of output, and ends the run by returning True."""
 
 
 def follow(

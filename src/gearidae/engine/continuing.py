@@ -48,6 +48,7 @@ __all__ = ["MAY_DIFFER", "Origin", "checkpoint_of_start", "end_of", "problem_fro
 MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
 """Tables in which a run may differ from the one it goes on from; its own ``initial`` then says nothing."""
 
+_AS_THERE: Final = "as in the run to go on from"
 _SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
 _FORCES: Final = ("largest_force", "smallest_force")
 _TIMES: Final = ("held_time", "largest_force_time", "smallest_force_time")
@@ -160,13 +161,18 @@ def refuse_other_bodies(old: Scene, new: Scene) -> None:
     """Refuse a scene that differs in what may not."""
     before, after = old.to_dict(), new.to_dict()
     for table in sorted({*before, *after} - {*MAY_DIFFER}):
+        if (table in before) != (table in after):
+            given = "(given)" if table in after else "(missing)"
+            raise SceneError(
+                table, given, f"must be {'given' if table in before else 'left out'}, {_AS_THERE}"
+            )
         one, other = before.get(table, {}), after.get(table, {})
         for key in sorted({*one, *other}):
             if one.get(key) != other.get(key):
                 raise SceneError(
                     f"{table}.{key}",
                     other.get(key, "(missing)"),
-                    f"must be {one.get(key, '(missing)')}, as in the run to go on from",
+                    f"must be {one.get(key, '(missing)')}, {_AS_THERE}",
                 )
 
 

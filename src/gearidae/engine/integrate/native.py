@@ -92,6 +92,8 @@ def restart(s: Stepper, stop: float) -> int:
     flag = sun.IDAReInit(ida, t, s.handles[Y], s.handles[YP])
     flag |= sun.IDASetInitStep(ida, first_step(m, t, s.y, s.yp, stop - t))
     flag |= sun.IDASetStopTime(ida, stop)
+    if m.scene.longest_step > 0.0:
+        flag |= sun.IDASetMaxStep(ida, m.scene.longest_step)
     if m.work.adams.own != 0:
         adams.begin(m.work.adams, t, s.y, s.yp)
         flag |= configure_ida(ida, m.work.adams)

@@ -184,6 +184,7 @@ class _Solver:
             rtol=0.0,
             atol=self._atol,
             first_step=step,
+            max_step=float(m.scene.longest_step),
             max_num_steps=10_000_000,
             max_conv_fails=CONVERGENCE_FAILURES_HIGH,
         )

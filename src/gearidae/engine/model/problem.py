@@ -122,6 +122,8 @@ class Problem:
                 self._fastest(shaft, felt / float(share))
                 for shaft, share in ((DRIVE, s.pinion_inverse_mass), (LOAD, s.gear_inverse_mass))
             )
+            steepest = max(fastest_schedule(own, m.tables, 0.0) for own in s.schedule)
+            s.longest_step = 1.0 / steepest if steepest > 0.0 else 0.0
         return m
 
     def _fastest(self, shaft: int, felt: float) -> float:

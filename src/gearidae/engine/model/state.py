@@ -211,6 +211,10 @@ SCENE: Final = _record(
     ("root_limit", _INT),  # roots in succession allowed to be closer than `root_spacing`, times 1 + t
     ("root_spacing", _REAL),
     ("torque_omega", _REAL),  # highest angular frequency of the torques that steps have to follow
+    (
+        "longest_step",
+        _REAL,
+    ),  # that a cubic schedule allows, which may be flat where a pulse is to come; 0 for any
     ("mesh_omega", _REAL),  # and along the mesh, per pitch
     ("balance_steps", _INT),  # accepted steps that the energy balance integrates over at once,
     ("balance_span", _REAL),  # over which they may last,
