@@ -22,8 +22,9 @@ run: $(VENV)/installed
 	    -o out/low_speed.nc --overwrite
 	$(BIN)/gearidae plot out/low_speed.nc -o out/low_speed.png --overwrite
 
+# Two processes: each compiles the solver once, and files stay whole, whose runs are shared by their tests.
 test: lint
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile
 
 # Both drivers, scenes, archives, pictures and the command line. The warning is one that numpy itself switches off.
 test-lowest: $(LOWEST)/installed
