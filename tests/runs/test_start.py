@@ -71,6 +71,20 @@ def test_a_run_cut_in_two_is_the_uninterrupted_one_to_the_last_bit(case, model, 
     assert second.attrs["t_end"] == 2 * half
 
 
+def test_a_joined_chain_is_the_uninterrupted_run():
+    half = LOW.run.duration
+    first = gd.simulate(LOW)
+    joined = gd.concat([first, gd.simulate(LOW, start=first)], "time")
+    both = {"run.duration": 2 * half, "run.samples": 2 * SAMPLES - 1, "run.checkpoints": [half]}
+    whole = gd.simulate(LOW.replace(both))
+    for name, variable in whole.data_vars.items():
+        if variable.dims in (("time",), ("event",)):
+            assert_same(joined[name], variable)
+    assert_same(joined.time, whole.time)
+    assert joined.attrs["steps"] == whole.attrs["steps"]
+    assert float(joined.stick_time) == pytest.approx(float(whole.stick_time), nan_ok=True, rel=0, abs=0)
+
+
 def test_a_checkpoint_is_no_event_and_changes_next_to_nothing():
     plain = gd.simulate(LOW)
     kept = gd.simulate(LOW.replace({"run.checkpoints": ["1 ms", "2 ms"]}))
