@@ -36,7 +36,7 @@ log = logging.getLogger(__name__)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-COMPILED_PACKAGES: Final = ("contact", "engine", "compiled.py", "records.py", "columns.py")
+COMPILED_PACKAGES: Final = ("contact", "engine", "compiled.py", "records")
 PLAIN_FOLDERS: Final = {"asperities"}
 """Folders within them of code that enters compiled code as numbers in tables alone."""
 PLAIN: Final = "GEARIDAE_PLAIN_NUMBA"

@@ -189,8 +189,8 @@ assert "row[9] = drive" in inspect.getsource(observe.observe)
 @pytest.mark.parametrize(
     ("is_event", "files", "script"),
     [
-        (True, {"records.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
-        (False, {"columns.py", "engine/model/observe.py"}, DRIVE_TORQUE),
+        (True, {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
+        (False, {"records/columns.py", "engine/model/observe.py"}, DRIVE_TORQUE),
     ],
     ids=["event", "variable"],
 )

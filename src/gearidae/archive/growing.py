@@ -29,8 +29,7 @@ from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
 from gearidae.archive.lock import WriterLock, take_or_refuse
 from gearidae.archive.variables import EVENTS
-from gearidae.records import Block, Statistics
-from gearidae.sampling import first_sample
+from gearidae.records import Block, Statistics, first_sample
 
 __all__ = ["GrowingArchive", "is_growing", "trimmed"]
 

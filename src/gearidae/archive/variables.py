@@ -1,8 +1,8 @@
 """Catalogue of everything an archive can hold: name, dimensions, unit, meaning.
 
 One `Variable` per row of the dataset's layout; `dataset` builds from it and nothing is named or given a unit
-elsewhere, but for sampled columns (`gearidae.columns`), which the engine writes. Units are written as UDUNITS, as CF
-asks. ``time`` is in ``s`` and not in "seconds since", which xarray would turn into nanosecond dates.
+elsewhere, but for sampled columns (`gearidae.records.columns`), which the engine writes. Units are written as
+UDUNITS, as CF asks. ``time`` is in ``s`` and not in "seconds since", which xarray would turn into nanosecond dates.
 """
 
 from __future__ import annotations
@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gearidae.columns import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES
-from gearidae.records import EventKind, Flank, sampled_columns
+from gearidae.records import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES, EventKind, Flank, sampled_columns
 
 __all__ = [
     "ENERGY_BALANCE",

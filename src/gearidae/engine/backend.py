@@ -18,8 +18,15 @@ from gearidae.engine.model.problem import Problem
 from gearidae.engine.run_ends import Ended, OnBlock, Start
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
-from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics, sampled_columns
-from gearidae.sampling import sample_times
+from gearidae.records import (
+    EnergyBalance,
+    Events,
+    Extremes,
+    Solution,
+    Statistics,
+    sample_times,
+    sampled_columns,
+)
 from gearidae.scene import Scene
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""From scaled states to what is recorded, in SI units: the columns of `gearidae.columns`."""
+"""From scaled states to what is recorded, in SI units: the columns of `gearidae.records.columns`."""
 
 from __future__ import annotations
 

@@ -31,8 +31,7 @@ from gearidae.engine.model.torques.harmonic import fastest_harmonic
 from gearidae.engine.model.torques.schedule import fastest_schedule
 from gearidae.engine.sundials.memory import Located
 from gearidae.errors import SceneError
-from gearidae.records import EnergyBalance, Extremes
-from gearidae.sampling import first_sample
+from gearidae.records import EnergyBalance, Extremes, first_sample
 
 __all__ = ["Problem"]
 

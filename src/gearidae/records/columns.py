@@ -8,7 +8,16 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-__all__ = ["ELASTIC_SAMPLES", "GEAR_SAMPLES", "ROLLER_SAMPLES", "Column"]
+__all__ = [
+    "ELASTIC_COLUMNS",
+    "ELASTIC_SAMPLES",
+    "GEAR_COLUMNS",
+    "GEAR_SAMPLES",
+    "ROLLER_COLUMNS",
+    "ROLLER_SAMPLES",
+    "Column",
+    "sampled_columns",
+]
 
 
 class Column(NamedTuple):
@@ -61,3 +70,13 @@ ROLLER_SAMPLES: Final = (
 ELASTIC_SAMPLES: Final = (
     Column("min_separation", "m", "smallest distance of the flanks, deflection included"),
 )
+
+GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
+ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
+ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
+"""What is sampled of elastic contacts besides, last."""
+
+
+def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
+    """Names of what is sampled of a scene of gears or a roller, whose contact model is `elastic` or not."""
+    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())

@@ -1,49 +1,20 @@
-"""Plain records that cross floors: blocks of output, samples, events, endings, solver statistics, energy balance."""
+"""What a run adds up to: its energy balance and its extremes, which the solver keeps at its own steps."""
 
 from __future__ import annotations
 
-import math
 import sys
-from dataclasses import dataclass, field
-from enum import Enum, IntEnum
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
-
-from gearidae.columns import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES
+from dataclasses import dataclass
 
 __all__ = [
-    "ELASTIC_COLUMNS",
     "GEAR_BOUND",
-    "GEAR_COLUMNS",
     "QUADRATURE_BOUND",
     "ROLLER_BOUND",
-    "ROLLER_COLUMNS",
     "ROUNDING_BOUND",
     "TABLE_BOUND",
     "TRAVEL_BOUND",
-    "Block",
-    "Ending",
     "EnergyBalance",
-    "EventKind",
-    "Events",
     "Extremes",
-    "Flank",
-    "Solution",
-    "Statistics",
-    "Words",
-    "sampled_columns",
 ]
-
-Words = NDArray[Any]
-"""A vector of 8-byte words whose meaning only their maker knows."""
-
-GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
-ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
-ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
-"""What is sampled of elastic contacts besides, last."""
-
 
 GEAR_BOUND = 10.0
 """Tolerances by which a gear pair's motion may put its energies out, over the energy that has moved: errors of single
@@ -60,154 +31,6 @@ ROUNDING_BOUND = 1e3 * sys.float_info.epsilon
 """Rounding errors in sums over the steps of a run, over the sum of their sizes."""
 TRAVEL_BOUND = 10.0 * sys.float_info.epsilon
 """Rounding errors of a travel over the pitches that it is counted within."""
-
-
-def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
-    """Names of what is sampled of a scene of gears or a roller, whose contact model is `elastic` or not."""
-    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())
-
-
-class EventKind(IntEnum):
-    """What happened, as stored in ``event_kind``."""
-
-    ONSET = 0
-    SEPARATION = 1
-    TURNING_POINT = 2
-    FULL_STRETCH = 3
-    MESH_ENTRY = 4
-    MESH_EXIT = 5
-    STICK = 6
-    SLIP = 7
-    FLANK_CHANGE = 8
-    SCHEDULE_KNOT = 9
-
-
-class Flank(IntEnum):
-    """Which side of the tooth an event belongs to."""
-
-    NONE = -1
-    DRIVE = 0
-    COAST = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Events:
-    """Events in the order they happened; every array has shape (n_events,).
-
-    Attributes
-    ----------
-    time : ndarray of float64
-        Time of the event [s].
-    kind : ndarray of int8
-        An `EventKind`.
-    pair : ndarray of int64
-        Number of the tooth pair, counted from the one that starts in mesh as 0.
-    flank : ndarray of int8
-        A `Flank`.
-    gap_rate : ndarray of float64
-        Rate of change of that pair's gap [m/s]; negative while it closes.
-    """
-
-    time: NDArray[np.float64]
-    kind: NDArray[np.int8]
-    pair: NDArray[np.int64]
-    flank: NDArray[np.int8]
-    gap_rate: NDArray[np.float64]
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-
-class Ending(Enum):
-    """How a run ended: its status in the dataset, and a sentence."""
-
-    FINISHED = ("finished", "")
-    CHATTER = ("chatter", "event followed event without the time going on")
-    STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
-    NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
-    TOO_ACCURATE = (
-        "too_accurate",
-        "the tolerance asks for more than double precision can give: raise run.rtol",
-    )
-    SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
-    FOLD = (
-        "fold",
-        "the elastic contact folds: adhesion outgrows the stiffness of the bodies, and the surfaces would jump",
-    )
-    DEFLECTION = (
-        "deflection",
-        "tooth-body deflection exceeds the limit of the asperity model; set contact.model to elastic",
-    )
-    TOO_DEEP = (
-        "too_deep",
-        "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
-    )
-    STOPPED = ("stopped", "ended by on_block")
-    NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
-
-    @property
-    def status(self) -> str:
-        """Name, as in the dataset."""
-        return self.value[0]
-
-    @property
-    def message(self) -> str:
-        """A sentence; empty when finished."""
-        return self.value[1]
-
-
-@dataclass(slots=True)
-class Statistics:
-    """Solver statistics, added up over restarts; of a run under way, the driver brings them up to date as it goes.
-
-    Attributes
-    ----------
-    steps, residual_evaluations, jacobian_evaluations, guard_evaluations : int
-        Work counters.
-    error_test_failures, convergence_failures, restarts : int
-        What went wrong, or had to start again at order one.
-    wall_time : float
-        Wall time in the solver [s].
-    backend : str
-        The driver that ran: ``native`` or ``sksundae``.
-    skipped : dict
-        What the scene did not need, by name.
-    flight_steps : int
-        Steps in which no pair was in contact.
-    ending : Ending
-        How the driver ended.
-    fold_gap : float, optional
-        Gap at which the elastic contact folds, if that was the ending [m].
-    method : str
-        The formulas that the run began with: ``adams`` (and IDA's own where these are better), or ``bdf``, IDA's own.
-    """
-
-    steps: int = 0
-    residual_evaluations: int = 0
-    jacobian_evaluations: int = 0
-    error_test_failures: int = 0
-    convergence_failures: int = 0
-    restarts: int = 0
-    guard_evaluations: int = 0
-    wall_time: float = 0.0
-    backend: str = ""
-    skipped: dict[str, int] = field(default_factory=dict)
-    flight_steps: int = 0
-    ending: Ending = Ending.FINISHED
-    fold_gap: float | None = None
-    method: str = ""
-
-    def note_fold(self, gap: float) -> None:
-        """Call the ending a fold if it was one; NaN if not, else the gap at which the contact folds [m]."""
-        if not math.isnan(gap):
-            self.ending, self.fold_gap = Ending.FOLD, float(gap)
-
-    @property
-    def message(self) -> str:
-        """The ending in a sentence; empty when finished."""
-        if self.fold_gap is not None:
-            return f"{self.ending.message}, at a gap of {self.fold_gap:.6g} m"
-        return self.ending.message
 
 
 @dataclass(frozen=True, slots=True)
@@ -309,35 +132,6 @@ class EnergyBalance:
         return of_motion * moved + QUADRATURE_BOUND * self.quadrature_error + TRAVEL_BOUND * self.pitch_work
 
 
-@dataclass(slots=True)
-class Block:
-    """Output of a stretch of a run.
-
-    Attributes
-    ----------
-    rows : ndarray, shape (n, columns)
-        Samples that follow those of the block before, SI units.
-    events : ndarray, shape (m, 5)
-        Time [s], kind, pair, flank, gap rate [m/s].
-    time : float
-        Simulated time reached [s].
-    checkpoint : ndarray of 8-byte words, optional
-        All that it takes to go on from the end of this block; present at checkpoints and at the end. Only the engine
-        knows what the words mean, and checks them when it is to go on from there.
-    balance : EnergyBalance, optional
-        The energy balance at the end of this block; missing where a block ends in the middle of a step.
-    extremes : Extremes, optional
-        Likewise.
-    """
-
-    rows: NDArray[np.float64]
-    events: NDArray[np.float64]
-    time: float
-    checkpoint: Words | None = None
-    balance: EnergyBalance | None = None
-    extremes: Extremes | None = None
-
-
 @dataclass(frozen=True, slots=True)
 class Extremes:
     """What a run has been through, kept by the engine at its own steps and at extrema located between them.
@@ -406,44 +200,3 @@ class Extremes:
     smallest_mesh_force_time: float
     smallest_separation: float
     final_speed: float
-
-
-@dataclass(frozen=True, slots=True)
-class Solution:
-    """One run as the engine leaves it.
-
-    Attributes
-    ----------
-    time : ndarray, shape (n,)
-        Uniform sample times [s].
-    samples : dict of str to ndarray, shape (n,)
-        One array per column of `GEAR_COLUMNS` or `ROLLER_COLUMNS`, SI units.
-    events : Events
-    statistics : Statistics
-    status : str
-        ``finished``, or the named reason why the run ended early.
-    message : str
-        The status in a sentence; empty when finished.
-    reached : float, optional
-        Simulated time reached [s]; by default that of the last sample.
-    balance : EnergyBalance, optional
-        The energy balance; None if the run produced nothing.
-    extremes : Extremes, optional
-        Likewise.
-    start : float
-        When the run began [s].
-    checkpoint : ndarray of 8-byte words, optional
-        That of the end, from which another run can go on.
-    """
-
-    time: NDArray[np.float64]
-    samples: dict[str, NDArray[np.float64]]
-    events: Events
-    statistics: Statistics
-    status: str
-    message: str
-    reached: float | None = None
-    balance: EnergyBalance | None = None
-    extremes: Extremes | None = None
-    start: float = 0.0
-    checkpoint: Words | None = None

@@ -1,0 +1,72 @@
+"""Plain records that cross the rooms: samples, events, endings, solver statistics, energy balance, extremes, solutions.
+
+They are what the engine hands out and the archive stores; nothing here depends on another room.
+"""
+
+from gearidae.records.columns import (
+    ELASTIC_COLUMNS,
+    ELASTIC_SAMPLES,
+    GEAR_COLUMNS,
+    GEAR_SAMPLES,
+    ROLLER_COLUMNS,
+    ROLLER_SAMPLES,
+    Column,
+    sampled_columns,
+)
+from gearidae.records.events import (
+    EventKind,
+    Events,
+    Flank,
+)
+from gearidae.records.results import (
+    Block,
+    Solution,
+    Words,
+)
+from gearidae.records.sampling import (
+    first_sample,
+    sample_times,
+)
+from gearidae.records.statistics import (
+    Ending,
+    Statistics,
+)
+from gearidae.records.totals import (
+    GEAR_BOUND,
+    QUADRATURE_BOUND,
+    ROLLER_BOUND,
+    ROUNDING_BOUND,
+    TABLE_BOUND,
+    TRAVEL_BOUND,
+    EnergyBalance,
+    Extremes,
+)
+
+__all__ = [
+    "ELASTIC_COLUMNS",
+    "ELASTIC_SAMPLES",
+    "GEAR_BOUND",
+    "GEAR_COLUMNS",
+    "GEAR_SAMPLES",
+    "QUADRATURE_BOUND",
+    "ROLLER_BOUND",
+    "ROLLER_COLUMNS",
+    "ROLLER_SAMPLES",
+    "ROUNDING_BOUND",
+    "TABLE_BOUND",
+    "TRAVEL_BOUND",
+    "Block",
+    "Column",
+    "Ending",
+    "EnergyBalance",
+    "EventKind",
+    "Events",
+    "Extremes",
+    "Flank",
+    "Solution",
+    "Statistics",
+    "Words",
+    "first_sample",
+    "sample_times",
+    "sampled_columns",
+]

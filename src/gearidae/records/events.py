@@ -1,0 +1,62 @@
+"""Events of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["EventKind", "Events", "Flank"]
+
+
+class EventKind(IntEnum):
+    """What happened, as stored in ``event_kind``."""
+
+    ONSET = 0
+    SEPARATION = 1
+    TURNING_POINT = 2
+    FULL_STRETCH = 3
+    MESH_ENTRY = 4
+    MESH_EXIT = 5
+    STICK = 6
+    SLIP = 7
+    FLANK_CHANGE = 8
+    SCHEDULE_KNOT = 9
+
+
+class Flank(IntEnum):
+    """Which side of the tooth an event belongs to."""
+
+    NONE = -1
+    DRIVE = 0
+    COAST = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Events:
+    """Events in the order they happened; every array has shape (n_events,).
+
+    Attributes
+    ----------
+    time : ndarray of float64
+        Time of the event [s].
+    kind : ndarray of int8
+        An `EventKind`.
+    pair : ndarray of int64
+        Number of the tooth pair, counted from the one that starts in mesh as 0.
+    flank : ndarray of int8
+        A `Flank`.
+    gap_rate : ndarray of float64
+        Rate of change of that pair's gap [m/s]; negative while it closes.
+    """
+
+    time: NDArray[np.float64]
+    kind: NDArray[np.int8]
+    pair: NDArray[np.int64]
+    flank: NDArray[np.int8]
+    gap_rate: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.time)

@@ -1,0 +1,101 @@
+"""How runs end, and what the solver did."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import Enum
+
+__all__ = ["Ending", "Statistics"]
+
+
+class Ending(Enum):
+    """How a run ended: its status in the dataset, and a sentence."""
+
+    FINISHED = ("finished", "")
+    CHATTER = ("chatter", "event followed event without the time going on")
+    STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
+    NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
+    TOO_ACCURATE = (
+        "too_accurate",
+        "the tolerance asks for more than double precision can give: raise run.rtol",
+    )
+    SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
+    FOLD = (
+        "fold",
+        "the elastic contact folds: adhesion outgrows the stiffness of the bodies, and the surfaces would jump",
+    )
+    DEFLECTION = (
+        "deflection",
+        "tooth-body deflection exceeds the limit of the asperity model; set contact.model to elastic",
+    )
+    TOO_DEEP = (
+        "too_deep",
+        "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
+    )
+    STOPPED = ("stopped", "ended by on_block")
+    NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
+
+    @property
+    def status(self) -> str:
+        """Name, as in the dataset."""
+        return self.value[0]
+
+    @property
+    def message(self) -> str:
+        """A sentence; empty when finished."""
+        return self.value[1]
+
+
+@dataclass(slots=True)
+class Statistics:
+    """Solver statistics, added up over restarts; of a run under way, the driver brings them up to date as it goes.
+
+    Attributes
+    ----------
+    steps, residual_evaluations, jacobian_evaluations, guard_evaluations : int
+        Work counters.
+    error_test_failures, convergence_failures, restarts : int
+        What went wrong, or had to start again at order one.
+    wall_time : float
+        Wall time in the solver [s].
+    backend : str
+        The driver that ran: ``native`` or ``sksundae``.
+    skipped : dict
+        What the scene did not need, by name.
+    flight_steps : int
+        Steps in which no pair was in contact.
+    ending : Ending
+        How the driver ended.
+    fold_gap : float, optional
+        Gap at which the elastic contact folds, if that was the ending [m].
+    method : str
+        The formulas that the run began with: ``adams`` (and IDA's own where these are better), or ``bdf``, IDA's own.
+    """
+
+    steps: int = 0
+    residual_evaluations: int = 0
+    jacobian_evaluations: int = 0
+    error_test_failures: int = 0
+    convergence_failures: int = 0
+    restarts: int = 0
+    guard_evaluations: int = 0
+    wall_time: float = 0.0
+    backend: str = ""
+    skipped: dict[str, int] = field(default_factory=dict)
+    flight_steps: int = 0
+    ending: Ending = Ending.FINISHED
+    fold_gap: float | None = None
+    method: str = ""
+
+    def note_fold(self, gap: float) -> None:
+        """Call the ending a fold if it was one; NaN if not, else the gap at which the contact folds [m]."""
+        if not math.isnan(gap):
+            self.ending, self.fold_gap = Ending.FOLD, float(gap)
+
+    @property
+    def message(self) -> str:
+        """The ending in a sentence; empty when finished."""
+        if self.fold_gap is not None:
+            return f"{self.ending.message}, at a gap of {self.fold_gap:.6g} m"
+        return self.ending.message
