@@ -1,0 +1,82 @@
+"""What the records of a run share: kinds, flanks and shafts by number, places in the state vector, kinds of fields."""
+
+from __future__ import annotations
+
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.scene.limits import MOST_PAIRS
+
+__all__ = [
+    "COAST",
+    "DRIVE",
+    "EMPTY",
+    "GEARS",
+    "INT",
+    "LOAD",
+    "MATERIALS",
+    "MOST_ORDERS",
+    "MOTION",
+    "PHASE",
+    "REAL",
+    "ROLLER",
+    "SCHEDULES",
+    "SLOTS_HIGH",
+    "SPEED",
+    "Floats",
+    "Record",
+    "U",
+    "V",
+    "W",
+    "record_type",
+]
+
+Floats: TypeAlias = NDArray[np.float64]
+Record: TypeAlias = Any
+"""A numpy record; compiled code checks its names."""
+
+GEARS: Final = 0
+ROLLER: Final = 1
+"""Kinds of scene."""
+
+DRIVE: Final = 0
+COAST: Final = 1
+"""Flanks."""
+
+LOAD: Final = 1
+"""The gear's shaft among the torques; the pinion's is `DRIVE`."""
+
+SPEED: Final = 2
+SCHEDULES: Final = 3
+"""The speed that a drive holds among the schedules, beside both torques; and how many there are."""
+
+MATERIALS: Final = 2
+"""Materials that share the surface: bare first, then coated."""
+
+SLOTS_HIGH: Final = MOST_PAIRS
+"""Tooth pairs per flank whose history can be kept, a power of two."""
+
+EMPTY: Final = -(2**62)
+"""Pair number of a history that is about no pair."""
+
+MOST_ORDERS: Final = 8
+"""Highest number of former rates that a formula uses."""
+
+# -- the state vector ------------------------------------------------------------------------------------------------
+U: Final = 0  # dynamic transmission error (a roller's height) / sigma
+V: Final = 1  # its rate
+PHASE: Final = 2  # gear's turn in base pitches, less the whole ones in `STATE`
+W: Final = 3  # gear's surface velocity at the base circle
+MOTION: Final = 4  # states of a motion at most
+# then, for an elastic contact, the deflection of both bodies / sigma at every node of every history's pair
+
+REAL: Final = "f8"
+INT: Final = "i8"
+"""Kinds of the fields."""
+
+
+def record_type(*fields: tuple[Any, ...]) -> np.dtype[Any]:
+    """Record type whose fields are attributes, in compiled code and in Python alike."""
+    return np.dtype((np.record, np.dtype(list(fields), align=True)))

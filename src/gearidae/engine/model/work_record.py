@@ -1,0 +1,130 @@
+"""``WORK``: work space, which can be worked out anew from the scene and a checkpoint."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gearidae.engine.model.record_types import INT, MOST_ORDERS, MOTION, REAL, SCHEDULES, record_type
+
+__all__ = [
+    "ADAMS",
+    "DRIVER",
+    "POINT",
+    "QUADRATURE",
+    "RESISTANCE",
+    "SEARCH",
+    "TRACK",
+    "WORK",
+]
+
+QUADRATURE: Final = record_type(  # inputs of the powers at the last sample of the energy balance
+    ("time", REAL),
+    ("steps", INT),  # accepted since
+    ("kinetic", REAL),
+    ("pinion_travel", REAL),  # of its base circle
+    ("pinion_speed", REAL),
+    ("pinion_acceleration", REAL),
+    ("gear_travel", REAL),
+    ("gear_speed", REAL),
+    ("gear_acceleration", REAL),
+    ("drive", REAL),  # torques over base radius
+    ("drive_rate", REAL),
+    ("load", REAL),
+    ("load_rate", REAL),
+    ("radius_power", REAL),
+    ("radius_power_rate", REAL),
+    ("length_work", REAL),  # work of the radius on the adhesion losses added since then
+)
+
+RESISTANCE: Final = record_type(  # the same of drag and damping, which are integrated at every step
+    ("time", REAL),
+    ("gear_travel", REAL),
+    ("gear_speed", REAL),
+    ("gear_acceleration", REAL),
+    ("mesh_speed", REAL),
+    ("mesh_acceleration", REAL),
+)
+
+ADAMS: Final = record_type(
+    ("own", INT),  # 1 with the package's own Newton iteration, 0 with IDA's
+    ("evaluations", INT),  # of the residual with its slopes, so far
+    ("failures", INT),  # of Newton's iteration, so far
+    ("contraction_rate", REAL),  # contraction of Newton's iteration: next correction over this one
+    ("omega_sq", REAL),  # squared angular frequency of the motion, from the last evaluation
+    ("wanted", INT),  # 1 for Adams formulas from the next start on
+    ("used", INT),  # 1 while Adams formulas are used
+    ("attempts", INT),  # steps tried since the start
+    ("limited_steps", INT),  # successive steps limited by stability, not by the error
+    ("next_order", INT),  # order k of the next step: number of former rates
+    ("n_history", INT),  # former rates known
+    ("order_used", INT),  # order k of the last step; 0 if it used IDA's formula
+    ("time", REAL),  # the last accepted time, and the step up to it
+    ("last_step", REAL),
+    ("new_step", REAL),  # length of the step that is tried; 0 once it has been accepted
+    ("amplitude_sq", REAL),  # of the vibration, over the tolerance
+    ("new_state", REAL, (MOTION,)),
+    ("predicted_rates", REAL, (MOTION,)),
+    ("state", REAL, (MOTION,)),  # at the last accepted time
+    ("time_lags", REAL, (MOST_ORDERS + 1,)),  # time from each former rate to it, the newest first
+    ("basis_integrals", REAL, (MOST_ORDERS + 1,)),  # of Newton's polynomials over these times
+    ("basis_values", REAL, (MOST_ORDERS + 1,)),
+    (
+        "differences",
+        REAL,
+        (MOST_ORDERS + 1, MOTION),
+    ),  # divided differences of the rates, a row for each order
+    ("new_differences", REAL, (MOST_ORDERS + 1, MOTION)),  # with those at the end of the step that is tried
+)
+
+SEARCH: Final = record_type(  # for the root of the guard in a step
+    ("low", REAL),  # the guard at the beginning of the search interval
+    ("low_time", REAL),
+    ("step_end", REAL),  # time at the end of the step
+    ("rest", INT),  # 1 after a root: the rest of its step is still to be searched
+    ("stop", INT),  # 1 while a stop waits for the roots before it
+    ("stop_time", REAL),
+    ("evaluations", INT),  # of the guard, so far
+    ("as_ida", INT),  # 1 to search as IDA does, and take the state at a step's end from its interpolant
+    ("sharpness", REAL),  # how sharply to find a root, over the length of the interval
+)
+
+DRIVER: Final = record_type(
+    ("time", REAL),  # reached
+    ("rows", INT),  # samples and events in the present block
+    ("events", INT),
+    ("pending", INT),  # flag of a step that waits for room, plus 1; 0 for none, -1 for a start
+    ("done", INT),
+    ("error", INT),  # IDA's flag, or one of the driver's own
+    ("since", INT),  # steps since the last checkpoint
+)
+
+POINT: Final = record_type(  # of an accepted time, what extremes are located from
+    ("time", REAL),
+    ("travel", REAL),  # transmission error, or height, with its rate and acceleration
+    ("travel_rate", REAL),
+    ("travel_bend", REAL),
+    ("speed", REAL),  # of the gear, its acceleration,
+    ("speed_rate", REAL),
+    ("place", REAL),  # and how far it has turned, in pitches
+    ("force", REAL),
+)
+
+TRACK: Final = record_type(  # of the extremes
+    ("time", REAL),  # the last accepted time
+    ("point", POINT, (3,)),  # it, two before it, and in turn the time that is just accepted
+    ("last", INT),  # where among them the last accepted time is
+    ("smooth", INT),  # how many of them the force has passed since its last corner, that included
+    ("next_part", REAL),  # time at which the coming part of the run begins
+)
+
+WORK: Final = record_type(
+    ("quadrature", QUADRATURE),
+    ("resistance", RESISTANCE),
+    ("track", TRACK),
+    ("adams", ADAMS),
+    ("search", SEARCH),
+    ("driver", DRIVER),
+    ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins
+    ("elastic_service", INT),  # where the compiled code of elastic contacts lies in this process
+    ("torque_law", INT, (2,)),  # and that of the torque law of either shaft; 0 without one
+)
