@@ -25,7 +25,7 @@ braking = start_up.replace(
 
 run = None
 for name, scene in (("start_up", start_up), ("running", running), ("braking", braking)):
-    run = gd.simulate(scene, start=run, archive=f"{name}.nc")
+    run = gd.simulate(scene, start=run, archive=f"{name}.nc", overwrite=True)
     print(
         f"{name}: {float(run.time[0]) * 1e3:.2f} to {run.attrs['t_end'] * 1e3:.2f} ms, "
         f"{float(run.final_speed):.0f} rad/s"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.pieces import first_above, reached, spread
+from gearidae.archive.pieces import first_above, pieces, reached, spread
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.records import Extremes
 
@@ -66,9 +66,7 @@ def _of_gear(run: xr.Dataset, end: int) -> dict[str, float]:
     whole = spread(speed, 0, end)
     settled = spread(speed, int(_START_UP * end), end)
     late = spread(speed, end // 2, end)
-    values = speed.values[int(_START_UP * end) : end]
-    fall = float(np.max(np.maximum.accumulate(values) - values))
-    rise = float(np.max(values - np.minimum.accumulate(values)))
+    fall, rise = _fall_and_rise(speed, int(_START_UP * end), end)
     return {
         "min_gear_speed": whole.low,
         "max_gear_speed": whole.high,
@@ -83,16 +81,42 @@ def _of_gear(run: xr.Dataset, end: int) -> dict[str, float]:
     }
 
 
+def _fall_and_rise(speed: xr.DataArray, start: int, end: int) -> tuple[float, float]:
+    """Largest fall below what had been reached before, and largest rise above the lowest until then."""
+    top, bottom, fall, rise = -math.inf, math.inf, 0.0, 0.0
+    for _, values in pieces(speed, start, end):
+        highest = np.maximum.accumulate(np.maximum(values, top))
+        lowest = np.minimum.accumulate(np.minimum(values, bottom))
+        fall, rise = max(fall, float((highest - values).max())), max(rise, float((values - lowest).max()))
+        top, bottom = float(highest[-1]), float(lowest[-1])
+    return fall, rise
+
+
 def _standstill(run: xr.Dataset, end: int) -> dict[str, float]:
     """Find where the speed first fell to zero in the place where the gear still is."""
-    speed, time = run["gear_speed"].values[:end], run["time"].values[:end]
-    place = run["gear_angle"].values[:end] * int(scene_of(run)["gears"]["gear_teeth"]) / (2.0 * math.pi)
-    if not first_above(run["gear_speed"], 0.0) and speed[0] <= 0.0:
-        return {"stick_time": 0.0, "turned_back": max(float(place[0] - place[-1]), 0.0)}
-    held = None
-    for k in np.flatnonzero((speed[1:] <= 0.0) & (speed[:-1] > 0.0)) + 1:
-        if held is None or place[held:k].max() - place[held] > _HELD_WITHIN:
-            held = int(k)
-    if held is None or place[held:].max() - place[held] > _HELD_WITHIN:
+    pitch = 2.0 * math.pi / int(scene_of(run)["gears"]["gear_teeth"])
+    speed, angle = run["gear_speed"], run["gear_angle"]
+    first, last = (float(angle.variable[k].values) / pitch for k in (0, end - 1))
+    if not first_above(speed, 0.0) and float(speed.variable[0].values) <= 0.0:
+        return {"stick_time": 0.0, "turned_back": max(first - last, 0.0)}
+    held, farthest = (
+        None,
+        -math.inf,
+    )  # the sample where it came to stand, with its place, and how far it has been since
+    before = math.inf
+    for start, values in pieces(speed, 0, end):
+        places = angle.variable[start : start + values.size].values / pitch
+        falls = np.flatnonzero((values <= 0.0) & (np.concatenate([[before], values[:-1]]) > 0.0))
+        before, seen = float(values[-1]), 0
+        for k in falls[falls + start > 0].tolist():
+            farthest = max(farthest, float(places[seen:k].max(initial=-math.inf)))
+            if held is None or farthest - held[1] > _HELD_WITHIN:
+                held, farthest = (start + k, float(places[k])), -math.inf
+            seen = k
+        farthest = max(farthest, float(places[seen:].max(initial=-math.inf)))
+    if held is None or farthest - held[1] > _HELD_WITHIN:
         return {"stick_time": math.nan, "turned_back": 0.0}
-    return {"stick_time": float(time[held]), "turned_back": max(float(place[held] - place[-1]), 0.0)}
+    return {
+        "stick_time": float(run["time"].variable[held[0]].values),
+        "turned_back": max(held[1] - last, 0.0),
+    }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 from gearidae.archive.select import run_scene, scene_of, swept_dims
@@ -53,8 +54,8 @@ def validity_of(ds: xr.Dataset) -> list[ValidityRow]:
     SceneError
         If the dataset carries no scene.
     """
-    base = Scene.from_dict(scene_of(ds))
-    scene = base if swept_dims(ds) else run_scene(ds)
-    if scene == base and holds_rows(ds.attrs.get(ATTRIBUTE)):
+    scene = Scene.from_dict(scene_of(ds)) if swept_dims(ds) else run_scene(ds)
+    of_base = scene.to_dict() == json.loads(ds.attrs.get("scene", "{}"))
+    if of_base and holds_rows(ds.attrs.get(ATTRIBUTE)):
         return rows_from_json(ds.attrs[ATTRIBUTE])
     return validity_rows(scene)

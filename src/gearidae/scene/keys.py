@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
@@ -181,7 +182,9 @@ def _unknown(key: str, known: list[str]) -> str:
     table, number = _numbered(key)
     key = key.replace(f"{table}.{number}", table)  # known keys have no numbers of list entries
     last = key.rpartition(".")[2]
-    homes = " or ".join(name for name in known if name.rpartition(".")[2] == last)
+    alike = [name for name in known if name.rpartition(".")[2] == last]
+    tables = difflib.get_close_matches(key.rpartition(".")[0], {name.rpartition(".")[0] for name in alike})
+    homes = " or ".join(name for name in alike if not tables or name.rpartition(".")[0] in tables)
     question = f"did you mean {homes}?" if homes else did_you_mean(key, known)
     if number:
         question = question.replace(f"{table}.", f"{table}.{number}.")

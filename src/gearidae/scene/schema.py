@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from pydantic.json_schema import GenerateJsonSchema
+
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
@@ -12,6 +14,12 @@ __all__ = ["DIALECT", "json_schema"]
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 _GEAR_TABLES = ("gears", "mesh", "drive", "initial")
+
+
+class _Schema(GenerateJsonSchema):
+    """Leaves out the default of a list, which JSON has no tuple for."""
+
+    ignored_warning_kinds = {"non-serializable-default"}  # noqa: RUF012  # as pydantic declares it
 
 
 def json_schema(model: type[Scene]) -> dict[str, Any]:
@@ -29,7 +37,7 @@ def json_schema(model: type[Scene]) -> dict[str, Any]:
     dict
         A JSON Schema (draft 2020-12). A quantity is a number in SI units or a text with a unit.
     """
-    schema = model.model_json_schema()
+    schema = model.model_json_schema(schema_generator=_Schema)
     _walk(schema)
     schema["properties"]["$schema"] = {"type": "string", "description": "where this schema is"}
     return {
