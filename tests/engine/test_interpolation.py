@@ -27,9 +27,9 @@ def stepped():
     out = native.Output.empty(len(problem.columns))
     try:
         assert open_solver(s.handles, place, functions, places, (s.y, s.yp, s.dky)) == 0
-        native.advance_at(place, s, out, STEPS)
+        native.advance(place, s, out, STEPS)
         begin = float(s.clock[0])
-        native.advance_at(place, s, out, 1)
+        native.advance(place, s, out, 1)
         yield s, begin
     finally:
         close_solver(s.handles)
