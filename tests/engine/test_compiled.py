@@ -78,7 +78,7 @@ def test_other_peoples_numba_cache_is_left_alone():
 
 
 SMALL = """
-import gearidae.contact.kernels.law as law
+from gearidae.contact.kernels import evaluate
 from gearidae.compiled import cache_folder
 from numba.core import event
 import numpy as np
@@ -88,8 +88,8 @@ class Count(event.Listener):
     def on_end(self, done): pass
 count = Count()
 event.register("numba:compile", count)
-value = law._septic(np.arange(64.0), 0, 0.5 / law.KNOTS_PER_SIGMA, 0.0, 4)[0]
-print(law.__file__, cache_folder(), count.n, value)
+value = evaluate._septic(np.arange(64.0), 0, 0.5 / evaluate.KNOTS_PER_SIGMA, 0.0, 4)[0]
+print(evaluate.__file__, cache_folder(), count.n, value)
 """
 
 
@@ -102,7 +102,7 @@ def copied(folder):
 
 def edit(folder):
     """Shift all pieces by one knot."""
-    file = folder / "gearidae" / "contact" / "kernels" / "law.py"
+    file = folder / "gearidae" / "contact" / "kernels" / "evaluate.py"
     text = file.read_text()
     assert text.count(PLACE) == 1
     file.write_text(text.replace(PLACE, f"{PLACE} + 1.0"))

@@ -6,14 +6,14 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.integrate.driver import ending_of_flag
-from gearidae.engine.model import build
+from gearidae.engine.model import build_torques
 from gearidae.records import Ending
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_chatter_ends_with_its_name_and_a_partial_result(backend, monkeypatch):
-    monkeypatch.setattr(build, "ROOT_SPACING", 1e-2)
-    monkeypatch.setattr(build, "ROOT_LIMIT", 12)
+    monkeypatch.setattr(build_torques, "ROOT_SPACING", 1e-2)
+    monkeypatch.setattr(build_torques, "ROOT_LIMIT", 12)
     scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.45, "run.samples": 3001})
     run = solve(scene, backend=backend)
     assert run.status == "chatter"
@@ -33,8 +33,8 @@ def test_every_flag_has_a_name():
 
 
 def test_simulate_raises_with_the_partial_dataset(monkeypatch, tmp_path):
-    monkeypatch.setattr(build, "ROOT_SPACING", 1e-2)
-    monkeypatch.setattr(build, "ROOT_LIMIT", 12)
+    monkeypatch.setattr(build_torques, "ROOT_SPACING", 1e-2)
+    monkeypatch.setattr(build_torques, "ROOT_LIMIT", 12)
     scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.45, "run.samples": 3001})
     target = tmp_path / "part.nc"
     with pytest.raises(gd.SolverError) as caught:

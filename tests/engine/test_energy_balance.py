@@ -395,7 +395,7 @@ def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
 
     def take(block, statistics, wall_time):
         if block.checkpoint is not None and not starts:
-            starts.append(Start(block.checkpoint, statistics, block.time))
+            starts.append(Start(block.checkpoint, statistics=statistics, time=block.time))
 
     whole = engine.follow(scene, take, backend="native")
     rest = engine.follow(scene, lambda *_: None, backend="native", begin=starts[0])

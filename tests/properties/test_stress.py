@@ -9,7 +9,8 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.integrate.driver import BLOCK_STEPS
-from gearidae.engine.model.build import ROOT_LIMIT, make_problem
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.build_torques import ROOT_LIMIT
 from gearidae.records import Ending, EventKind
 from gearidae_bench import stress, stress_checks
 from gearidae_bench.__main__ import main

@@ -255,7 +255,7 @@ def _carry_deflections(source: Model, old_y: Floats, m: Model, y: Floats) -> boo
 
 
 def _remember(source: Model, m: Model, k: int) -> None:
-    """Take a pair's joined heights to other materials."""
+    """Take a pair's joined heights to other materials, and set the energy of what is joined."""
     h = m.state.history[k]
     for material in range(MATERIALS):
         before, limit = source.scene.material[material], float(m.scene.material[material].stretch_limit)
@@ -266,6 +266,8 @@ def _remember(source: Model, m: Model, k: int) -> None:
         if h.direction > 0.0:
             joined = min(joined, float(h.gap))
         h.joined[material] = joined
+        # that of a contact with nodes is kept with these, and a material that cannot stretch has none
+        h.adhered_energy[material] = 0.0
         if limit > 0.0 and m.scene.nodes == 0:
             set_joined(m, k, material, joined)
         stretched = h.direction > 0.0 and joined + limit <= h.gap
