@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +108,7 @@ class Reference:
     provenance: Provenance
 
 
-_YOUNGER: Final = {
+_YOUNGER: Final[dict[str, dict[str, Any]]] = {
     "run": {"method": "auto", "stop": "time"},
     "drive": {"speed_gain": 0.0},
     "load": {"viscous": 0.0},
