@@ -20,9 +20,10 @@ NOTHING = MappingProxyType({})
 
 
 def run(folder, model, code=RUN, more=NOTHING):
+    own = {"PYTHONPATH": str(Path(compiled.__file__).parents[1])}  # the package that is tested, wherever it lies
     return subprocess.run(
         [sys.executable, "-c", code.format(model=model)],
-        env={"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)} | more,
+        env={"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)} | own | more,
         capture_output=True,
         text=True,
         check=True,

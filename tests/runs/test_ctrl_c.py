@@ -99,7 +99,7 @@ def warm():
 )
 def test_before_the_first_block(scene, stage, calls, tmp_path):
     code, spent, said = interrupted(SCENES[scene], stage, calls, tmp_path)
-    assert code == 130
+    assert code == 130, said
     assert spent < CPU
     assert len(said.splitlines()) == 1, said
     if (tmp_path / "out.nc").exists():
@@ -110,7 +110,7 @@ def test_before_the_first_block(scene, stage, calls, tmp_path):
 def test_between_blocks_what_is_computed_is_kept(scene, tmp_path):
     stage = "gearidae.engine.integrate.native:update_statistics"
     code, spent, said = interrupted(SCENES[scene], stage, 8, tmp_path)
-    assert code == 130
+    assert code == 130, said
     assert spent < CPU
     assert len(said.splitlines()) == 1, said
     with gd.open_archive(tmp_path / "out.nc") as part:
