@@ -94,12 +94,14 @@ def check_state(m: Model, state: Record, y: Floats) -> None:
 
 def check_histories(m: Model, state: Record, y: Floats) -> None:
     """Check the histories of a state that `check_state` has accepted; parameters and errors as there."""
-    empty = empty_history().tobytes()
-    for k, h in enumerate(state.history):
-        if h.pair == EMPTY or k >= m.scene.histories:
-            require(h.tobytes() == empty, f"history {k}", "empty")
-            continue
-        coast = int(k // m.scene.slots)
+    history, count = state.history, int(m.scene.histories)
+    used = (history["pair"] != EMPTY) & (np.arange(history.size) < count)
+    # most are empty, and told so all at once
+    texts = np.frombuffer(history.tobytes(), np.uint8).reshape(history.size, -1)
+    filled = ~used & (texts != np.frombuffer(empty_history().tobytes(), np.uint8)).any(axis=1)
+    require(not filled.any(), f"history {int(filled.argmax())}", "empty")
+    for k in np.flatnonzero(used).tolist():
+        h, coast = history[k], int(k // m.scene.slots)
         require(state.near[coast] != 0, "near", "1 where a pair is remembered")
         _check_pair(m, h, k, coast, y)
         _check_flags(h)
