@@ -48,7 +48,9 @@ def test_a_gear_that_has_just_begun_to_slip_keeps_its_allowance(slip, slipping, 
 def test_all_of_the_state_is_carried_over():
     def mark(state):
         state.slipping, state.last_flank, state.roots, state.last_root = 1, 1, 7, -0.25
-        for place, name in enumerate(STATE["energy"].names, 1):  # apart from each other, and as they can be together
+        for place, name in enumerate(
+            STATE["energy"].names, 1
+        ):  # apart from each other, and as they can be together
             state.energy[name] += place / 16
         state.progress.steps, state.progress.flight_steps = 11, 5
         state.turns = 64.0

@@ -20,7 +20,9 @@ NOTHING = MappingProxyType({})
 
 
 def run(folder, model, code=RUN, more=NOTHING):
-    own = {"PYTHONPATH": str(Path(compiled.__file__).parents[1])}  # the package that is tested, wherever it lies
+    own = {
+        "PYTHONPATH": str(Path(compiled.__file__).parents[1])
+    }  # the package that is tested, wherever it lies
     return subprocess.run(
         [sys.executable, "-c", code.format(model=model)],
         env={"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)} | own | more,
