@@ -138,6 +138,17 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("model", ["asperity", "elastic"])
+@pytest.mark.parametrize(("before", "after"), [(0.0, 0.6), (1.0, 0.0)])
+def test_a_material_that_was_absent_begins_with_nothing_stretched(before, after, model):
+    scene = LOW.replace({"contact.model": model, "run.duration": 2.0**-9})
+    first = gd.simulate(scene.replace({"coating.sam_fraction": before}))
+    second = gd.simulate(scene.replace({"coating.sam_fraction": after}), start=first)
+    assert second.attrs["status"] == "finished"
+    assert balance_closes(second)
+    assert json.loads(second.attrs["energy_balance"])["model_change"] != 0.0
+
+
+@pytest.mark.parametrize("model", ["asperity", "elastic"])
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_changed_scene_goes_on_from_the_same_motion(change, model):
     scene = LOW.replace({"contact.model": model, "run.duration": 2.0**-9})

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from gearidae.engine.elastic.histories import book_points, init_nodes
-from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, profile_of, row_of
+from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
 from gearidae.engine.elastic.static_solve import SETTLED, settle_nodes
 from gearidae.engine.energy.balance import carry_balance
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 
-__all__ = ["carry_nodes", "change_over", "deepen", "join_as_pairs", "note_gaps", "take_over"]
+__all__ = ["carry_nodes", "change_over", "deepen", "join_anew", "join_as_pairs", "note_gaps", "take_over"]
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
 
@@ -48,12 +50,55 @@ def join_as_pairs(m: Model, y: Floats) -> None:
 
     What is joined goes with the gaps along the contact, and these with the pressures of what is joined.
     """
+    _settle(m, y, lambda: _join(m, y))
+
+
+def _settle(m: Model, y: Floats, join: Callable[[], None]) -> None:
+    """Solve for deflections and for what is joined with them in turn, in place."""
     for _ in range(_ROUNDS):
         before = y.copy()
-        _join(m, y)
+        join()
         settle_nodes(m, float(m.state.time), y)
         if np.max(np.abs(y - before)) <= SETTLED:
             break
+
+
+def join_anew(m: Model, y: Floats, absent: tuple[bool, ...]) -> None:
+    """Take the joined heights along all contacts to other materials, and settle the deflections with them, in place.
+
+    Parameters
+    ----------
+    m : Model
+        With the joined heights that have been carried over.
+    y : ndarray
+        State, with the deflections where the search begins; changed.
+    absent : tuple of bool
+        For each material, whether it has not been there: it begins with nothing stretched.
+    """
+    rows = m.rows.copy()
+    carried = Model(*(rows if part is m.rows else part for part in m))
+    _settle(m, y, lambda: _limit(carried, m, y, absent))
+
+
+def _limit(carried: Model, m: Model, y: Floats, absent: tuple[bool, ...]) -> None:
+    """Let go where asperities cannot stretch so far as the carried heights, and begin those that were absent."""
+    gaps = np.empty(int(m.scene.points))
+    for k in range(int(m.scene.histories)):
+        h = m.state.history[k]
+        if h.pair == EMPTY:
+            continue
+        point_gaps(m, k, y, float(h.gap), gaps)
+        h.stretched = 0
+        for material in range(MATERIALS):
+            limit, heights = m.scene.material[material].stretch_limit, row_of(m, k, JOINED + material)
+            heights[:] = (
+                gaps if absent[material] else np.maximum(row_of(carried, k, JOINED + material), gaps - limit)
+            )
+            if h.direction > 0.0:
+                heights[:] = np.minimum(heights, gaps)
+            if limit > 0.0 and (heights < gaps).any():
+                h.stretched = 1
+            book_points(m, k, material)
 
 
 def take_over(source: Model, m: Model) -> None:

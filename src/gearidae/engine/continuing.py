@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearidae.engine.changeover import carry_nodes, join_as_pairs, note_gaps, take_over
+from gearidae.engine.changeover import carry_nodes, join_anew, join_as_pairs, note_gaps, take_over
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
@@ -237,7 +237,10 @@ def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, cha
             _remember(source, m, k)
     same_nodes = _carry_deflections(source, old_y, m, y)
     if m.scene.nodes > 0 and (changed or not same_nodes):
-        settle_nodes(m, float(m.state.time), y)
+        if changed and source.scene.nodes > 0:
+            join_anew(m, y, tuple(float(own.stretch_limit) == 0.0 for own in source.scene.material))
+        else:
+            settle_nodes(m, float(m.state.time), y)
         note_gaps(m, y)
     if changed or not same_nodes:
         was = stored_energy(source, old_y)[0] * float(source.scene.force_unit / m.scene.force_unit)
