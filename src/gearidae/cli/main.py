@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from cyclopts import CycloptsError
 
 from gearidae.cli.codes import BAD_INPUT, DONE, INTERRUPTED, UNFINISHED
+from gearidae.cli.interrupts import interrupts_kept
 from gearidae.cli.session import app
 from gearidae.cli.values import spread
 from gearidae.errors import GearidaeError, SceneError
@@ -31,7 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     tokens = spread(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app.meta(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+        with interrupts_kept():
+            code = app.meta(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         return _complain(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
     except SceneError as error:
