@@ -1,6 +1,6 @@
 # make run   the low-speed experiment: archive and picture in out/
 # make test  lint, types and tests
-# make types types once more, as Linux, macOS and Windows have them
+# make types types once more, as macOS and Windows have them
 # make test-lowest  a short suite in a second environment, with the lowest versions that the package promises
 # make docs  the documentation: docs/_build/html/index.html
 # make bench    run time against error, all scenes: the benchmark's page anew (some ten minutes)
@@ -28,7 +28,7 @@ test: lint
 
 # Both drivers, scenes, archives, pictures and the command line. The warning is one that numpy itself switches off.
 test-lowest: $(LOWEST)/installed
-	$(LOWEST)/bin/python -m pytest -q -W "ignore:numpy.ndarray size changed:RuntimeWarning" \
+	$(LOWEST)/bin/python -m pytest -q -n 2 --dist loadfile -W "ignore:numpy.ndarray size changed:RuntimeWarning" \
 	    tests/engine/test_backends.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
 	    tests/archive/test_lock.py tests/analysis/test_measured.py \
 	    tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
@@ -40,7 +40,7 @@ lint: $(VENV)/installed-dev
 
 # What the types say on the systems that the tests do not run on.
 types: $(VENV)/installed-dev
-	for system in linux darwin win32; do $(BIN)/mypy --platform $$system --cache-dir .mypy_cache/$$system || exit 1; done
+	for system in darwin win32; do $(BIN)/mypy --platform $$system --cache-dir .mypy_cache/$$system || exit 1; done
 
 docs: $(VENV)/installed-docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
@@ -72,5 +72,5 @@ $(VENV)/installed-dev: $(VENV)/installed
 $(LOWEST)/installed: pyproject.toml tests/lowest.txt
 	$(PYTHON) -m venv $(LOWEST)
 	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint tests/lowest.txt \
-	    --editable . pytest hypothesis mpmath
+	    --editable . pytest pytest-xdist hypothesis mpmath
 	touch $@

@@ -1,6 +1,7 @@
 """Checkpoints: taken back unchanged, refused where they are damaged, and harmless where damage goes unseen."""
 
 import itertools
+import re
 import subprocess
 import sys
 import time
@@ -34,6 +35,9 @@ WORST = (
 )
 STEPS = (-1, 1, 2, 8)
 """Small changes of what may be an integer."""
+
+COMPILING = re.compile(r"compiling .* for this machine: once, .*|.*: \d+ functions? compiled in \d+ s")
+"""What the first run on a machine says."""
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +173,7 @@ def test_damage_is_refused_or_harmless(name, sound, tmp_path):
     )
     lines = run.stdout.split()
     assert run.returncode == 0, (let_through[min(len(lines), len(let_through) - 1)][0], run.stderr[-2000:])
-    assert run.stderr == ""
+    assert [line for line in run.stderr.splitlines() if not COMPILING.fullmatch(line)] == []
     assert len(lines) == len(let_through)
     # at this share of a run nothing else may come of it; most of what is let through is a counter or a sum
     assert set(lines) <= {ending.status for ending in Ending} | {f"{BUDGET}_blocks"}

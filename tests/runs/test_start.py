@@ -28,7 +28,7 @@ def shortened(case, model, backend):
     """Scene of a case over a short time that both drivers get through within seconds; a power of two."""
     scene = gd.load_case(case)
     changes = {"contact.model": model, "run.samples": SAMPLES, "run.rtol": 1e-6}
-    share = 2.0 ** -(4 + 4 * (model == "elastic") + 3 * (backend == "sksundae"))
+    share = 2.0 ** -(4 + 4 * (model == "elastic") + 5 * (backend == "sksundae"))
     half = 2.0 ** math.floor(math.log2(share * scene.run.duration))
     if scene.roller is not None:  # the impact is in the second half
         half = 2.0 ** math.floor(math.log2(0.6 * scene.roller.height / scene.roller.speed))
