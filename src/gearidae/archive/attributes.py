@@ -16,7 +16,7 @@ from gearidae.errors import SceneError
 from gearidae.scene import Scene
 from gearidae.scene.validity_row import ATTRIBUTE, holds_rows
 
-__all__ = ["readable_scene", "wrong_attribute"]
+__all__ = ["complete_scene", "readable_scene", "wrong_attribute"]
 
 _LONGEST_TEXT = 100_000
 """Characters of a title, a history or the like."""
@@ -90,9 +90,16 @@ def readable_scene(text: object) -> dict[str, Any] | None:
     scene = _table(text)
     if not scene:
         return None
+    complete_scene(scene)
     if any(_names_file(table) for table in scene.values()):
         return None
     return scene if all(isinstance(table, dict) or key == "name" for key, table in scene.items()) else None
+
+
+def complete_scene(scene: dict[str, Any]) -> None:
+    """Put into a scene of an older archive, in place, what went without saying then."""
+    if isinstance(scene.get("mesh"), dict):
+        scene["mesh"].setdefault("radius_force", False)
 
 
 def _names_file(table: object) -> bool:

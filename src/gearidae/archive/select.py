@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
 from gearidae.archive.variables import EXTREMES, columns
@@ -55,6 +56,7 @@ def scene_of(ds: xr.Dataset) -> dict[str, Any]:
         ) from error
     if not isinstance(scene, dict):
         raise SceneError("dataset", type(ds).__name__, "must come from simulate, sweep or open_archive")
+    complete_scene(scene)
     return scene
 
 

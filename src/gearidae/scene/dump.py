@@ -94,6 +94,8 @@ def _value(value: Any, quantity: Quantity | None) -> str:
     """Write one value, with a unit that people use where it is exact."""
     if isinstance(value, str):
         return _text(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if quantity is None or quantity.unit == "1":
         return repr(value)
     if quantity.unit == "rad":

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, shorten
-from gearidae.scene.quantity import Count, Phase, Quantity
+from gearidae.scene.quantity import Count, Phase, Quantity, Switch
 from gearidae.scene.tables import one_or_more
 
 __all__ = ["Gears", "Mesh", "StaticErrorHarmonic"]
@@ -102,4 +102,8 @@ class Mesh(Group):
     )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(
         default=(), description="harmonics of the static transmission error, a list of tables"
+    )
+    radius_force: Switch = Field(
+        default=True,
+        description="whether the changing radius of curvature pushes the gear, so that energy is conserved",
     )

@@ -163,6 +163,8 @@ def _describe(key: str, field: FieldInfo) -> KeyInfo:
         allowed = named.allowed().removeprefix("must be ")
     elif choices:
         allowed = "one of " + ", ".join(choices)
+    elif field.annotation is bool:
+        allowed = "true or false"
     elif _table(field.annotation)[0] is not None and not _table(field.annotation)[1]:
         allowed = "a table"
     else:

@@ -41,7 +41,11 @@ _PAIR: Final[_Tables] = {
         "pressure_angle": math.radians(20),  # inferred
         "face_width": 2e-6,
     },
-    "mesh": {"backlash": 0.2e-6, "tip_relief_radius": 10e-6},  # the relief is inferred
+    "mesh": {
+        "backlash": 0.2e-6,
+        "tip_relief_radius": 10e-6,  # inferred
+        "radius_force": False,  # Eq. 1 has no such force
+    },
     "coating": {"sam_fraction": 1.0, "energy": 0.1},
 }
 

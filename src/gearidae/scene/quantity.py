@@ -11,13 +11,14 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Annotated, Any
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+import numpy as np
+from pydantic import BeforeValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from gearidae.scene.units import from_text
 
-__all__ = ["Count", "Phase", "Quantity", "Sampling"]
+__all__ = ["Count", "Phase", "Quantity", "Sampling", "Switch"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -244,3 +245,15 @@ def _as_float(value: object) -> float | None:
 
 Phase = Annotated[float, Quantity(unit="rad", at_least=-1e9, at_most=1e9)]
 """Phase of a harmonic; a larger one would be known to less than a millionth of a radian."""
+
+
+def _read_switch(value: object) -> bool:
+    """Read true or false, also numpy's; what is merely like one of them, such as 0 or "no", is refused."""
+    value = value.item() if isinstance(value, np.bool_) else value
+    if not isinstance(value, bool):
+        raise ValueError("must be true or false")
+    return value
+
+
+Switch = Annotated[bool, BeforeValidator(_read_switch)]
+"""True or false."""

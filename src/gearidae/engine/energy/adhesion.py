@@ -31,14 +31,15 @@ def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float)
         length = contact_length(m, pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[3])
         h = m.state.history[k]
         m.state.energy.adhesion_loss -= h.lag
-        m.state.energy.radius_work -= h.lag
+        if m.scene.radius_force == 0:
+            m.state.energy.radius_work -= h.lag
         h.lag = h.lag_power = h.lag_rate = 0.0
     if m.scene.nodes > 0:
         m.state.energy.adhesion_loss += length * nodes_joining_loss(m, k, y, gap)
         return
     loss = joining_loss(m, k, gap)
     m.state.energy.adhesion_loss += length * loss
-    if m.scene.kind == GEARS:
+    if m.scene.kind == GEARS and m.scene.radius_force == 0:
         _book_before(m, coast, pair, loss, length)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled
+from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_stored
@@ -16,7 +17,7 @@ from gearidae.engine.model.tooth_pairs import (
     pair_gap,
 )
 
-__all__ = ["joined_energy", "joining_loss", "stored_energy"]
+__all__ = ["free_energy", "joined_energy", "joining_loss", "stored_energy"]
 
 
 @compiled
@@ -93,3 +94,45 @@ def joining_loss(m: Model, k: int, gap: float) -> float:
             number = loading_value(m.tables, own.number_at, gap)[0]
             loss += own.force_scale * (own.joining_energy * number + h.adhered_energy[material])
     return loss
+
+
+@compiled
+def free_energy(m: Model, k: int, known: bool, t: float, gap: float, rate: float) -> tuple[float, float]:
+    """Free energy of a pair of rigid bodies per length, and its slope in the gap.
+
+    It is what `stored_energy` adds up less what is pending: zero where nothing is in contact, and for an asperity at
+    its detachment. Within a step that has turned the pair round, the history first goes through the turning point.
+
+    Parameters
+    ----------
+    m : Model
+    k : int
+        Index of the pair's history.
+    known : bool
+        Whether that is about this pair; if not, nothing is stretched.
+    t : float
+        Time over tau.
+    gap, rate : float
+        The pair's gap and gap rate.
+    """
+    h = m.state.history[k]
+    energy, slope = loading_value(m.tables, m.scene.potential_at, gap)
+    turned = known and h.direction * rate < 0.0
+    turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate) if turned else gap
+    for material in range(MATERIALS):
+        own = m.scene.material[material]
+        if own.stretch_limit == 0.0:
+            continue
+        joined = h.joined[material] if known else gap
+        if turned:
+            joined = joined_height(joined, turning_gap, own.stretch_limit)
+        number, falling = loading_value(m.tables, own.number_at, min(gap, joined))
+        adhered = -own.joining_energy * number
+        if gap <= joined:
+            energy += own.force_scale * adhered
+            slope -= own.force_scale * own.joining_energy * falling
+            continue
+        e, de = stretched_energy(m.tables[own.energy_at :], adhered, gap, joined)
+        energy += own.force_scale * e
+        slope += own.force_scale * de
+    return energy, slope

@@ -1,7 +1,12 @@
-"""The changing radius of curvature along the path of contact, and the power that goes with it.
+r"""The changing radius of curvature along the path of contact, and the power or the force that goes with it.
 
-The length of a contact, and with it the number of asperities in touch, changes along the path without a force that
-pays for it; see `gearidae.engine.energy.balance`.
+The length of a contact, and with it the number of asperities in touch, changes along the path. In the paper's model no
+force pays for that; see `gearidae.engine.energy.balance`, which books the power. With ``mesh.radius_force`` a force
+does: a pair of length :math:`\ell` with the energy U per length pushes the gear along its motion :math:`x_2` with
+
+.. math:: -U \frac{d\ell}{dx_2} \quad \left( = -\ell U \frac{R'}{2R} \right)
+
+at fixed gap. As the phase of the mesh is the gear's, the pinion has no part in it. U is zero at detachment.
 """
 
 from __future__ import annotations
@@ -10,12 +15,15 @@ import math
 
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.law import loading_value
-from gearidae.engine.elastic.calls import nodes_length_force
-from gearidae.engine.energy.contacts import joined_energy
+from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_length_force
+from gearidae.engine.energy.contacts import free_energy, joined_energy
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import history_of
 
-__all__ = ["length_and_rates", "pairs_on_path", "radius_power", "sample_radius_power"]
+__all__ = ["length_and_rates", "pairs_on_path", "radius_force", "radius_power", "sample_radius_power"]
+
+SHORTEST_SQ = 1e-12
+"""Least square of a contact length: a step that is tried may lead beyond the path, to where there is none."""
 
 
 @compiled
@@ -32,6 +40,8 @@ def sample_radius_power(m: Model, t: float, y: Floats) -> None:
 def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, float]:
     """Power of the changing radius, what length adds to a pair's energy times the length's rate, and its own rate."""
     power = rate = 0.0
+    if m.scene.radius_force != 0:  # it is the work of a force then, which motion and contacts exchange
+        return power, rate
     elastic = m.scene.nodes > 0
     for coast in range(2):
         if m.state.near[coast] == 0:
@@ -78,8 +88,51 @@ def length_and_rates(
     curvature = m.scene.sum_curvature
     # l^2 = r - c r^2 with r the pinion's radius of curvature
     radius = m.scene.start_radius + (m.scene.coast_phase + pair - phase if coast else phase - pair)
-    length = math.sqrt(radius - radius * radius * curvature)
+    length = math.sqrt(max(radius - radius * radius * curvature, SHORTEST_SQ))
     half = 0.5 - radius * curvature
     along = sign * w
     rate = half * along / length
     return length, rate, (half * sign * w_rate - curvature * along * along - rate * rate) / length
+
+
+@compiled
+def radius_force(
+    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, known: bool, gap: float, rate: float
+) -> tuple[float, float, float]:
+    """Force on the gear that pays for the changing length of a pair's contact, with its slopes.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    y : ndarray
+        State.
+    coast, pair : int
+        Flank and number of the pair.
+    k : int
+        Index of its history.
+    known : bool
+        Whether that is about this pair.
+    gap, rate : float
+        The pair's gap and gap rate.
+
+    Returns
+    -------
+    force, force_u, force_phase : float
+        Along the gear's motion, and its partial derivatives in u and phase; of an elastic contact the first is left
+        out, which only steers Newton's iteration.
+    """
+    first, last = pairs_on_path(m, coast)
+    if not first <= pair <= last:
+        return 0.0, 0.0, 0.0
+    length, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], 1.0, 0.0)
+    slope = 0.0
+    if m.scene.nodes == 0:
+        energy, slope = free_energy(m, k, known, t, gap, rate)
+    elif known:
+        energy = nodes_length_force(m, k, t, y, gap, rate, length)[0] - nodes_joining_loss(m, k, y, gap)
+    else:
+        energy = 0.0  # it has just come within reach
+    sign = 1.0 - 2.0 * coast
+    return -energy * stretch, sign * slope * stretch, -energy * bend / m.scene.phase_rate

@@ -94,6 +94,8 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
         crossed = crossed_mark(m, y)
         if crossed:
             count = cross_mark(m, t, y, events, count)
+            if m.scene.radius_force != 0 and not in_flight(m):  # the force of the pair there jumps
+                action = RESTART
         if m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0:
             action = RESTART
             count = stick_or_slip(m, t, y, events, count)

@@ -112,6 +112,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     speed = sigma / float(s.time_unit)
     _set_geometry(s, geometry, mesh.tip_relief_radius)
     s.half_backlash = 0.5 * mesh.backlash / sigma
+    s.radius_force = int(mesh.radius_force)
     s.damping = mesh.damping * speed / float(s.force_unit)
     s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)
     s.viscous = load.viscous / geometry.base_radius_gear**2 * speed / float(s.force_unit)

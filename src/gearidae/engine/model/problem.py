@@ -187,7 +187,7 @@ class Problem:
         return EnergyBalance(
             time=time * self.time_unit,
             drive_work=unit * e["drive_work"],
-            radius_work=unit * (e["radius_work"] - lag),
+            radius_work=unit * (e["radius_work"] - (lag if self.model.scene.radius_force == 0 else 0.0)),
             model_change=unit * e["model_change"],
             drag_loss=unit * e["drag_loss"],
             dry_loss=unit * e["dry_loss"],

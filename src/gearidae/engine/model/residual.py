@@ -6,10 +6,10 @@ surface velocity w,
     u' - v = 0,                  v' - (1 - e') a1 (m1 - (1 - e') F) + w' + e'' (phi1')^2 = 0,
     phase' - (sigma/pb) w = 0,   w' - a2 (F + Fs - m2) = 0,
 
-with F the sum of the pairs' forces along the line of action and Fs the part that tip relief adds (Teodorescu et al.
-2009, Eqs. 1-6, with the tip relief doing work consistently). A gear held by dry resistance has w' = 0. A roller has
-the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic contact adds the deflections at its nodes, which
-have no rates: the system is then a DAE of index 1.
+with F the sum of the pairs' forces along the line of action and Fs what tip relief adds at the gear (Teodorescu et al.
+2009, Eqs. 1-6, with the tip relief doing work consistently) and, with ``mesh.radius_force``, the changing radius. A gear
+held by dry resistance has w' = 0. A roller has the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic contact
+adds the deflections at its nodes, which have no rates: the system is then a DAE of index 1.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.calls import node_force, node_residual
 from gearidae.engine.elastic.nodes import mark_out_of_reach
+from gearidae.engine.energy.radius import radius_force
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
@@ -90,6 +91,11 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
             relief += load * slope
             relief_u += by_u * slope
             relief_phase += by_phase * slope + sign * load * m.scene.relief_slope
+        if m.scene.radius_force != 0:
+            load, by_u, by_phase = radius_force(m, t, y, coast, pair, k, known, gap, rate)
+            relief += load
+            relief_u += by_u
+            relief_phase += by_phase
     return force, relief, force_u, force_phase, relief_u, relief_phase
 
 

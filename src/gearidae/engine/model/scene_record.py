@@ -69,6 +69,7 @@ SCENE: Final = record_type(
     ("reach", REAL),  # how far outside the path a pair may still touch, in pitches
     ("start_radius", REAL),  # pinion's radius of curvature where contact begins, in pitches
     ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature, per pitch
+    ("radius_force", INT),  # whether a force pays for the changing contact length
     ("damping", REAL),  # viscous mesh damping
     ("drag", REAL),  # force per squared surface velocity,
     ("viscous", REAL),  # and per surface velocity

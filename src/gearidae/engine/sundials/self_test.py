@@ -186,7 +186,7 @@ def _scene() -> Scene:
                 "pressure_angle": math.radians(20.0),
                 "face_width": 2e-6,
             },
-            "mesh": {"backlash": 0.4e-6, "tip_relief_radius": 10e-6},
+            "mesh": {"backlash": 0.4e-6, "tip_relief_radius": 10e-6, "radius_force": False},
             "surface": {
                 "youngs_modulus": 161e9,
                 "poisson_ratio": 0.23,
