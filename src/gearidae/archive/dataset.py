@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.energy import balance_attribute, balance_numbers
+from gearidae.archive.exposures import exposure_coordinates, exposure_variables
 from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import provenance, surface_regimes
@@ -61,11 +62,14 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     }
     variables |= _event_variables([solution], np.array([fraction]))
     variables |= extreme_variables(scene, [solution])
+    exposures = exposure_variables(scene, [scene], [solution])
+    variables |= exposures
     return xr.Dataset(
         variables,
         coords={
             "time": ("time", solution.time, TIME.attributes),
             "sam_fraction": ((), fraction, SAM_FRACTION.attributes),
+            **(exposure_coordinates(scene) if exposures else {}),
         },
         attrs={
             **provenance(scene, f"simulated {reached(solution):g} s"),
@@ -147,11 +151,16 @@ def combine(
         if keep.holds(name):
             variables[name] = (dims, values.reshape(shape), variable.attributes)
     variables |= {name: each for name, each in extremes.items() if keep.holds(str(name))}
+    exposures = exposure_variables(scene, scenes, solutions, dims, shape)
+    exposures = {name: each for name, each in exposures.items() if keep.holds(str(name))}
+    variables |= exposures
 
     coords: dict[Hashable, Any] = {}
     if keep.columns(scene):
         coords["time"] = ("time", samples.time, TIME.attributes)
     coords.update(labels)
+    if exposures:
+        coords.update(exposure_coordinates(scene))
     if "sam_fraction" not in dims:
         coords["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
     done = sum(solution.status == "finished" for solution in solutions)

@@ -50,22 +50,24 @@ def define(
         )
         with netCDF4.Dataset(sample) as old, netCDF4.Dataset(path, "x", format="NETCDF4") as new:
             new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
-            for name, size in sizes.items():
+            lengths = {name: len(dimension) for name, dimension in old.dimensions.items()} | dict(sizes)
+            for name, size in lengths.items():
                 new.createDimension(name, size)
             for name, variable in old.variables.items():
                 attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
                 fill = attributes.pop("_FillValue", None)
-                shape = tuple(sizes[dim] for dim in variable.dimensions)
-                storage = (
-                    {"contiguous": all(shape)}  # a dimension of length 0 is one without limit to netCDF
-                    if extra is not None
-                    else chunked(name, variable.dtype, shape, variable.dtype.itemsize * int(np.prod(shape)))
-                )
+                shape = tuple(lengths[dim] for dim in variable.dimensions)
+                storage: dict[str, Any] = {}
+                if extra is not None:
+                    storage = {"contiguous": all(shape)}  # a length of 0 is one without limit to netCDF
+                elif variable.dtype is not str:
+                    nbytes = variable.dtype.itemsize * int(np.prod(shape))
+                    storage = chunked(name, variable.dtype, shape, nbytes)
                 made = new.createVariable(
                     name, variable.dtype, variable.dimensions, fill_value=fill, **storage
                 )
                 made.setncatts(attributes)
-                if not variable.dimensions:
+                if not set(variable.dimensions) & set(sizes):  # it is all there
                     made[...] = variable[...]
             for name, dims in (extra or {}).items():
                 new.createVariable(name, "f8" if dims else "i8", dims, contiguous=True)

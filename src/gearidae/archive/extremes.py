@@ -69,6 +69,8 @@ def extremes_of(run: xr.Dataset) -> Extremes | None:
         return None
     numbers: dict[str, Any] = {}
     for field in fields(Extremes):
+        if field.name == "exposures":  # variables of their own
+            continue
         counts = EXTREMES[field.name].dtype is np.int64
         if field.name in run.variables:
             numbers[field.name] = run[field.name].item()

@@ -278,7 +278,7 @@ class GrowingArchive:
         with netCDF4.Dataset(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():
-                if variable.dimensions and variable.size:
+                if set(variable.dimensions) & {"time", "event"} and variable.size:
                     self._copy(name, variable)
         sync(part)
 

@@ -12,6 +12,7 @@ import numpy as np
 from gearidae.archive.variables import (
     ENERGY_BALANCE,
     EVENTS,
+    EXPOSURES,
     EXTREMES,
     OF_SWEPT_RUN,
     ROLLER_EXTREMES,
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["EVERYTHING", "GROUPS", "Keep", "kept_in", "read_keep"]
 
-GROUPS = ("verdict", "extremes", "statistics", "energy_balance", "scene", "samples", "events")
+GROUPS = ("verdict", "extremes", "statistics", "energy_balance", "scene", "exposures", "samples", "events")
 """Names that stand for several variables, or for one, from the smallest to the largest."""
 _ALWAYS = ("status", "message", "wall_time", *VERDICT)
 _IN_WORDS = ("stick_time", "stick_exits")
@@ -118,10 +119,11 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
         "statistics": tuple(RUN),
         "energy_balance": tuple(ENERGY_BALANCE),
         "scene": ("scene",),
+        "exposures": tuple(EXPOSURES),
         "samples": _columns(scene),
         "events": (*EVENTS, "impacts"),
     }
-    single = (*RUN, *OF_SWEPT_RUN, *extremes, *ENERGY_BALANCE, *_columns(scene), *VERDICT)
+    single = (*RUN, *OF_SWEPT_RUN, *extremes, *ENERGY_BALANCE, *EXPOSURES, *_columns(scene), *VERDICT)
     members |= {name: (name,) for name in single if name not in members}
     names = set(_ALWAYS) | (set(_IN_WORDS) if scene.roller is None else set())
     for name in asked:

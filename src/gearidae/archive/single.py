@@ -10,7 +10,7 @@ import xarray as xr
 
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.select import own_events, run_scene, swept_dims
-from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN, RUN
+from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN, PLACES, RUN
 
 __all__ = ["single_run"]
 
@@ -41,7 +41,7 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     found: dict[str, Any] = {name: ds[name].item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
     reached = found.pop("reached", scene.run.duration)
     energies = {name: float(ds[name]) for name in ENERGY_BALANCE if name in ds}
-    swept = [str(name) for name in ds.coords if name not in ("time", "event", "sam_fraction")]
+    swept = [str(name) for name in ds.coords if name not in ("time", "event", "sam_fraction", *PLACES)]
     gone = {*found, *energies, "reached", *swept, *(f"event_{name}" for name in swept)}
     single = ds.drop_vars([name for name in gone if name in ds.variables])
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")

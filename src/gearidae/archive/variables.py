@@ -20,8 +20,10 @@ from gearidae.records import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES, Even
 __all__ = [
     "ENERGY_BALANCE",
     "EVENTS",
+    "EXPOSURES",
     "EXTREMES",
     "OF_SWEPT_RUN",
+    "PLACES",
     "ROLLER_EXTREMES",
     "RUN",
     "SAMPLES",
@@ -184,6 +186,49 @@ _GEAR_EXTREMES = (
     Variable("time_adhering", (), "s", "time held by adhesion, from one turning back to the next"),
     Variable("mesh_exits", (), "1", "mesh exits on the drive flank", np.int64),
 )
+_FLANKS = ("flank", "tooth", "place")
+_MATERIALS = ("flank", "material", "tooth", "place")
+_OF_PINION = "per area of the pinion's flank; a contact on the tip relief counts at the end of the path"
+_EXPOSURES = (
+    Variable(
+        "asperity_contacts",
+        _MATERIALS,
+        "m-2",
+        "asperity contacts made on a material, per area of it",
+        comment=_OF_PINION,
+    ),
+    Variable(
+        "adhesion_work",
+        _MATERIALS,
+        "J m-2",
+        "energy lost to adhesion on a material, per area of it",
+        comment=_OF_PINION,
+    ),
+    Variable(
+        "sliding_work",
+        _FLANKS,
+        "J m-2",
+        "normal force times sliding distance of contacts that push, per area",
+        comment=_OF_PINION,
+    ),
+    Variable(
+        "largest_pressure",
+        _FLANKS,
+        "Pa",
+        "largest force of a pair over face width and sqrt(2 R sigma)",
+        comment="nominal: the asperities share it",
+    ),
+)
+_PLACES = (
+    Variable("place", ("place",), "m", "place along the path of contact, from its beginning at the pinion"),
+    Variable("flank_area", ("place",), "m2", "area of one flank of the pinion that a place stands for"),
+    Variable("tooth", ("tooth",), "1", "tooth of the pinion; that in mesh at the start is 0", np.int64),
+    Variable("material", ("material",), "1", "material of the flanks", np.str_),
+    Variable("flank", ("flank",), "1", "flank of the teeth", np.str_),
+)
+EXPOSURES: Mapping[str, Variable] = {variable.name: variable for variable in _EXPOSURES}
+PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACES}
+"""What the exposures are labelled by."""
 ENERGY_BALANCE: Mapping[str, Variable] = {variable.name: variable for variable in _ENERGY_BALANCE}
 ROLLER_EXTREMES: Mapping[str, Variable] = {variable.name: variable for variable in _FORCE_EXTREMES}
 EXTREMES: Mapping[str, Variable] = {
@@ -213,4 +258,6 @@ def by_name() -> dict[str, Variable]:
         **VERDICT,
         **ENERGY_BALANCE,
         **EXTREMES,
+        **EXPOSURES,
+        **PLACES,
     }

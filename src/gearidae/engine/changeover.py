@@ -10,6 +10,7 @@ from gearidae.engine.elastic.histories import book_points, init_nodes
 from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
 from gearidae.engine.elastic.static_solve import SETTLED, settle_nodes
 from gearidae.engine.energy.balance import carry_balance
+from gearidae.engine.model.checkpoint import exposures_of
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 
@@ -111,6 +112,13 @@ def take_over(source: Model, m: Model) -> None:
     for coast, h in histories:
         if h.pair != EMPTY:
             assign(m.state.history[coast * own + (int(h.pair) & (own - 1))], h)
+    carry_exposures(source, m)
+
+
+def carry_exposures(source: Model, m: Model) -> None:
+    """Take over what the flanks have been exposed to, if the new model keeps as many places; else it begins anew."""
+    if source.scene.exposures == m.scene.exposures:
+        exposures_of(m)[:] = exposures_of(source)
 
 
 def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
@@ -136,6 +144,7 @@ def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     m.rows[m.scene.node_rows_at : m.scene.error_weights_at] = source.rows[
         source.scene.node_rows_at : source.scene.error_weights_at
     ]
+    carry_exposures(source, m)
     y = state.copy()
     _interpolate(source, state, m, y)
     settle_nodes(m, time, y)

@@ -20,10 +20,12 @@ import numpy as np
 from gearidae.engine.changeover import carry_nodes, join_anew, join_as_pairs, note_gaps, take_over
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.contacts import stored_energy
+from gearidae.engine.energy.exposures import QUANTITIES
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.build import Begin, make_problem
+from gearidae.engine.model.checkpoint import exposures_of
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import (
     EMPTY,
@@ -136,10 +138,14 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     units.convert_motion(old_y, y)
     take_over(source, m)
     units.convert_state(m.state)
+    changed = _materials(source) != _materials(m)
+    if changed:  # what other materials have been exposed to says nothing of these
+        exposures_of(m)[:] = 0.0
+    else:
+        units.convert_exposures(m)
     same = float(source.scene.time_unit) == float(m.scene.time_unit)
     time = float(source.state.time) if same else float(m.scene.start)
     m.state.time = time
-    changed = _materials(source) != _materials(m)
     _carry_contacts(old, old_y, new, y, changed=changed)
     _begin_stretch(m)
     _hold_or_slip(source, m, time, y)
@@ -200,6 +206,11 @@ class _Units:
         new[:motion] = old[:motion]
         for place in (V, W) if motion == 4 else (V,):
             new[place] = old[place] * self.speed
+
+    def convert_exposures(self, m: Model) -> None:
+        """Put what the flanks have been exposed to into the new units, in place; numbers of asperities have none."""
+        if m.scene.places:
+            exposures_of(m).reshape(-1, QUANTITIES, int(m.scene.places))[:, MATERIALS:] *= self.energy
 
     def convert_state(self, s: Record) -> None:
         """Put a state into the new units, in place."""

@@ -176,6 +176,10 @@ class Extremes:
         Smallest distance of the flanks [m], of elastic ones with their deflection.
     final_speed : float
         Speed of the gear [rad/s] or the roller [m/s] where the run stands.
+    exposures : tuple of float
+        What the flanks have been exposed to, in the order flank, tooth of the pinion, quantity, place: for each
+        material asperities joined over those of a unit contact length, for each the energy they lost [J], sliding work
+        [J], largest force over contact length [N]. Empty if ``run.exposures`` is 0.
     """
 
     min_gear_speed: float
@@ -200,3 +204,4 @@ class Extremes:
     smallest_mesh_force_time: float
     smallest_separation: float
     final_speed: float
+    exposures: tuple[float, ...] = ()

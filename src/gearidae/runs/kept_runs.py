@@ -205,9 +205,16 @@ def _read(path: Path, key: str) -> tuple[Solution, str, int]:
         header["message"],
         header["reached"],
         None if header["balance"] is None else EnergyBalance(**header["balance"]),
-        None if header.get("extremes") is None else Extremes(**header["extremes"]),
+        _extremes(header.get("extremes")),
     )
     return solution, str(header["judged"]["verdict"]), int(header["judged"]["impacts"])
+
+
+def _extremes(numbers: dict[str, Any] | None) -> Extremes | None:
+    """Read extremes back; JSON has no tuples."""
+    if numbers is None:
+        return None
+    return Extremes(**{**numbers, "exposures": tuple(numbers.get("exposures", ()))})
 
 
 def _checksum(header: str, *tables: np.ndarray[Any, np.dtype[np.float64]]) -> str:

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group
 from gearidae.scene.knots import Time
-from gearidae.scene.quantity import Quantity, Sampling
+from gearidae.scene.quantity import Count, Quantity, Sampling
 
 __all__ = ["Initial", "Roller", "Run"]
 
@@ -71,6 +71,10 @@ class Run(Group):
         description="bdf: IDA's own formulas, iteration and root search throughout; auto: Adams' where they are better",
     )
 
+    exposures: Annotated[int, Count(at_least=0, at_most=1000)] = Field(
+        default=0,
+        description="places along the flank at which contacts, adhesion and sliding work are kept; 0 for none",
+    )
     stop: Annotated[str, BeforeValidator(_read_stop)] = Field(
         default="time", description="what ends the run before its time: sticks, or turns N of the gear"
     )

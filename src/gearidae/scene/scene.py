@@ -22,6 +22,7 @@ from gearidae.scene.torque import Drive, Load
 __all__ = ["Scene", "describe_key", "describe_keys"]
 
 _GEAR_TABLES = ("gears", "mesh", "drive", "load", "initial")
+_MOST_PLACES = 20_000  # on all teeth of the pinion: exposures are part of every checkpoint
 _DEEPEST_OVERLAP = 8.0  # rms roughnesses that the mean planes may overlap at the start
 
 
@@ -98,6 +99,8 @@ class Scene(Group):
                 )
             if self.run.stop != "time":
                 raise SceneError("run.stop", self.run.stop, "must be time in a scene with a roller")
+            if self.run.exposures != 0:
+                raise SceneError("run.exposures", self.run.exposures, "must be 0 in a scene with a roller")
             return self
         for table in ("gears", "mesh", "drive", "initial"):
             if table not in given:
@@ -131,6 +134,12 @@ class Scene(Group):
                 "initial.gap",
                 initial.gap,
                 f"must lie in {-overlap:.4g}..{mesh.backlash + overlap:.4g} m, or flanks would overlap",
+            )
+        if gears.pinion_teeth * self.run.exposures > _MOST_PLACES:
+            raise SceneError(
+                "run.exposures",
+                self.run.exposures,
+                f"must be {_MOST_PLACES // gears.pinion_teeth} at most for {gears.pinion_teeth} teeth of the pinion",
             )
         check_gaps(self)
         check_reach(self)

@@ -6,17 +6,15 @@ that uses it, before scenes are made that name it.
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
-from importlib import import_module
 from typing import Any, Final, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.errors import SceneError
+from gearidae.registry import Registry
 
 __all__ = [
     "MOST_PARAMETERS",
@@ -54,7 +52,7 @@ class TorqueLaw:
     parameters: int
 
 
-_LAWS: dict[str, TorqueLaw] = {}
+_LAWS: Final = Registry[TorqueLaw]("gearidae.torques", "law.name", "torque law")
 
 
 def register_torque(name: str, *, parameters: int = 0) -> Callable[[Law], Law]:
@@ -103,9 +101,7 @@ def register_torque(name: str, *, parameters: int = 0) -> Callable[[Law], Law]:
         raise SceneError("parameters", parameters, f"must be a whole number in 0..{MOST_PARAMETERS}")
 
     def register(function: Law) -> Law:
-        if name in _LAWS:
-            raise SceneError("law.name", name, "is the name of another torque law already")
-        _LAWS[name] = TorqueLaw(name, function, parameters)
+        _LAWS.add(name, TorqueLaw(name, function, parameters))
         return function
 
     return register
@@ -123,13 +119,12 @@ def unregister_torque(name: str) -> None:
     SceneError
         If there is no such law.
     """
-    del _LAWS[torque_law(name).name]
+    _LAWS.remove(name)
 
 
 def torque_names() -> tuple[str, ...]:
     """Return the names of all torque laws, in the order of the alphabet."""
-    _find_laws()
-    return tuple(sorted(_LAWS))
+    return _LAWS.names()
 
 
 def torque_law(name: str) -> TorqueLaw:
@@ -148,16 +143,4 @@ def torque_law(name: str) -> TorqueLaw:
     SceneError
         If there is no such law.
     """
-    _find_laws()
-    law = _LAWS.get(name) if isinstance(name, str) else None
-    if law is None:
-        raise SceneError("law.name", name, "must be one of " + ", ".join(torque_names()))
-    return law
-
-
-@cache
-def _find_laws() -> None:
-    """Import the files of this folder, which register what they hold."""
-    package = __name__.rpartition(".")[0]
-    for module in pkgutil.iter_modules(import_module(package).__path__):
-        import_module(f"{package}.{module.name}")
+    return _LAWS.find(name)

@@ -7,10 +7,7 @@ that uses it, before scenes are made that name it.
 from __future__ import annotations
 
 import math
-import pkgutil
-from functools import cache
-from importlib import import_module
-from typing import TypeVar
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,12 +15,13 @@ from numpy.typing import ArrayLike
 from gearidae.contact.asperities.base import AsperityLaw, Floats
 from gearidae.contact.tip import Asperity, Surface, asperity_of, make_tip
 from gearidae.errors import SceneError
+from gearidae.registry import Registry
 
 __all__ = ["asperity", "asperity_load", "law_names", "law_of", "law_of_tip", "register", "unregister"]
 
 Law = TypeVar("Law", bound=type[AsperityLaw])
 
-_LAWS: dict[str, type[AsperityLaw]] = {}
+_LAWS: Final = Registry[type[AsperityLaw]]("gearidae.contact.asperities", "contact.asperity", "asperity law")
 
 
 def register(law: Law) -> Law:
@@ -43,9 +41,7 @@ def register(law: Law) -> Law:
     SceneError
         If another law has this name already.
     """
-    if law.name in _LAWS:
-        raise SceneError("contact.asperity", law.name, "is the name of another asperity law already")
-    _LAWS[law.name] = law
+    _LAWS.add(law.name, law)
     return law
 
 
@@ -61,13 +57,12 @@ def unregister(name: str) -> None:
     SceneError
         If there is no such law.
     """
-    del _LAWS[_known(name).name]
+    _LAWS.remove(name)
 
 
 def law_names() -> tuple[str, ...]:
     """Return the names of all laws, in the order of the alphabet."""
-    _find_laws()
-    return tuple(sorted(_LAWS))
+    return _LAWS.names()
 
 
 def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
@@ -91,7 +86,7 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
     SceneError
         If there is no such law.
     """
-    return _known(name).of(tip, unit)
+    return _LAWS.find(name).of(tip, unit)
 
 
 def law_of(name: str, surface: Surface) -> AsperityLaw:
@@ -174,20 +169,3 @@ def asperity_load(displacement: ArrayLike, asperity: Asperity, law: str = "jkr")
         If there is no such law.
     """
     return np.asarray(asperity.hertz_factor * law_of_tip(law, asperity, 1.0).load(displacement))
-
-
-@cache
-def _find_laws() -> None:
-    """Import the files of this folder, which register what they hold."""
-    package = __name__.rpartition(".")[0]
-    for module in pkgutil.iter_modules(import_module(package).__path__):
-        import_module(f"{package}.{module.name}")
-
-
-def _known(name: str) -> type[AsperityLaw]:
-    """Look a law up."""
-    _find_laws()
-    law = _LAWS.get(name) if isinstance(name, str) else None
-    if law is None:
-        raise SceneError("contact.asperity", name, "must be one of " + ", ".join(law_names()))
-    return law

@@ -33,6 +33,7 @@ __all__ = [
     "JOIN",
     "JOINING_LOSS",
     "LENGTH_FORCE",
+    "NUMBER",
     "QUESTION",
     "RATES",
     "RESIDUAL",
@@ -45,6 +46,7 @@ __all__ = [
     "node_residual",
     "nodes_joining_loss",
     "nodes_length_force",
+    "nodes_number",
     "nodes_stored",
     "service",
 ]
@@ -58,6 +60,7 @@ JOIN: Final = 5
 STORED: Final = 6
 JOINING_LOSS: Final = 7
 LENGTH_FORCE: Final = 8
+NUMBER: Final = 9
 
 
 @cache
@@ -181,3 +184,9 @@ def nodes_length_force(
 ) -> tuple[float, float]:
     """See `gearidae.engine.elastic.energy.nodes_length_force`."""
     return _ask(m.work.elastic_service, m, Question(LENGTH_FORCE, k, 1, t, gap, rate, length), y, y)
+
+
+@compiled
+def nodes_number(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
+    """See `gearidae.engine.elastic.energy.nodes_number`; the material is asked for in the place of a flag."""
+    return _ask(m.work.elastic_service, m, Question(NUMBER, k, material, 0.0, gap, 0.0, 0.0), y, y)[0]

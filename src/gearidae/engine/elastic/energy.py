@@ -23,6 +23,7 @@ from __future__ import annotations
 import numpy as np
 
 from gearidae.compiled import compiled
+from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.nodes import farthest_joined, node_force, pressure_shares
@@ -40,7 +41,7 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 
-__all__ = ["nodes_joining_loss", "nodes_length_force", "nodes_stored"]
+__all__ = ["nodes_joining_loss", "nodes_length_force", "nodes_number", "nodes_stored"]
 
 
 @compiled(makes_arrays=True)
@@ -120,3 +121,16 @@ def nodes_length_force(
         change += 2.0 * weights[i] * bend[i] * moved[i]
     scale = 0.5 * length / m.scene.length_half_range
     return energy - scale * bodies, -(push + scale * change) * rate
+
+
+@compiled(makes_arrays=True)
+def nodes_number(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
+    """Asperities of a material in contact per length, over their density."""
+    finer, gaps = point_weights(m), np.empty(m.scene.points)
+    point_gaps(m, k, y, gap, gaps)
+    own, heights = m.scene.material[material], row(m, k, JOINED + material)
+    number = 0.0
+    for i in range(gaps.size):
+        height = joined_height(heights[i], gaps[i], own.stretch_limit)
+        number += finer[i] * loading_value(m.tables, own.number_at, height)[0]
+    return number

@@ -9,7 +9,12 @@ from numba.np.numpy_support import from_dtype
 
 from gearidae.compiled import compiled_callback
 from gearidae.engine.elastic import calls, histories, nodes
-from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_length_force, nodes_stored
+from gearidae.engine.elastic.energy import (
+    nodes_joining_loss,
+    nodes_length_force,
+    nodes_number,
+    nodes_stored,
+)
 from gearidae.engine.model.state import SCENE, STATE, WORK, Model
 
 __all__ = ["answer"]
@@ -52,5 +57,7 @@ def answer(  # type: ignore[no-untyped-def]
         two[0] = nodes_stored(m, k, t, y, gap, rate, length)
     elif kind == calls.JOINING_LOSS:
         two[0] = nodes_joining_loss(m, k, y, gap)
+    elif kind == calls.NUMBER:
+        two[0] = nodes_number(m, k, y, gap, known)
     else:
         two[0], two[1] = nodes_length_force(m, k, t, y, gap, rate, length)

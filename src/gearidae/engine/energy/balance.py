@@ -33,6 +33,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.energy.contacts import stored_energy
+from gearidae.engine.energy.exposures import begin_exposures
 from gearidae.engine.energy.motion import kinetic_energy
 from gearidae.engine.energy.quadrature import (
     Ends,
@@ -90,6 +91,7 @@ def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q.drive, q.drive_rate = _torque(m, DRIVE, t, q.pinion_speed, q.pinion_acceleration)
     q.load, q.load_rate = _torque(m, LOAD, t, y[W], yp[W])
     sample_radius_power(m, t, y)
+    begin_exposures(m, t, y, yp)
 
 
 @compiled(inline=True)

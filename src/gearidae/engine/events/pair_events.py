@@ -12,6 +12,7 @@ from gearidae.contact.history import joined_height
 from gearidae.engine.elastic.calls import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.energy.adhesion import book_joining
+from gearidae.engine.energy.exposures import expose_turning
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.model.tooth_pairs import gap_and_rate, set_joined
@@ -76,6 +77,8 @@ def handle_pair(
             h.fully_stretched[material] = 1
             count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
     if h.direction != 0.0 and h.direction * rate <= 0.0:
+        if m.scene.places > 0:
+            expose_turning(m, t, y, coast, pair, k)
         _turn_round(m, y, coast, pair, k, gap)
         count = record(m, events, count, t, _TURNING_POINT, pair, coast, rate)
     return count

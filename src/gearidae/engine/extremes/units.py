@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, Record, V, W
+from gearidae.engine.energy.exposures import PRESSURE, QUANTITIES
+from gearidae.engine.model.checkpoint import exposures_of
+from gearidae.engine.model.state import MATERIALS, PHASE, ROLLER, Floats, Model, Record, V, W
 from gearidae.records import Extremes
 
 __all__ = ["extremes_in_si"]
@@ -54,7 +56,19 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         **_standstill(e, tau, time, place),
         mesh_exits=int(e.mesh_exits),
         reversals=int(e.reversals),
+        exposures=_exposures(m),
     )
+
+
+def _exposures(m: Model) -> tuple[float, ...]:
+    """What the flanks have been exposed to; see `gearidae.records.Extremes`."""
+    if m.scene.places == 0:
+        return ()
+    force, length = float(m.scene.force_unit), float(m.scene.length_unit)
+    table = exposures_of(m).reshape(-1, QUANTITIES, int(m.scene.places)).copy()
+    table[:, MATERIALS:PRESSURE] *= force * length
+    table[:, PRESSURE] *= force
+    return tuple(table.ravel().tolist())
 
 
 _NO_GEAR: Final[dict[str, Any]] = dict.fromkeys(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.energy.adhesion import follow_joining
 from gearidae.engine.energy.balance import accumulate_energy
+from gearidae.engine.energy.exposures import follow_exposures
 from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
@@ -107,11 +108,15 @@ def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floa
             time, state, rates = start + (t - start) * part / parts, between[0], between[1]
             adams.between(a, time, state, rates)
         accumulate_energy(m, time, state, rates, now or part < parts)
+    if m.scene.places > 0 and m.work.quadrature.time == t:
+        follow_exposures(m, t, y, yp)
 
 
 @compiled
 def prepare_restart(m: Model, y: Floats, yp: Floats) -> None:
     """Close the energy balance's interval and move whole pitches out of the phase, before a start from here."""
     accumulate_energy(m, m.work.driver.time, y, yp, True)
+    if m.scene.places > 0:
+        follow_exposures(m, m.work.driver.time, y, yp)
     rebase(m, y)
     m.state.progress.restarts += 1

@@ -13,6 +13,7 @@ from gearidae.engine.elastic.calls import service
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.balance import open_balance
+from gearidae.engine.energy.exposures import QUANTITIES
 from gearidae.engine.events.histories import begin
 from gearidae.engine.model.build_contact import Nodes, add_contact, add_nodes, choose_model
 from gearidae.engine.model.build_torques import add_torques, reference_force, set_run, set_stop
@@ -112,6 +113,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     speed = sigma / float(s.time_unit)
     _set_geometry(s, geometry, mesh.tip_relief_radius)
     s.half_backlash = 0.5 * mesh.backlash / sigma
+    s.places = scene.run.exposures
     s.radius_force = int(mesh.radius_force)
     s.damping = mesh.damping * speed / float(s.force_unit)
     s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)
@@ -255,6 +257,8 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.branches_at = rows.add(np.zeros(4 * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
+    s.exposures = 2 * int(s.pinion_teeth) * QUANTITIES * int(s.places)
+    s.exposures_at = rows.add(np.zeros(int(s.exposures)))
     return blank_model(s, tables.whole(), rows.whole().size)
 
 

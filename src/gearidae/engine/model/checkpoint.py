@@ -1,8 +1,8 @@
 """Checkpoints: the state of a run as one vector of words, taken back once it has been checked.
 
-A checkpoint holds state only: a header (layout, scene, contact model, sizes), the record ``STATE``, the state vector
-and, of an elastic contact, what its nodes remember. Constants, offsets and addresses are made from the scene by the
-process that resumes, never read, and so is what follows from the state. Every number is compared with what the scene
+A checkpoint holds state only: a header (layout, scene, contact model, sizes), the record ``STATE``, the state vector,
+of an elastic contact what its nodes remember, and the exposures of the flanks where they are kept. Constants, offsets
+and addresses are made from the scene by the process that resumes, never read, and so is what follows from the state. Every number is compared with what the scene
 allows (`gearidae.engine.model.checkpoint_checks`) before anything runs.
 """
 
@@ -23,10 +23,10 @@ from gearidae.engine.model.checkpoint_checks import (
 )
 from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, empty_history
 
-__all__ = ["HEADER", "depth_of", "exceeded", "pack", "scene_digest", "unpack"]
+__all__ = ["HEADER", "depth_of", "exceeded", "exposures_of", "pack", "scene_digest", "unpack"]
 
 HEADER: Final = 8
-"""Words in front of the state: layout, scene (four), contact model, states, words of node rows."""
+"""Words in front of the state: layout, scene (four), contact model, states, words of node rows and exposures."""
 
 _LAYOUT: Final = int(hashlib.sha256(repr((STATE.descr, KEPT_ROWS)).encode()).hexdigest()[:8], 16)
 _WORDS: Final = STATE.itemsize // 8
@@ -57,7 +57,7 @@ def pack(m: Model, digest: tuple[float, ...], depth: int, y: Floats) -> Floats:
     state = np.array([m.state])[0]
     histories = state.history
     histories[histories["pair"] == EMPTY] = empty_history()
-    rows = kept_rows(m)
+    rows = np.concatenate([kept_rows(m), exposures_of(m)])
     header = [float(_LAYOUT), *digest, float(depth), float(y.size), float(rows.size)]
     return np.concatenate([header, np.frombuffer(state.tobytes(), np.float64), y, rows])
 
@@ -99,7 +99,8 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
     SceneError
         If a number is none that a run of this scene could have left.
     """
-    count = kept_rows(m).size
+    nodes = kept_rows(m).size
+    count = nodes + int(m.scene.exposures)
     if checkpoint.size != HEADER + _WORDS + y.size + count or tuple(checkpoint[6:HEADER]) != (
         float(y.size),
         float(count),
@@ -109,8 +110,10 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
     state = _state_of(checkpoint)
     # copies: compiled functions take arrays that may be written only
     vector, rows = checkpoint[ends[1] : ends[2]].copy(), checkpoint[ends[2] :].copy()
+    rows, exposures = rows[:nodes], rows[nodes:]
     require(bool(np.isfinite(vector).all()), "the state vector", "finite numbers")
     require(bool(np.isfinite(rows).all()), "the nodes", "finite numbers")
+    require(bool((exposures >= 0.0).all() and (exposures < 1e100).all()), "the exposures", "finite sums")
     check_state(m, state, vector)
     check_histories(m, state, vector)
     fault = check_rows(m, state, vector, rows, current_pairs(m, state, vector))
@@ -118,6 +121,12 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
     assign(m.state, state)
     y[:] = vector
     restore_rows(m, rows)
+    exposures_of(m)[:] = exposures
+
+
+def exposures_of(m: Model) -> Floats:
+    """Return the exposures of the flanks among a model's rows; writable."""
+    return m.rows[m.scene.exposures_at : m.scene.exposures_at + m.scene.exposures]
 
 
 def exceeded(checkpoint: Floats) -> bool:

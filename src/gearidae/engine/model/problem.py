@@ -10,9 +10,11 @@ import numpy as np
 
 from gearidae.engine.energy.adhesion import joining_lag
 from gearidae.engine.energy.balance import BALANCE, balance_at
+from gearidae.engine.energy.exposures import close_exposures_at
 from gearidae.engine.extremes.follow import note_present
 from gearidae.engine.extremes.units import extremes_in_si
 from gearidae.engine.model import checkpoint as checkpoints
+from gearidae.engine.model.checkpoint import exposures_of
 from gearidae.engine.model.state import (
     DRIVE,
     ENERGY,
@@ -158,7 +160,15 @@ class Problem:
 
     def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance, Extremes]:
         """Return all that is kept of the run up to an accepted time: `balance` and `extremes`."""
-        return self.balance(time, state, rates), self.extremes(time, state)
+        balance, m = self.balance(time, state, rates), self.model
+        if m.scene.places == 0:
+            return balance, self.extremes(time, state)
+        # intervals are not to be split by a look at what they have added up to
+        rows, exposed, begun = exposures_of(m).copy(), m.work.exposed.copy(), float(m.work.exposure_time)
+        close_exposures_at(self.located.place, time, state, rates)
+        found = self.extremes(time, state)
+        exposures_of(m)[:], m.work.exposed[:], m.work.exposure_time = rows, exposed, begun
+        return balance, found
 
     def extremes(self, time: float, state: Floats) -> Extremes:
         """The extremes of the run up to an accepted time.

@@ -107,6 +107,10 @@ SCENE: Final = record_type(
     ("shares_at", INT),
     ("node_rows_at", INT),  # where the pairs' nodes begin among the rows
     ("node_row_length", INT),  # numbers of one pair's nodes there
+    # what flanks are exposed to
+    ("places", INT),  # along the path of contact; 0 if it is not asked for
+    ("exposures_at", INT),  # among the rows
+    ("exposures", INT),  # numbers there
     # the run
     ("states", INT),
     ("scale_at", INT),  # what an error of 1 means for each state, among the tables

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from typing import Final
 
-from gearidae.engine.model.record_types import INT, MOST_ORDERS, MOTION, REAL, SCHEDULES, record_type
+from gearidae.engine.model.record_types import (
+    INT,
+    MATERIALS,
+    MOST_ORDERS,
+    MOTION,
+    REAL,
+    SCHEDULES,
+    SLOTS_HIGH,
+    record_type,
+)
 
 __all__ = [
     "ADAMS",
     "DRIVER",
+    "EXPOSED",
     "POINT",
     "QUADRATURE",
     "RESISTANCE",
@@ -117,10 +127,22 @@ TRACK: Final = record_type(  # of the extremes
     ("next_part", REAL),  # time at which the coming part of the run begins
 )
 
+EXPOSED: Final = record_type(  # a pair at the end of the last interval of the exposures
+    ("known", INT),  # whether it was near: see `gearidae.engine.energy.exposures`
+    ("pair", INT),
+    ("place", REAL),  # along the path of contact, in pitches
+    ("front", REAL, (MATERIALS,)),  # asperities in contact, over their density
+    ("power", REAL),  # force times sliding speed, and its rate
+    ("power_rate", REAL),
+)
+
 WORK: Final = record_type(
     ("quadrature", QUADRATURE),
     ("resistance", RESISTANCE),
     ("track", TRACK),
+    ("exposure_time", REAL),  # end of the last interval of the exposures
+    ("exposure_begun", INT),  # 0 before the first
+    ("exposed", EXPOSED, (2 * SLOTS_HIGH,)),
     ("adams", ADAMS),
     ("search", SEARCH),
     ("driver", DRIVER),

@@ -1,0 +1,125 @@
+"""What the flanks have been exposed to: sums of the engine as variables per area, over tooth and place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.archive.variables import EXPOSURES, PLACES
+from gearidae.records import Solution
+from gearidae.scene import MATERIAL_NAMES, Scene
+
+__all__ = ["FLANKS", "exposure_coordinates", "exposure_variables", "flank_areas"]
+
+Floats = NDArray[np.float64]
+
+FLANKS = ("drive", "coast")
+
+
+def flank_areas(scene: Scene) -> Floats:
+    """Areas of one flank of the pinion that the places stand for.
+
+    Along the path of contact the contact moves on the involute by ``rho / R1`` of its way, rho being the pinion's
+    radius of curvature.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of gears, with ``run.exposures`` above 0.
+
+    Returns
+    -------
+    ndarray, shape (places,)
+        Square metres.
+    """
+    assert scene.gears is not None
+    geometry = scene.geometry
+    edges = _edges(scene)
+    tangent = geometry.base_radius_pinion * math.tan(scene.gears.pressure_angle)
+    radius = tangent - geometry.approach + edges
+    return np.asarray(scene.gears.face_width * np.diff(radius**2) / (2.0 * geometry.base_radius_pinion))
+
+
+def _edges(scene: Scene) -> Floats:
+    """Edges of the places along the path of contact [m]."""
+    geometry = scene.geometry
+    return np.linspace(0.0, geometry.contact_ratio * geometry.base_pitch, scene.run.exposures + 1)
+
+
+def exposure_coordinates(scene: Scene) -> dict[Hashable, Any]:
+    """Make the coordinates of the exposures; none if the scene asks for none."""
+    if scene.run.exposures == 0 or scene.gears is None:
+        return {}
+    edges = _edges(scene)
+    values: dict[str, Any] = {
+        "place": 0.5 * (edges[1:] + edges[:-1]),
+        "flank_area": flank_areas(scene),
+        "tooth": np.arange(scene.gears.pinion_teeth),
+        "material": np.array(MATERIAL_NAMES),
+        "flank": np.array(FLANKS),
+    }
+    return {name: (PLACES[name].dims, value, PLACES[name].attributes) for name, value in values.items()}
+
+
+def exposure_variables(
+    scene: Scene,
+    scenes: Sequence[Scene],
+    solutions: Sequence[Solution],
+    dims: tuple[str, ...] = (),
+    shape: tuple[int, ...] = (),
+) -> dict[Hashable, Any]:
+    """Make the variables of the runs' exposures.
+
+    Parameters
+    ----------
+    scene : Scene
+        That the runs were derived from.
+    scenes : sequence of Scene
+        Of each run.
+    solutions : sequence of Solution
+        One a run.
+    dims, shape : tuple, optional
+        Swept dimensions and their lengths.
+
+    Returns
+    -------
+    dict
+        Name to dimensions, values and attributes; NaN where a run produced nothing. Empty if the scene asks for none,
+        or the runs do not have the same places.
+    """
+    places = {(each.run.exposures, each.gears and each.gears.pinion_teeth) for each in (scene, *scenes)}
+    if scene.run.exposures == 0 or len(places) > 1 or all(each.extremes is None for each in solutions):
+        return {}
+    parts = [_per_area(own, each) for own, each in zip(scenes, solutions, strict=True)]
+    made: dict[Hashable, Any] = {}
+    for name, variable in EXPOSURES.items():
+        values = np.stack([part[name] for part in parts])
+        made[name] = ((*dims, *variable.dims), values.reshape(*shape, *values.shape[1:]), variable.attributes)
+    return made
+
+
+def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
+    """Exposures of one run, per area of the pinion's flanks."""
+    assert scene.gears is not None
+    teeth, places, count = scene.gears.pinion_teeth, scene.run.exposures, len(MATERIAL_NAMES)
+    shape = (len(FLANKS), teeth, 2 * count + 2, places)
+    if solution.extremes is None or len(solution.extremes.exposures) != math.prod(shape):
+        table = np.full(shape, math.nan)
+    else:
+        table = np.array(solution.extremes.exposures).reshape(shape)
+    area = flank_areas(scene)
+    geometry, surface, width = scene.geometry, scene.surface, scene.gears.face_width
+    unit = math.sqrt(2.0 * geometry.base_pitch * surface.roughness)  # of a contact of unit length
+    shares = np.array([each.share for each in scene.materials()])[:, None, None]
+    by_material = table.swapaxes(1, 2)
+    lost = by_material[:, count : 2 * count] / area
+    return {
+        "asperity_contacts": surface.asperity_density * width * unit * by_material[:, :count] / area,
+        "adhesion_work": np.divide(lost, shares, out=np.zeros_like(lost), where=shares > 0.0),
+        "sliding_work": table[:, :, 2 * count] / area,
+        "largest_pressure": table[:, :, 2 * count + 1] / (width * unit),
+    }

@@ -1,0 +1,96 @@
+"""What a loss law is: the rate at which coverage is lost, from what a flank is exposed to in one passage."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.errors import SceneError
+from gearidae.scene.quantity import Quantity
+
+__all__ = ["Exposure", "LossLaw", "parameter"]
+
+Floats: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Exposure:
+    """What places of the flanks are exposed to when a tooth passes through mesh once; arrays of one shape.
+
+    Attributes
+    ----------
+    contacts : ndarray
+        Asperity contacts made on coated flank, per area of it [1/m^2].
+    adhesion_work : ndarray
+        Energy lost to adhesion on coated flank, per area of it [J/m^2].
+    sliding_work : ndarray
+        Normal force times sliding distance, per area [J/m^2].
+    pressure : ndarray
+        Largest nominal pressure [Pa].
+    """
+
+    contacts: Floats
+    adhesion_work: Floats
+    sliding_work: Floats
+    pressure: Floats
+
+
+def parameter(unit: str, description: str, **limits: Any) -> Any:
+    """Declare a parameter of a law, with its SI unit, its meaning and its limits (as `Quantity` has them)."""
+    quantity = Quantity(unit=unit, **({"at_least": 0.0} | limits))
+    return field(metadata={"quantity": quantity, "description": description})
+
+
+@dataclass(frozen=True)
+class LossLaw(ABC):
+    """A law of how a coating is lost; its fields are its parameters, declared with `parameter`.
+
+    Parameters may be given as texts with a unit.
+
+    Attributes
+    ----------
+    name : str
+        What the law is called.
+    source : str
+        Where it comes from, and what is known of its parameters.
+
+    Raises
+    ------
+    SceneError
+        If a parameter is none.
+    """
+
+    name: ClassVar[str]
+    source: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        """Read the parameters."""
+        for each in fields(self):
+            if "quantity" not in each.metadata:
+                continue
+            value = getattr(self, each.name)
+            try:
+                number = each.metadata["quantity"].read(value)
+            except ValueError as error:
+                raise SceneError(f"{self.name}.{each.name}", value, str(error)) from None
+            object.__setattr__(self, each.name, number)
+
+    @abstractmethod
+    def rate(self, fraction: Floats, exposure: Exposure) -> Floats:
+        """Return what one passage adds to the coverage (it is negative).
+
+        Parameters
+        ----------
+        fraction : ndarray
+            Share of each place that is covered [1].
+        exposure : Exposure
+            Of one passage, in the same shape.
+        """
+
+    def describe(self) -> dict[str, Any]:
+        """Return name and parameters, ready for JSON."""
+        return {"name": self.name, **{each.name: getattr(self, each.name) for each in fields(self)}}

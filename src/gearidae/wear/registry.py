@@ -1,0 +1,80 @@
+"""The loss laws by their names: what ``gearidae life --law`` may say."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, Final, TypeVar
+
+from gearidae.errors import SceneError
+from gearidae.registry import Registry
+from gearidae.wear.base import LossLaw
+
+__all__ = ["loss_law", "loss_law_names", "register_loss", "unregister_loss"]
+
+Law = TypeVar("Law", bound=type[LossLaw])
+
+_LAWS: Final = Registry[type[LossLaw]]("gearidae.wear", "law", "loss law")
+
+
+def register_loss(law: Law) -> Law:
+    """Make a loss law known by its name; a decorator of its class.
+
+    Raises
+    ------
+    SceneError
+        If another law has this name already.
+    """
+    _LAWS.add(law.name, law)
+    return law
+
+
+def unregister_loss(name: str) -> None:
+    """Take a law out again.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    _LAWS.remove(name)
+
+
+def loss_law_names() -> tuple[str, ...]:
+    """Return the names of all loss laws, in the order of the alphabet."""
+    return _LAWS.names()
+
+
+def loss_law(name: str, **parameters: Any) -> LossLaw:
+    """Make a loss law with its parameters.
+
+    Parameters
+    ----------
+    name : str
+        One of `loss_law_names`.
+    **parameters
+        SI numbers, or texts with a unit.
+
+    Returns
+    -------
+    LossLaw
+
+    Raises
+    ------
+    SceneError
+        If there is no such law, or its parameters are others.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> gd.wear.loss_law("adhesion_work", energy="2 J/m^2").energy
+    2.0
+    """
+    kind = _LAWS.find(name)
+    known = {each.name: each for each in fields(kind)}
+    for key, value in parameters.items():
+        if key not in known:
+            raise SceneError(f"{name}.{key}", value, "is no parameter of it; it takes " + ", ".join(known))
+    for key, each in known.items():
+        if key not in parameters:
+            raise SceneError(f"{name}.{key}", "(missing)", f"is required: {each.metadata['description']}")
+    return kind(**parameters)

@@ -1,0 +1,34 @@
+"""Loss by sliding: Archard's law on coverage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from gearidae.wear.base import Exposure, Floats, LossLaw, parameter
+from gearidae.wear.registry import register_loss
+
+__all__ = ["SlidingWork"]
+
+
+@register_loss
+@dataclass(frozen=True)
+class SlidingWork(LossLaw):
+    r"""Coverage lost in proportion to the sliding work: :math:`df/dN = -k\,w_s` as long as there is a coating.
+
+    Archard's law removes a depth ``K w_s / H``; of a coating of thickness t this is the share ``k = K / (H t)`` for each unit
+    of work per area, with the wear coefficient K and the hardness H.
+    """
+
+    name: ClassVar[str] = "sliding_work"
+    source: ClassVar[str] = (
+        "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988, doi:10.1063/1.1721448; K/H of monolayers has to be measured"
+    )
+
+    coefficient: float = parameter("m^2/J", "coverage lost for each unit of sliding work per area, k")
+
+    def rate(self, fraction: Floats, exposure: Exposure) -> Floats:
+        """See `LossLaw.rate`."""
+        return np.asarray(np.where(fraction > 0.0, -self.coefficient * exposure.sliding_work, 0.0))
