@@ -21,10 +21,9 @@ class SlowGears:
 
     def __init__(self, scene):
         self.scene, self.geometry = scene, scene.geometry
-        share = scene.coating.sam_fraction
         self.materials = [
-            (surface, part, asperity_of(surface).stretch_limit)
-            for surface, part in ((scene.surface, 1 - share), (scene.coated_surface, share))
+            (surface, part, asperity_of(surface).stretch_limit, offset)
+            for surface, part, offset, _ in scene.materials()
             if part > 0
         ]
         self.pairs = (0, -1)
@@ -48,7 +47,7 @@ class SlowGears:
         self.joined = {} if fresh else self.joined
         for pair in self.pairs:
             gap, _, _ = self.gap(pair, u, angle)
-            for m, (_, _, limit) in enumerate(self.materials):
+            for m, (_, _, limit, _) in enumerate(self.materials):
                 before = gap if fresh else self.joined[pair, m]
                 self.joined[pair, m] = min(max(before, gap - limit), gap)
 
@@ -60,10 +59,10 @@ class SlowGears:
             if gap > 12 * self.scene.surface.roughness:
                 continue
             radius = float(curvature_radii(self.geometry, xi)[2])
-            for m, (surface, part, limit) in enumerate(self.materials):
+            for m, (surface, part, limit, offset) in enumerate(self.materials):
                 joined = min(max(self.joined[pair, m], gap - limit), gap)
                 width = self.scene.gears.face_width
-                load = part * float(line_force(gap, gap - joined, radius, width, surface))
+                load = part * float(line_force(gap + offset, gap - joined, radius, width, surface))
                 force += load
                 relief += load * slope
         return force, relief

@@ -224,6 +224,7 @@ def _materials(m: Model) -> list[tuple[float, ...]]:
             float(own.force_scale * m.scene.force_unit),
             float(own.stretch_limit),
             float(own.joining_energy),
+            float(own.gap_offset),
         )
         for own in m.scene.material
     ]

@@ -261,7 +261,10 @@ def _force(
     total = np.zeros_like(gap)
     for name, law in laws.items():
         total += law.scale * np.array(
-            [law_value(law.table, g, z)[0] for g, z in zip(gap / sigma, joined[name] / sigma, strict=True)]
+            [
+                law_value(law.table, g + law.offset, z + law.offset)[0]
+                for g, z in zip(gap / sigma, joined[name] / sigma, strict=True)
+            ]
         )
     return np.sqrt(2.0 * radius * sigma) * total
 

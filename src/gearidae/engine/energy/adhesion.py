@@ -122,7 +122,7 @@ def _loss(m: Model, k: int, y: Floats, gap: float) -> tuple[float, float]:
     for material in range(MATERIALS):
         own = m.scene.material[material]
         if own.stretch_limit > 0.0 and (m.scene.nodes > 0 or gap < m.state.history[k].joined[material]):
-            number, slope = loading_value(m.tables, own.number_at, gap)
+            number, slope = loading_value(m.tables, own.number_at, gap + own.gap_offset)
             joining = own.joining_energy * own.force_scale
             lost += joining * number
             loss += joining * number + own.force_scale * m.state.history[k].adhered_energy[material]

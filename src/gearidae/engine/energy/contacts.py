@@ -24,23 +24,23 @@ def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
     """Energy of a pair's stretched asperities beyond the loading branch, per length, and its slope in the gap."""
     energy = slope = 0.0
     for material in range(MATERIALS):
-        limit = m.scene.material[material].stretch_limit
+        own = m.scene.material[material]
+        limit, scale, offset = own.stretch_limit, own.force_scale, own.gap_offset
         if limit == 0.0:
             continue
-        scale = m.scene.material[material].force_scale
         stretch = gap - m.state.history[k].joined[material]
         if stretch <= 0.0:
             energy += scale * m.state.history[k].adhered_energy[material]
             continue
-        table = m.tables[m.scene.material[material].energy_at :]
-        joined = m.state.history[k].joined[material]
+        table = m.tables[own.energy_at :]
+        joined = m.state.history[k].joined[material] + offset
         if stretch < limit and m.scene.branch_length > 0 and branch_length(table) > 0:
             branch = m.rows[energy_branch(m, k, material) :]
             if branch[B_PIECES] == 0.0:
                 set_branch(table, joined, branch)
             e, de = branch_value(branch, stretch)
         else:
-            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap, joined)
+            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap + offset, joined)
         energy += scale * e
         slope += scale * de
     return energy, slope
@@ -90,6 +90,6 @@ def joining_loss(m: Model, k: int, gap: float) -> float:
     for material in range(MATERIALS):
         own = m.scene.material[material]
         if own.stretch_limit > 0.0 and gap < h.joined[material]:
-            number = loading_value(m.tables, own.number_at, gap)[0]
+            number = loading_value(m.tables, own.number_at, gap + own.gap_offset)[0]
             loss += own.force_scale * (own.joining_energy * number + h.adhered_energy[material])
     return loss

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearidae.contact.asperities import law_of
-from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table
+from gearidae.contact.kernels.energy import energy_table, joining_energy, loading_pieces, number_table
 from gearidae.contact.kernels.law import (
     GAP_HIGH,
     GAP_LOW,
@@ -96,8 +96,9 @@ def add_contact(
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
     longest = 0
-    for material, (surface, share) in enumerate(scene.materials()):
+    for material, (surface, share, offset, _) in enumerate(scene.materials()):
         own, tip = s.material[material], asperity_of(surface)
+        own.gap_offset = offset / surface.roughness
         law = law_of(scene.contact.asperity, surface)
         check_reach(law, surface.roughness)
         table = law_table(law, kernel).copy() if share > 0.0 else np.zeros(HEADER)
@@ -110,10 +111,11 @@ def add_contact(
         own.number_at = tables.add(number_table(kernel, law.join))
         longest = max(longest, branch_length(table))
         if share > 0.0:
-            loading += force * table[HEADER : HEADER + loading.size]
-            potential += force * energy[HEADER : HEADER + potential.size]
+            push, stored = loading_pieces(law, kernel, float(own.gap_offset))
+            loading += force * push
+            potential += force * stored
             for floor, gap in reach.items():
-                reach[floor] = max(gap, _outermost(table, force * widest, floor))
+                reach[floor] = max(gap, _outermost(table, force * widest, floor) - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
     s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
     s.branch_length = 0 if s.nodes > 0 else longest

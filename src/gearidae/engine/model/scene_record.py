@@ -21,6 +21,7 @@ __all__ = [
 
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # per sqrt(radius / pitch), with the material's share of the surface
+    ("gap_offset", REAL),  # by which its gap is wider than that of the pair, over sigma
     ("stretch_limit", REAL),  # over sigma; 0 where there is no hysteresis worth following
     ("joining_energy", REAL),  # energy lost by an asperity at contact onset, in the unit of `force_scale`
     ("table_at", INT),  # where its force law and its stored energy begin among the tables,
