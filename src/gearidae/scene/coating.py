@@ -22,14 +22,17 @@ from __future__ import annotations
 import math
 from typing import Annotated, Final, Literal, NamedTuple, Self
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
 from gearidae.errors import SceneError
-from gearidae.scene.group import Group
+from gearidae.scene.coating_table import FractionTable, path_means
+from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.surface import Energy, Surface
 
-__all__ = ["MATERIAL_NAMES", "THICKEST", "Coating", "Material", "materials_of"]
+__all__ = ["MATERIAL_NAMES", "THICKEST", "Coating", "Material", "interface_shares", "materials_of"]
 
 MATERIAL_NAMES: Final = ("bare", "coated", "mixed")
 """Names of the materials that an interface may have, in the order of `Scene.materials`."""
@@ -37,6 +40,9 @@ MATERIAL_NAMES: Final = ("bare", "coated", "mixed")
 THICKEST: Final = 3.0
 """Largest thickness of a monolayer, in roughnesses: beyond, what is bare touches nothing, and tables lose digits."""
 
+_RECESSES: Final = {"bare": 2.0, "coated": 0.0, "mixed": 1.0}  # thicknesses by which gaps are wider
+
+Floats = NDArray[np.float64]
 Fraction = Annotated[float, Quantity(unit="1", at_least=0, at_most=1)]
 OptionalFraction = Annotated[float | None, Quantity(unit="1", at_least=0, at_most=1)]
 
@@ -81,23 +87,83 @@ class Coating(Group):
         default=None, description="share of the gear's flanks that is covered; sam_fraction if not given"
     )
 
+    pinion_table: FractionTable = Field(
+        default=(), description="that share by tooth and place: a list of teeth, each a list along the flank"
+    )
+    gear_table: FractionTable = Field(
+        default=(), description="the same of the gear, its places along the path of contact as the pinion's"
+    )
+
     @model_validator(mode="after")
     def _one_fraction_of_patches(self) -> Self:
-        """Refuse fractions of either side where covered patches meet covered ones."""
+        """Refuse fractions of either side where covered patches meet covered ones, and two of one side."""
         for key in ("pinion_fraction", "gear_fraction"):
-            value = getattr(self, key)
+            value, table = getattr(self, key), key.replace("fraction", "table")
             if self.pairing == "patches" and value is not None:
                 raise SceneError(
                     key, value, 'needs coating.pairing = "independent": patches have sam_fraction alone'
                 )
+            if value is not None and getattr(self, table):
+                raise SceneError(key, value, f"cannot be given beside {table}: choose one of the two")
+        if self.pairing == "patches" and self.gear_table:
+            raise SceneError(
+                "gear_table",
+                shorten(self.gear_table),
+                'needs coating.pairing = "independent": patches have pinion_table alone, the share of the interface',
+            )
         return self
 
     @property
+    def by_place(self) -> bool:
+        """Whether fractions change with tooth and place."""
+        return bool(self.pinion_table or self.gear_table)
+
+    @property
+    def tables(self) -> tuple[tuple[tuple[float, ...], ...], ...]:
+        """Tables of the pinion and the gear, of one row and place for a side without one."""
+        sides = ((self.pinion_table, self.pinion_fraction), (self.gear_table, self.gear_fraction))
+        return tuple(
+            table or ((self.sam_fraction if fraction is None else fraction,),) for table, fraction in sides
+        )
+
+    @property
     def fractions(self) -> tuple[float, float]:
-        """Covered shares of the pinion's and the gear's flanks (of a roller and its plane) [1]."""
-        sides = (self.pinion_fraction, self.gear_fraction)
-        first, second = (self.sam_fraction if side is None else side for side in sides)
-        return first, second
+        """Covered shares of the pinion's and the gear's flanks (of a roller and its plane) [1]; means of tables."""
+        return path_means(*self.tables)[:2]
+
+
+def interface_shares(pairing: str, first: ArrayLike, second: ArrayLike) -> dict[str, Floats]:
+    """Shares of the materials where two flanks meet.
+
+    Parameters
+    ----------
+    pairing : {"patches", "independent"}
+    first, second : array_like
+        Covered fractions of both sides [1]; of patches the first counts.
+
+    Returns
+    -------
+    dict of str to ndarray
+        By the names of `MATERIAL_NAMES`, without the mixed material for patches.
+    """
+    f, g = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    if pairing == "patches":
+        return {"bare": 1.0 - f, "coated": f}
+    return {"bare": (1.0 - f) * (1.0 - g), "coated": f * g, "mixed": f * (1.0 - g) + g * (1.0 - f)}
+
+
+def _mean_shares(coating: Coating) -> dict[str, float]:
+    """Shares of the materials, of tables the means over teeth and path."""
+    if not coating.by_place:
+        first, second = (table[0][0] for table in coating.tables)
+        return {
+            name: float(share) for name, share in interface_shares(coating.pairing, first, second).items()
+        }
+    first, second, both = path_means(*coating.tables)
+    if coating.pairing == "patches":
+        return {"bare": 1.0 - first, "coated": first}
+    bare = max(1.0 - first - second + both, 0.0)
+    return {"bare": bare, "coated": both, "mixed": max(first + second - 2.0 * both, 0.0)}
 
 
 def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
@@ -112,26 +178,20 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
     Returns
     -------
     tuple of Material
-        In the order of `MATERIAL_NAMES`, mixed with independent sides only; shares add up to 1.
+        In the order of `MATERIAL_NAMES`, mixed with independent sides only; shares add up to 1. Those of fractions by
+        tooth and place are means over all teeth that meet and along the path of contact.
     """
-    thickness, (first, second) = coating.thickness, coating.fractions
-
-    def material(name: str, energy: float, share: float, layers: float) -> Material:
-        own = surface if name == "bare" else surface.model_copy(update={"energy": energy})
-        return Material(own, share, layers * thickness, name)
-
-    if coating.pairing == "patches":
-        return (
-            material("bare", surface.energy, 1.0 - coating.sam_fraction, 2.0),
-            material("coated", coating.energy, coating.sam_fraction, 0.0),
+    energies = {
+        "bare": surface.energy,
+        "coated": coating.energy,
+        "mixed": math.sqrt(coating.energy * surface.energy),
+    }
+    return tuple(
+        Material(
+            surface if name == "bare" else surface.model_copy(update={"energy": energies[name]}),
+            share,
+            _RECESSES[name] * coating.thickness,
+            name,
         )
-    return (
-        material("bare", surface.energy, (1.0 - first) * (1.0 - second), 2.0),
-        material("coated", coating.energy, first * second, 0.0),
-        material(
-            "mixed",
-            math.sqrt(coating.energy * surface.energy),
-            first * (1.0 - second) + second * (1.0 - first),
-            1.0,
-        ),
+        for name, share in _mean_shares(coating).items()
     )

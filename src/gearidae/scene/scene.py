@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.coating import Coating, Material, materials_of
+from gearidae.scene.coating_table import check_tables
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
@@ -23,6 +24,13 @@ from gearidae.scene.torque import Drive, Load
 __all__ = ["Scene", "describe_key", "describe_keys"]
 
 _GEAR_TABLES = ("gears", "mesh", "drive", "load", "initial")
+_NOTHING_IF_EMPTY = (
+    ("drive", "schedule"),
+    ("load", "schedule"),
+    ("run", "checkpoints"),
+    ("coating", "pinion_table"),
+    ("coating", "gear_table"),
+)
 _DEEPEST_OVERLAP = 8.0  # rms roughnesses that the mean planes may overlap at the start
 
 
@@ -91,6 +99,7 @@ class Scene(Group):
         given = [table for table in _GEAR_TABLES if getattr(self, table) is not None]
         check_stretch(self)
         check_thickness(self)
+        check_tables(self)
         if self.roller is not None:
             if given:
                 raise SceneError(
@@ -213,7 +222,7 @@ class Scene(Group):
             ``Scene.from_dict`` makes an equal scene of it, to the last bit.
         """
         data: dict[str, Any] = self.model_dump(mode="json", exclude_none=True)
-        for table, key in (("drive", "schedule"), ("load", "schedule"), ("run", "checkpoints")):
+        for table, key in _NOTHING_IF_EMPTY:
             if table in data and not data[table][key]:
                 del data[table][key]
         return data

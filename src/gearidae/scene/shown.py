@@ -178,7 +178,7 @@ def value_text(key: str, value: object) -> str:
         In SI.
     """
     if isinstance(value, (list, tuple)):
-        return _knots(value)
+        return _list(key, value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return str(value)
     unit = describe_key(key).unit
@@ -191,7 +191,9 @@ def value_text(key: str, value: object) -> str:
     return f"{value:.6g} {unit}"
 
 
-def _knots(value: list[Any] | tuple[Any, ...]) -> str:
+def _list(key: str, value: list[Any] | tuple[Any, ...]) -> str:
+    if value and isinstance(value[0], (list, tuple)) and key.endswith("_table"):
+        return f"{len(value)} rows of {len(value[0])}"
     if value and isinstance(value[0], (list, tuple)):
         first, last = value[0][0], value[-1][0]
         return f"{len(value)} knots from {with_prefix(first, 's')} to {with_prefix(last, 's')}"

@@ -239,7 +239,11 @@ def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
     errors = scene.mesh.static_error
     numbers = [x for h in errors for x in (h.order, h.amplitude / float(s.length_unit), h.phase)]
     s.error_count, s.error_at = len(errors), tables.add(numbers)
-    order = max((h.order for h in errors), default=0)
+    order: float = max((h.order for h in errors), default=0)
+    # two places of a table are half a period
+    places = max(len(table[0]) for table in scene.coating.tables)
+    if places > 1:
+        order = max(order, 0.5 * places / float(s.contact_ratio) * float(s.pinion_teeth))
     s.mesh_omega = 2.0 * math.pi * max(1.0, order / float(s.pinion_teeth))
 
 

@@ -24,6 +24,7 @@ from gearidae.contact.kernels.law import (
     set_branch,
     stretched_value,
 )
+from gearidae.engine.model.coverage import Shares, loading_of
 from gearidae.engine.model.state import (
     COAST,
     DRIVE,
@@ -191,13 +192,14 @@ def in_flight(m: Model) -> bool:
 
 @compiled(inline=True)
 def pair_force(
-    m: Model, k: int, known: bool, t: float, gap: float, rate: float, inside: float
+    m: Model, k: int, known: bool, t: float, gap: float, rate: float, inside: float, shares: Shares
 ) -> tuple[float, float]:
     """Force of one pair and its slope in the gap, scaled, with the pair's own history, the k-th.
 
-    Within a step that has turned the pair round, the history first goes through the turning point.
+    `shares` are those of the materials there, from `gearidae.engine.model.coverage.shares_of`. Within a step that has
+    turned the pair round, the history first goes through the turning point.
     """
-    force, slope = loading_value(m.tables, m.scene.loading_at, gap)
+    force, slope = loading_of(m, gap, shares)
     if known:
         h = m.state.history[k]
         turned = h.direction * rate < 0.0
@@ -222,8 +224,9 @@ def pair_force(
             else:
                 offset = own.gap_offset
                 q, dq = stretched_value(m.tables[own.table_at :], gap + offset, joined + offset)
-            force += own.force_scale * q
-            slope += own.force_scale * dq
+            scale = own.force_scale * shares[material]
+            force += scale * q
+            slope += scale * dq
     if m.scene.kind == ROLLER:
         return force, slope
     length = contact_length(m, inside)
