@@ -134,7 +134,7 @@ def _limits(scene: Scene, gaps: Floats, radii: Floats, width: float) -> tuple[Fl
     low, high, size = np.zeros_like(gaps), np.zeros_like(gaps), np.zeros_like(gaps)
     near = gaps < 14.0 * scene.surface.roughness
     law = scene.contact.asperity
-    for surface, share in scene.materials():
+    for surface, share, _, _ in scene.materials():
         if share == 0.0 or not near.any():
             continue
         unit = share * np.sqrt(radii[near])

@@ -1,7 +1,7 @@
 """Laws by their names: what a scene or a study may call, one file a law in a folder of its own.
 
-Asperity laws, torque laws and loss laws each have such a registry. Every file of the folder that registers a law is found
-by itself; a law from elsewhere is registered in each process that uses it.
+Asperity laws, torque laws and loss laws each have such a registry. Every file of the folder that registers a law is
+found by itself; a law from elsewhere is registered in each process that uses it.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ MUTANTS = (
         "SAM fraction taken for the bare one",
         "engine/model/build_contact.py",
         "enumerate(scene.materials())",
-        "enumerate([(s, 1.0 - f) for s, f in scene.materials()])",
+        "enumerate([(s, 1.0 - f, o, n) for s, f, o, n in scene.materials()])",
         IMPACT,
     ),
     Mutant(

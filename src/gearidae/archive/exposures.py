@@ -59,7 +59,7 @@ def exposure_coordinates(scene: Scene) -> dict[Hashable, Any]:
         "place": 0.5 * (edges[1:] + edges[:-1]),
         "flank_area": flank_areas(scene),
         "tooth": np.arange(scene.gears.pinion_teeth),
-        "material": np.array(MATERIAL_NAMES),
+        "material": np.array([each.name for each in scene.materials()]),
         "flank": np.array(FLANKS),
     }
     return {name: (PLACES[name].dims, value, PLACES[name].attributes) for name, value in values.items()}
@@ -91,7 +91,10 @@ def exposure_variables(
         Name to dimensions, values and attributes; NaN where a run produced nothing. Empty if the scene asks for none,
         or the runs do not have the same places.
     """
-    places = {(each.run.exposures, each.gears and each.gears.pinion_teeth) for each in (scene, *scenes)}
+    places = {
+        (each.run.exposures, each.gears and each.gears.pinion_teeth, len(each.materials()))
+        for each in (scene, *scenes)
+    }
     if scene.run.exposures == 0 or len(places) > 1 or all(each.extremes is None for each in solutions):
         return {}
     parts = [_per_area(own, each) for own, each in zip(scenes, solutions, strict=True)]
@@ -114,11 +117,16 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     area = flank_areas(scene)
     geometry, surface, width = scene.geometry, scene.surface, scene.gears.face_width
     unit = math.sqrt(2.0 * geometry.base_pitch * surface.roughness)  # of a contact of unit length
-    shares = np.array([each.share for each in scene.materials()])[:, None, None]
+    materials = scene.materials()
+    shares = np.array([1.0 if scene.coating.by_place else each.share for each in materials])[:, None, None]
     by_material = table.swapaxes(1, 2)
-    lost = by_material[:, count : 2 * count] / area
+    lost = by_material[:, count : count + len(materials)] / area
     return {
-        "asperity_contacts": surface.asperity_density * width * unit * by_material[:, :count] / area,
+        "asperity_contacts": surface.asperity_density
+        * width
+        * unit
+        * by_material[:, : len(materials)]
+        / area,
         "adhesion_work": np.divide(lost, shares, out=np.zeros_like(lost), where=shares > 0.0),
         "sliding_work": table[:, :, 2 * count] / area,
         "largest_pressure": table[:, :, 2 * count + 1] / (width * unit),

@@ -16,14 +16,17 @@ from typing import TYPE_CHECKING, Any
 import netCDF4
 import numpy as np
 
+from gearidae.archive import check_target
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
+from gearidae.engine import choose_backend
+from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["KeptRuns", "folder_beside"]
+__all__ = ["KeptRuns", "folder_beside", "kept_beside"]
 
 _LAYOUT = 3
 """Version of the files' layout."""
@@ -142,6 +145,35 @@ class KeptRuns:
         if not self.folder.is_dir():
             return []
         return [path for path in self.folder.iterdir() if _OURS.fullmatch(path.name)]
+
+
+def kept_beside(
+    archive: str | os.PathLike[str] | None, scene: Scene, backend: str, *, overwrite: bool, resume: bool
+) -> KeptRuns | None:
+    """Where the finished runs of a search are kept until its archive is written; None without an archive.
+
+    Raises
+    ------
+    SceneError
+        If there are runs of a search that was cut off and neither `overwrite` nor `resume` is wanted, or there is
+        nothing to resume.
+    """
+    if archive is None:
+        if resume:
+            raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
+        return None
+    kept = KeptRuns(
+        check_target(Path(archive), overwrite=overwrite or resume), scene, choose_backend(backend)
+    )
+    if kept.count() and overwrite:
+        kept.remove()
+    elif kept.count() and not resume:
+        allowed = (
+            f"is of a search that was cut off, {kept.count()} of its runs are in {kept.folder.name}: "
+            "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)"
+        )
+        raise SceneError("archive", archive, allowed)
+    return kept
 
 
 def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> None:

@@ -14,12 +14,12 @@ __all__ = ["AdhesionWork"]
 @register_loss
 @dataclass(frozen=True)
 class AdhesionWork(LossLaw):
-    r"""Energy per area that removes a coating by all but 1/e: :math:`df/dN = -f\,w / Q`, w the adhesion work per area."""
+    r"""Energy per area that leaves 1/e of a coating: :math:`df/dN = -f\,w / Q`, w the adhesion work per area."""
 
     name: ClassVar[str] = "adhesion_work"
     source: ClassVar[str] = (
-        "energy description of wear, S. Fouvry, T. Liskiewicz, Ph. Kapsa, S. Hannel and E. Sauger, Wear 255 (2003) 287-298, "
-        "doi:10.1016/S0043-1648(03)00117-0; the energy is not known for monolayers: give it, or fit it to a life"
+        "energy description of wear, S. Fouvry, T. Liskiewicz, Ph. Kapsa, S. Hannel and E. Sauger, Wear 255 (2003) "
+        "287-298, doi:10.1016/S0043-1648(03)00117-0; the energy is not known for monolayers: give it, or fit it to a life"
     )
 
     energy: float = parameter("J/m^2", "adhesion work per area that leaves 1/e of the coating, Q", above=0.0)

@@ -20,14 +20,14 @@ BOLTZMANN = 1.380649e-23
 class Arrhenius(LossLaw):
     r"""Another law times :math:`\exp(-(E_a - p V_a) / k_B T)`, at most times one.
 
-    The pressure p is the largest nominal one of the place; what a single asperity feels is larger by nominal over real area
-    of contact, which the activation volume has to include.
+    The pressure p is the largest nominal one of the place; what a single asperity feels is larger by nominal over real
+    area of contact, which the activation volume has to include.
     """
 
     name: ClassVar[str] = "arrhenius"
     source: ClassVar[str] = (
-        "S. N. Zhurkov, Int. J. Fract. Mech. 1 (1965) 311-323; B. Gotsmann and M. A. Lantz, Phys. Rev. Lett. 101 (2008) "
-        "125501, doi:10.1103/PhysRevLett.101.125501, who found 0.98 eV and 5.5e-29 m^3 for a tip on a polymer"
+        "S. N. Zhurkov, Int. J. Fract. Mech. 1 (1965) 311-323; B. Gotsmann and M. A. Lantz, Phys. Rev. Lett. 101 "
+        "(2008) 125501, doi:10.1103/PhysRevLett.101.125501, who found 0.98 eV and 5.5e-29 m^3 for a tip on a polymer"
     )
 
     law: LossLaw

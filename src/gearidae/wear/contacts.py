@@ -19,8 +19,8 @@ class Contacts(LossLaw):
     name: ClassVar[str] = "contacts"
     source: ClassVar[str] = (
         "mechanochemical attrition, T. D. B. Jacobs and R. W. Carpick, Nature Nanotechnology 8 (2013) 108-112, "
-        "doi:10.1038/nnano.2012.255; the area is that of a contact times the probability that it removes molecules, which is "
-        "not known for monolayers in repeated impacts: give it, or fit it to a life"
+        "doi:10.1038/nnano.2012.255; the area is that of a contact times the probability that it removes "
+        "molecules, which is not known for monolayers in repeated impacts: give it, or fit it to a life"
     )
 
     area: float = parameter("m^2", "area removed by a contact on average", at_most=1.0)

@@ -29,6 +29,7 @@ from gearidae.contact.kernels.layout import (
 )
 
 __all__ = [
+    "blended_value",
     "coefficients",
     "integrated_value",
     "integrated_work",
@@ -93,6 +94,52 @@ def loading_value(table: Floats, offset: int, gap: float) -> tuple[float, float]
     if gap >= GAP_HIGH:
         return 0.0, 0.0
     return _septic(table, offset, gap, GAP_LOW, N_LOADING)
+
+
+@compiled
+def blended_value(
+    table: Floats, offsets: tuple[int, int, int], shares: tuple[float, float, float], gap: float
+) -> tuple[float, float]:
+    """Sum of three loading branches by their shares, and its slope: one polynomial of the sums of the coefficients.
+
+    Parameters
+    ----------
+    table : ndarray
+        Where the branches lie.
+    offsets : tuple of three int
+        Where each begins.
+    shares : tuple of three float
+        By what each is multiplied.
+    gap : float
+        G, gap over roughness [1].
+    """
+    if gap >= GAP_HIGH:
+        return 0.0, 0.0
+    position = (gap - GAP_LOW) * KNOTS_PER_SIGMA
+    j = min(max(int(position), 0), N_LOADING - 1)
+    u = position - j
+    a, b, c = shares
+    first, second, third = (
+        np.uintp(offsets[0] + 8 * j),
+        np.uintp(offsets[1] + 8 * j),
+        np.uintp(offsets[2] + 8 * j),
+    )
+    sums = (
+        a * table[first] + b * table[second] + c * table[third],
+        a * table[first + _A1] + b * table[second + _A1] + c * table[third + _A1],
+        a * table[first + _A2] + b * table[second + _A2] + c * table[third + _A2],
+        a * table[first + _A3] + b * table[second + _A3] + c * table[third + _A3],
+        a * table[first + _A4] + b * table[second + _A4] + c * table[third + _A4],
+        a * table[first + _A5] + b * table[second + _A5] + c * table[third + _A5],
+        a * table[first + _A6] + b * table[second + _A6] + c * table[third + _A6],
+        a * table[first + _A7] + b * table[second + _A7] + c * table[third + _A7],
+    )
+    f, d = value_and_slope(sums, u)
+    d *= KNOTS_PER_SIGMA
+    if gap > 0.0:
+        decay = math.exp(-0.5 * gap * gap)
+        return f * decay, (d - gap * f) * decay
+    return f, d
 
 
 @compiled(inline=True)

@@ -7,6 +7,7 @@ from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_stored
+from gearidae.engine.model.coverage import Shares, potential_of, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     all_pairs,
@@ -21,27 +22,27 @@ __all__ = ["free_energy", "joined_energy", "joining_loss", "stored_energy"]
 
 
 @compiled
-def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
+def joined_energy(m: Model, k: int, gap: float, shares: Shares) -> tuple[float, float]:
     """Energy of a pair's stretched asperities beyond the loading branch, per length, and its slope in the gap."""
     energy = slope = 0.0
     for material in range(MATERIALS):
-        limit = m.scene.material[material].stretch_limit
-        if limit == 0.0:
+        own = m.scene.material[material]
+        limit, scale, offset = own.stretch_limit, own.force_scale * shares[material], own.gap_offset
+        if limit == 0.0 or scale == 0.0:
             continue
-        scale = m.scene.material[material].force_scale
         stretch = gap - m.state.history[k].joined[material]
         if stretch <= 0.0:
             energy += scale * m.state.history[k].adhered_energy[material]
             continue
-        table = m.tables[m.scene.material[material].energy_at :]
-        joined = m.state.history[k].joined[material]
+        table = m.tables[own.energy_at :]
+        joined = m.state.history[k].joined[material] + offset
         if stretch < limit and m.scene.branch_length > 0 and branch_length(table) > 0:
             branch = m.rows[energy_branch(m, k, material) :]
             if branch[B_PIECES] == 0.0:
                 set_branch(table, joined, branch)
             e, de = branch_value(branch, stretch)
         else:
-            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap, joined)
+            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap + offset, joined)
         energy += scale * e
         slope += scale * de
     return energy, slope
@@ -68,7 +69,7 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
         k = history_of(m, coast, pair)
-        gap, rate, length = y[U], y[V], 1.0
+        gap, rate, length, inside = y[U], y[V], 1.0, 0.0
         if m.scene.kind == GEARS:
             gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
             length = contact_length(m, inside)
@@ -78,26 +79,30 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
             stored += length * nodes_stored(m, k, m.state.time, y, gap, rate, length)
             pending += length * nodes_joining_loss(m, k, y, gap)
             continue
-        energy, _ = joined_energy(m, k, gap)
-        stored += length * (loading_value(m.tables, m.scene.potential_at, gap)[0] + energy)
-        pending += length * joining_loss(m, k, gap)
+        shares = shares_of(m, coast, pair, inside)
+        energy, _ = joined_energy(m, k, gap, shares)
+        stored += length * (potential_of(m, gap, shares) + energy)
+        pending += length * joining_loss(m, k, gap, shares)
     return stored, pending
 
 
 @compiled
-def joining_loss(m: Model, k: int, gap: float) -> float:
+def joining_loss(m: Model, k: int, gap: float, shares: Shares) -> float:
     """Adhesion loss per length of the asperities that came into contact since the last turning point."""
     loss, h = 0.0, m.state.history[k]
     for material in range(MATERIALS):
         own = m.scene.material[material]
         if own.stretch_limit > 0.0 and gap < h.joined[material]:
-            number = loading_value(m.tables, own.number_at, gap)[0]
-            loss += own.force_scale * (own.joining_energy * number + h.adhered_energy[material])
+            number = loading_value(m.tables, own.number_at, gap + own.gap_offset)[0]
+            scale = own.force_scale * shares[material]
+            loss += scale * (own.joining_energy * number + h.adhered_energy[material])
     return loss
 
 
 @compiled
-def free_energy(m: Model, k: int, known: bool, t: float, gap: float, rate: float) -> tuple[float, float]:
+def free_energy(
+    m: Model, k: int, known: bool, t: float, gap: float, rate: float, shares: Shares
+) -> tuple[float, float]:
     """Free energy of a pair of rigid bodies per length, and its slope in the gap.
 
     It is what `stored_energy` adds up less what is pending: zero where nothing is in contact, and for an asperity at
@@ -114,25 +119,36 @@ def free_energy(m: Model, k: int, known: bool, t: float, gap: float, rate: float
         Time over tau.
     gap, rate : float
         The pair's gap and gap rate.
+    shares : tuple of float
+        See `gearidae.engine.model.coverage.shares_of`.
     """
     h = m.state.history[k]
-    energy, slope = loading_value(m.tables, m.scene.potential_at, gap)
+    energy = slope = 0.0
+    if m.scene.by_place == 0:
+        energy, slope = loading_value(m.tables, m.scene.potential_at, gap)
     turned = known and h.direction * rate < 0.0
     turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate) if turned else gap
     for material in range(MATERIALS):
-        own = m.scene.material[material]
+        own, offset = m.scene.material[material], m.scene.material[material].gap_offset
+        scale = own.force_scale * shares[material]
+        if scale == 0.0:
+            continue
+        if m.scene.by_place != 0:
+            stored, push = loading_value(m.tables, own.potential_at, gap)
+            energy += shares[material] * stored
+            slope += shares[material] * push
         if own.stretch_limit == 0.0:
             continue
         joined = h.joined[material] if known else gap
         if turned:
             joined = joined_height(joined, turning_gap, own.stretch_limit)
-        number, falling = loading_value(m.tables, own.number_at, min(gap, joined))
+        number, falling = loading_value(m.tables, own.number_at, min(gap, joined) + offset)
         adhered = -own.joining_energy * number
         if gap <= joined:
-            energy += own.force_scale * adhered
-            slope -= own.force_scale * own.joining_energy * falling
+            energy += scale * adhered
+            slope -= scale * own.joining_energy * falling
             continue
-        e, de = stretched_energy(m.tables[own.energy_at :], adhered, gap, joined)
-        energy += own.force_scale * e
-        slope += own.force_scale * de
+        e, de = stretched_energy(m.tables[own.energy_at :], adhered, gap + offset, joined + offset)
+        energy += scale * e
+        slope += scale * de
     return energy, slope

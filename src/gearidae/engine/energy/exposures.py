@@ -5,7 +5,8 @@ For both flanks of every tooth of the pinion and every place along the path of c
 - asperities that have come into contact, :math:`\int \ell\, d\Psi` for each material. What a contact has joined at an
   accepted time is :math:`\Psi(\zeta)`, with the play operator's joined height :math:`\zeta` there; all turning points
   are accepted times, so that nothing is missed between them;
-- the energy that they have lost by it, in the proportion of the energy balance;
+- the energy that they have lost by it, in the proportion of the energy balance (where shares change with tooth and
+  place, as if the material covered everything);
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
   times the distance from the pitch point. It is integrated over the intervals of the energy balance;
 - the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the ends of these intervals and at turning points.
@@ -21,6 +22,7 @@ from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import node_force, nodes_number
 from gearidae.engine.energy.quadrature import integral
+from gearidae.engine.model.coverage import shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
@@ -111,7 +113,7 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     if gap < m.scene.cutoff:
         length = contact_length(m, inside)
         _join(m, y, coast, pair, k, gap, inside, 0.5 * (length + contact_length(m, own.place)))
-        force, _ = _force(m, k, t, y, gap, rate, inside)
+        force, _ = _force(m, coast, pair, k, t, y, gap, rate, inside)
         _note_pressure(m, coast, pair, inside, force / length)
 
 
@@ -145,7 +147,7 @@ def _follow_pair(
         _join(m, y, coast, pair, k, gap, inside, 0.5 * (length + contact_length(m, own.place)))
     else:
         _note_front(m, y, k, gap)
-    force, stiffness = _force(m, k, t, y, gap, rate, inside)
+    force, stiffness = _force(m, coast, pair, k, t, y, gap, rate, inside)
     speed, speed_rate = _sliding_speed(m, coast, y, yp, inside)
     power = force * abs(speed)
     power_rate = stiffness * rate * abs(speed) + (force * speed_rate if speed > 0.0 else -force * speed_rate)
@@ -175,12 +177,12 @@ def _pushing(h: float, power0: float, rate0: float, power1: float, rate1: float)
 
 @compiled
 def _force(
-    m: Model, k: int, t: float, y: Floats, gap: float, rate: float, inside: float
+    m: Model, coast: int, pair: int, k: int, t: float, y: Floats, gap: float, rate: float, inside: float
 ) -> tuple[float, float]:
     """Force of a pair and its slope in the gap."""
     if m.scene.nodes > 0:
         return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
-    return pair_force(m, k, True, t, gap, rate, inside)
+    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, coast, pair, inside))
 
 
 @compiled
@@ -190,7 +192,7 @@ def _front(m: Model, y: Floats, k: int, gap: float, material: int) -> float:
     if m.scene.nodes > 0:
         return nodes_number(m, k, y, gap, material)
     height = joined_height(m.state.history[k].joined[material], gap, own.stretch_limit)
-    return loading_value(m.tables, own.number_at, height)[0]
+    return loading_value(m.tables, own.number_at, height + own.gap_offset)[0]
 
 
 @compiled

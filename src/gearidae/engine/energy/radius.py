@@ -17,13 +17,13 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_length_force
 from gearidae.engine.energy.contacts import free_energy, joined_energy
-from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
+from gearidae.engine.energy.coverage import coverage_power, only
+from gearidae.engine.energy.lengths import length_and_rates, material_lengths
+from gearidae.engine.model.coverage import WHOLE
+from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import history_of
 
-__all__ = ["length_and_rates", "pairs_on_path", "radius_force", "radius_power", "sample_radius_power"]
-
-SHORTEST_SQ = 1e-12
-"""Least square of a contact length: a step that is tried may lead beyond the path, to where there is none."""
+__all__ = ["pairs_on_path", "radius_force", "radius_power", "sample_radius_power"]
 
 
 @compiled
@@ -57,10 +57,15 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
             if m.state.history[k].pair != pair:
                 continue
             length, length_rate, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
+            if m.scene.by_place != 0:
+                own_power, own_rate = coverage_power(m, k, coast, pair, gap, y, w_rate)
+                power += own_power
+                rate += own_rate
+                continue
             if elastic:
                 pull, change = nodes_length_force(m, k, t, y, gap, -sign * y[V], length)
             else:
-                pull, slope = joined_energy(m, k, gap)
+                pull, slope = joined_energy(m, k, gap, WHOLE)
                 pull += potential
                 change = -(slope + push) * sign * y[V]
             power += pull * length_rate
@@ -77,22 +82,6 @@ def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
     between = 0.5 * (m.state.mark_low + m.state.mark_high)
     lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
-
-
-@compiled
-def length_and_rates(
-    m: Model, coast: int, pair: int, phase: float, w: float, w_rate: float
-) -> tuple[float, float, float]:
-    """Contact length of a pair on the path of contact, its rate and the rate of that."""
-    sign = m.scene.phase_rate * (1.0 - 2.0 * coast)
-    curvature = m.scene.sum_curvature
-    # l^2 = r - c r^2 with r the pinion's radius of curvature
-    radius = m.scene.start_radius + (m.scene.coast_phase + pair - phase if coast else phase - pair)
-    length = math.sqrt(max(radius - radius * radius * curvature, SHORTEST_SQ))
-    half = 0.5 - radius * curvature
-    along = sign * w
-    rate = half * along / length
-    return length, rate, (half * sign * w_rate - curvature * along * along - rate * rate) / length
 
 
 @compiled
@@ -126,13 +115,32 @@ def radius_force(
     first, last = pairs_on_path(m, coast)
     if not first <= pair <= last:
         return 0.0, 0.0, 0.0
+    sign = 1.0 - 2.0 * coast
+    if m.scene.by_place != 0:
+        return _force_by_place(m, t, y, coast, pair, k, known, gap, rate)
     length, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], 1.0, 0.0)
     slope = 0.0
     if m.scene.nodes == 0:
-        energy, slope = free_energy(m, k, known, t, gap, rate)
+        energy, slope = free_energy(m, k, known, t, gap, rate, WHOLE)
     elif known:
         energy = nodes_length_force(m, k, t, y, gap, rate, length)[0] - nodes_joining_loss(m, k, y, gap)
     else:
         energy = 0.0  # it has just come within reach
-    sign = 1.0 - 2.0 * coast
     return -energy * stretch, sign * slope * stretch, -energy * bend / m.scene.phase_rate
+
+
+@compiled
+def _force_by_place(
+    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, known: bool, gap: float, rate: float
+) -> tuple[float, float, float]:
+    """Do the same for a pair whose shares change along the path, material by material."""
+    force = force_u = force_phase = 0.0
+    _, stretches, bends = material_lengths(m, coast, pair, y[PHASE], 1.0, 0.0)
+    for material in range(MATERIALS):
+        if stretches[material] == 0.0 and bends[material] == 0.0:
+            continue
+        energy, slope = free_energy(m, k, known, t, gap, rate, only(material))
+        force -= energy * stretches[material]
+        force_u += (1.0 - 2.0 * coast) * slope * stretches[material]
+        force_phase -= energy * bends[material] / m.scene.phase_rate
+    return force, force_u, force_phase

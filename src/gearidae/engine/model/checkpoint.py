@@ -2,8 +2,8 @@
 
 A checkpoint holds state only: a header (layout, scene, contact model, sizes), the record ``STATE``, the state vector,
 of an elastic contact what its nodes remember, and the exposures of the flanks where they are kept. Constants, offsets
-and addresses are made from the scene by the process that resumes, never read, and so is what follows from the state. Every number is compared with what the scene
-allows (`gearidae.engine.model.checkpoint_checks`) before anything runs.
+and addresses are made from the scene by the process that resumes, never read, and so is what follows from the state.
+Every number is compared with what the scene allows (`gearidae.engine.model.checkpoint_checks`) before anything runs.
 """
 
 from __future__ import annotations

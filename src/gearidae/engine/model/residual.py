@@ -7,8 +7,8 @@ surface velocity w,
     phase' - (sigma/pb) w = 0,   w' - a2 (F + Fs - m2) = 0,
 
 with F the sum of the pairs' forces along the line of action and Fs what tip relief adds at the gear (Teodorescu et al.
-2009, Eqs. 1-6, with the tip relief doing work consistently) and, with ``mesh.radius_force``, the changing radius. A gear
-held by dry resistance has w' = 0. A roller has the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic contact
+2009, Eqs. 1-6, with the tip relief doing work consistently) and, with ``mesh.radius_force``, the changing radius. A
+gear held by dry resistance has w' = 0. A roller has the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic contact
 adds the deflections at its nodes, which have no rates: the system is then a DAE of index 1.
 """
 
@@ -18,6 +18,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.calls import node_force, node_residual
 from gearidae.engine.elastic.nodes import mark_out_of_reach
 from gearidae.engine.energy.radius import radius_force
+from gearidae.engine.model.coverage import WHOLE, shares_of
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
@@ -45,7 +46,7 @@ def roller_force(m: Model, t: float, y: Floats) -> tuple[float, float]:
     known = m.state.history[0].pair == 0
     if elastic:
         return node_force(m, 0, known, t, y, height, speed, 1.0)
-    return pair_force(m, 0, known, t, height, speed, 0.0)
+    return pair_force(m, 0, known, t, height, speed, 0.0, WHOLE)
 
 
 @compiled(inline=True)
@@ -77,7 +78,8 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
         if elastic:
             load, stiffness = node_force(m, k, known, t, y, gap, rate, contact_length(m, inside))
         else:
-            load, stiffness = pair_force(m, k, known, t, gap, rate, inside)
+            shares = shares_of(m, coast, pair, inside)
+            load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
         load *= sign
         # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair
         # backwards along its path
