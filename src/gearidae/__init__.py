@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from gearidae.lazy import lazy_names, when_imported
 
 if TYPE_CHECKING:
-    from gearidae import analysis, contact, plot, report, scene, studies, torques
+    from gearidae import analysis, contact, plot, report, scene, studies, torques, wear
     from gearidae.analysis.verdict import outcomes
     from gearidae.archive import open_archive, save
     from gearidae.archive.concat import concat
@@ -56,6 +56,7 @@ __all__ = [
     "torque_names",
     "torques",
     "unregister_torque",
+    "wear",
     "write_report",
 ]
 
@@ -87,6 +88,7 @@ _HOME: dict[str, str | None] = {
     "torque_names": "torques",
     "torques": None,
     "unregister_torque": "torques",
+    "wear": None,
     "write_report": "report",
 }
 

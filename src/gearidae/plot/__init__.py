@@ -11,6 +11,7 @@ from gearidae.lazy import lazy_names
 from gearidae.plot.coating import coating_map, starting_torque
 from gearidae.plot.files import write
 from gearidae.plot.gears import gap, gear_speed, transmission_error
+from gearidae.plot.life import coverage_along_flank, life
 from gearidae.plot.overview import overview
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
@@ -24,10 +25,12 @@ __all__ = [
     "animate_teeth",
     "coating_map",
     "contact_torque",
+    "coverage_along_flank",
     "cycle",
     "gap",
     "gear_speed",
     "impact_spectrum",
+    "life",
     "overview",
     "power_spectrum",
     "roller_force",

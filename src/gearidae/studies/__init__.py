@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from gearidae.runs.validity import validity
     from gearidae.studies.coating_map import coating_map, open_map
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
+    from gearidae.studies.life import life
     from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.sticking_threshold import sticking_threshold
@@ -28,6 +29,7 @@ __all__ = [
     "contact_resonance",
     "doubts",
     "effective_mass",
+    "life",
     "natural_frequency",
     "open_map",
     "resting_gap",
@@ -46,6 +48,7 @@ _HOME = {
     "contact_resonance": "equilibrium",
     "doubts": "gearidae.runs.plausibility",
     "effective_mass": "gearidae.runs.estimates",
+    "life": "life",
     "natural_frequency": "equilibrium",
     "open_map": "coating_map",
     "resting_gap": "gearidae.runs.estimates",

@@ -18,8 +18,8 @@ __all__ = ["SlidingWork"]
 class SlidingWork(LossLaw):
     r"""Coverage lost in proportion to the sliding work: :math:`df/dN = -k\,w_s` as long as there is a coating.
 
-    Archard's law removes a depth ``K w_s / H``; of a coating of thickness t this is the share ``k = K / (H t)`` for each
-    unit of work per area, with the wear coefficient K and the hardness H.
+    Archard's law removes a depth ``K w_s / H``; of a coating of thickness t this is the share ``k = K / (H t)`` for
+    each unit of work per area, with the wear coefficient K and the hardness H.
     """
 
     name: ClassVar[str] = "sliding_work"

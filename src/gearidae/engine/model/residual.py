@@ -8,8 +8,8 @@ surface velocity w,
 
 with F the sum of the pairs' forces along the line of action and Fs what tip relief adds at the gear (Teodorescu et al.
 2009, Eqs. 1-6, with the tip relief doing work consistently) and, with ``mesh.radius_force``, the changing radius. A
-gear held by dry resistance has w' = 0. A roller has the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic contact
-adds the deflections at its nodes, which have no rates: the system is then a DAE of index 1.
+gear held by dry resistance has w' = 0. A roller has the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic
+contact adds the deflections at its nodes, which have no rates: the system is then a DAE of index 1.
 """
 
 from __future__ import annotations

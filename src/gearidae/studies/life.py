@@ -1,0 +1,330 @@
+"""Life of a coating: coverage against passages, by cycle jump from windows at a frozen coverage.
+
+A window is some mesh cycles at a coverage that does not change; what its flanks are exposed to
+(`gearidae.engine.energy.exposures`) gives, by a loss law, the rate at which coverage is lost. The rates are integrated
+over passages (`gearidae.studies.cycle_jump`) until the gear sticks in a window, a coverage or a number of passages is
+reached.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae.archive import save
+from gearidae.errors import Interrupted, SceneError, SolverError
+from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.runs.executors import check_executor, check_jobs, own_executor
+from gearidae.runs.kept_runs import KeptRuns, kept_beside
+from gearidae.runs.running import prepare, runs_in_threads
+from gearidae.studies.cycle_jump import Life, Sticks, jump
+from gearidae.studies.life_coverage import Coverage, coverage_of
+from gearidae.studies.life_dataset import life_dataset
+from gearidae.studies.life_window import Cycles, run_window, window_scene
+from gearidae.wear import LossLaw
+
+if TYPE_CHECKING:
+    from gearidae.records import Solution
+    from gearidae.scene import Scene
+    from gearidae.wear import Exposure
+
+__all__ = ["life"]
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_MOST_WINDOWS: Final = 1000
+"""States whose rate may be asked for."""
+_PLACES: Final = 8
+
+
+def life(
+    scene: Scene,
+    law: LossLaw,
+    *,
+    passages: float = 1e12,
+    fraction: float = 0.0,
+    resolved: str = "uniform",
+    places: int = _PLACES,
+    cycles: int = 19,
+    settle: int = 6,
+    starts: int = 2,
+    tolerance: float = 3e-3,
+    bracket: float = 0.01,
+    frequency: bool = True,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    backend: str = "auto",
+    progress: bool | SweepProgress = False,
+    archive: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+) -> xr.Dataset:
+    """Coverage of the flanks against the passages of their teeth, until the gear sticks.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears that turn forward, torques without a schedule, and the coverage at the beginning.
+    law : LossLaw
+        How coverage is lost, from `gearidae.wear`.
+    passages : float, optional
+        Passages of each tooth of the pinion after which the life ends in any case.
+    fraction : float, optional
+        Mean coverage at which it ends.
+    resolved : {"uniform", "place", "tooth"}, optional
+        Whether coverage is the same everywhere, or followed along the flank, or by tooth and place.
+    places : int, optional
+        Places along the flank.
+    cycles, settle : int, optional
+        Mesh cycles of a window that count, and those before them. With ``resolved = "tooth"`` the first is rounded up to
+        whole turns of the pinion.
+    starts : int, optional
+        Windows for each state, from as many phases of mesh; their rates are averaged, and the gear sticks if it does in
+        one of them. They run side by side.
+    tolerance : float, optional
+        Relative tolerance of each jump.
+    bracket : float, optional
+        Relative width to which the passages to sticking are narrowed.
+    frequency : bool, optional
+        Whether to find the characteristic frequency along the life, which takes a sampled run for each step.
+    executor, jobs, backend, progress, overwrite, resume
+        As for `sweep`. With `archive`, finished windows are kept beside it until it is written.
+    archive : path, optional
+        netCDF file to write.
+
+    Returns
+    -------
+    Dataset
+        Along ``passages`` (the steps of the integration): ``coverage``, ``coverage_loss`` (in a passage),
+        ``verdict``, ``mean_gear_speed``, ``min_gear_speed``, ``characteristic_frequency``, exposures of a passage and
+        their sums, and with ``resolved`` ``coverage_by_place``. Attributes: ``ending`` (sticks, coverage or passages),
+        ``passages_to_sticking`` with its bracket, ``windows``, ``passages_simulated`` and ``passages_jumped``.
+
+    Raises
+    ------
+    SceneError
+        If the scene or a setting is not allowed.
+    SolverError
+        If a window could not be finished, or more windows would be needed than are allowed.
+    Interrupted
+        On Ctrl-C; finished windows are kept beside `archive`.
+
+    Notes
+    -----
+    Rates are those of the drive flank. A window begins where the scene does, and not with the state that an earlier
+    one has left: it has to be long enough for the start to be forgotten.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> scene = gd.preset("teodorescu2009_low_speed")
+    >>> law = gd.wear.loss_law("adhesion_work", energy="10 J/m^2")
+    >>> found = gd.studies.life(scene, law)  # doctest: +SKIP
+    >>> found.attrs["passages_to_sticking"]  # doctest: +SKIP
+    """
+    base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
+    cycles = _check(
+        base, law, passages, fraction, (places, cycles, settle, starts), (tolerance, bracket), resolved
+    )
+    coverage = coverage_of(base, resolved, places)
+    window = window_scene(base, Cycles(settle, cycles), places)
+    check_executor(executor)
+    workers = check_jobs(jobs)
+    kept = kept_beside(archive, window, backend, overwrite=overwrite, resume=resume)
+    threads = runs_in_threads(backend)
+    with (
+        sweep_progress(progress, _MOST_WINDOWS) as report,
+        own_executor(min(workers, starts) if executor is None else 1, starts, releases_gil=threads) as own,
+    ):
+        windows = _Windows(
+            window, coverage, law, Cycles(settle, cycles), starts, backend, executor or own, kept, report
+        )
+        try:
+            found = jump(
+                windows.rate,
+                coverage.start,
+                passages=passages,
+                tolerance=tolerance,
+                least=fraction,
+                bracket=bracket,
+            )
+            ds = _dataset(scene, law, coverage, windows, found, frequency=frequency)
+        except KeyboardInterrupt:
+            where = (
+                "" if archive is None else "finished windows are kept beside the archive; go on with --resume"
+            )
+            raise Interrupted(where, xr.Dataset()) from None
+    if archive is not None:
+        save(ds, archive, overwrite=overwrite or resume)
+    if kept is not None:
+        kept.remove()
+    return ds
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What the windows of a state have shown."""
+
+    sticks: bool
+    rate: Floats
+    exposures: tuple[Exposure, ...]
+    mean_speed: float
+    min_speed: float
+
+
+@dataclass
+class _Windows:
+    """The windows so far, and where more of them are computed."""
+
+    scene: Scene
+    coverage: Coverage
+    law: LossLaw
+    cycles: Cycles
+    starts: int
+    backend: str
+    executor: Executor | None
+    kept: KeptRuns | None
+    report: Callable[[float, int], None]
+    seen: dict[bytes, _Seen] = field(default_factory=dict)
+    run: int = 0
+    wall_time: float = 0.0
+
+    def rate(self, state: Floats) -> Floats:
+        """Change of a state in a passage; `Sticks` where the gear sticks."""
+        seen = self.of(state)
+        if seen.sticks:
+            raise Sticks
+        return seen.rate
+
+    def of(self, state: Floats) -> _Seen:
+        """Look a state up, or run its windows."""
+        key = np.clip(state, 0.0, 1.0).tobytes()
+        if key not in self.seen:
+            if len(self.seen) >= _MOST_WINDOWS:
+                raise SolverError(
+                    f"the life needs more than {_MOST_WINDOWS} states",
+                    time=0.0,
+                    state={},
+                    last_event="none",
+                    advice="loosen the tolerance, or make windows longer (cycles, settle, starts)",
+                )
+            self.seen[key] = self._run(np.clip(state, 0.0, 1.0))
+            self.report(float(len(self.seen)), _MOST_WINDOWS)
+        return self.seen[key]
+
+    def _run(self, state: Floats) -> _Seen:
+        assert self.scene.initial is not None
+        changed = self.scene.replace(self.coverage.changes(state))
+        phase = self.scene.initial.mesh_phase
+        scenes = [
+            changed.replace({"initial.mesh_phase": (phase + number / self.starts) % 1.0})
+            for number in range(self.starts)
+        ]
+        began = time.perf_counter()
+        found = self._solutions(scenes)
+        self.wall_time += time.perf_counter() - began
+        stuck = any(sticks for _, sticks in found)
+        if stuck:
+            exposures: tuple[Exposure, ...] = ()
+            rate = np.full_like(state, math.nan)
+        else:
+            exposures = tuple(
+                self.coverage.exposure(scene, solution, self.cycles.count, state)
+                for scene, (solution, _) in zip(scenes, found, strict=True)
+            )
+            rate = np.mean([self.law.rate(state, each) for each in exposures], axis=0)
+        extremes = [solution.extremes for solution, _ in found if solution.extremes is not None]
+        return _Seen(
+            stuck,
+            rate,
+            exposures,
+            float(np.mean([each.settled_gear_speed for each in extremes])),
+            min(each.min_gear_speed for each in extremes),
+        )
+
+    def _solutions(self, scenes: Sequence[Scene]) -> list[tuple[Solution, bool]]:
+        """Take windows that are kept, and run the others."""
+        taken = [None if self.kept is None else self.kept.take(each) for each in scenes]
+        left = [each for each, one in zip(scenes, taken, strict=True) if one is None]
+        run = map if self.executor is None else self.executor.map
+        fresh = run(run_window, left, [self.cycles] * len(left), [self.backend] * len(left))
+        found: list[tuple[Solution, bool]] = []
+        for scene, one in zip(scenes, taken, strict=True):
+            if one is not None:
+                found.append((one[0], one[1] == "sticks"))
+                continue
+            solution, stuck = next(fresh)
+            if self.kept is not None:
+                self.kept.keep(scene, solution, "sticks" if stuck else "turns")
+            found.append((solution, stuck))
+        self.run += len(scenes)
+        return found
+
+
+def _dataset(
+    scene: Scene, law: LossLaw, coverage: Coverage, windows: _Windows, found: Life, *, frequency: bool
+) -> xr.Dataset:
+    """Make the dataset of a life, with the state at which it sticks as its last if there is one."""
+    seen = [windows.of(state) for state in found.states]
+    ds = life_dataset(scene, coverage, found, seen, frequency=frequency)
+    simulated = windows.run * windows.cycles.total
+    teeth = scene.gears.pinion_teeth if scene.gears is not None else 1
+    whole = found.passages[-1] * teeth
+    ends = {} if math.isnan(found.sticks_by) else {"passages_to_sticking": found.sticks_by}
+    return ds.assign_attrs(
+        {
+            "law": json.dumps(law.describe()),
+            "law_source": law.source,
+            "ending": found.ending,
+            **ends,
+            "states": len(windows.seen),
+            "windows": windows.run,
+            "mesh_cycles_simulated": simulated,
+            "mesh_cycles_jumped": max(whole - simulated, 0.0),
+            "passages_simulated": simulated / teeth,
+            "passages_jumped": max(whole - simulated, 0.0) / teeth,
+        }
+    )
+
+
+def _check(
+    scene: Scene,
+    law: LossLaw,
+    passages: float,
+    fraction: float,
+    numbers: tuple[int, int, int, int],
+    tolerances: tuple[float, float],
+    resolved: str,
+) -> int:
+    """Refuse what is not allowed; return the mesh cycles of a window that count."""
+    if scene.gears is None or scene.drive is None or scene.load is None:
+        raise SceneError("scene", scene.name, "must be a scene with gears")
+    if scene.drive.schedule or scene.load.schedule:
+        raise SceneError("drive.schedule", "a schedule", "must not be there: the windows of a life are alike")
+    if not isinstance(law, LossLaw):
+        raise SceneError("law", type(law).__name__, "must be a loss law, see gearidae.wear.loss_law")
+    if not 0.0 < passages < math.inf:
+        raise SceneError("passages", passages, "must be positive")
+    if not 0.0 <= fraction < 1.0:
+        raise SceneError("fraction", fraction, "must lie in 0..1, and be below 1")
+    for name, value, least in zip(
+        ("places", "cycles", "settle", "starts"), numbers, (2, 1, 0, 1), strict=True
+    ):
+        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= 1000:
+            raise SceneError(name, value, f"must be a whole number in {least}..1000")
+    for name, size in zip(("tolerance", "bracket"), tolerances, strict=True):
+        if not 1e-8 <= size <= 0.1:
+            raise SceneError(name, size, "must lie in 1e-08..0.1")
+    cycles = numbers[1]
+    teeth = scene.gears.pinion_teeth
+    return math.ceil(cycles / teeth) * teeth if resolved == "tooth" else cycles

@@ -1,0 +1,170 @@
+"""A life as a dataset along its passages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae.archive.exposures import exposure_coordinates
+from gearidae.archive.provenance import provenance
+from gearidae.studies.cycle_jump import Life
+from gearidae.studies.life_coverage import Coverage
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+    from gearidae.wear import Exposure
+
+__all__ = ["life_dataset"]
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_EXPOSURES = {
+    "contacts": ("m-2", "asperity contacts made on coated flank in a passage, per area of it"),
+    "adhesion_work": ("J m-2", "energy lost to adhesion on coated flank in a passage, per area of it"),
+    "sliding_work": ("J m-2", "normal force times sliding distance in a passage, per area"),
+    "pressure": ("Pa", "largest nominal pressure"),
+}
+
+
+class Seen(Protocol):
+    """What the windows of a state have shown."""
+
+    @property
+    def sticks(self) -> bool:
+        """Whether the gear sticks."""
+
+    @property
+    def rate(self) -> Floats:
+        """Change of the state in a passage."""
+
+    @property
+    def exposures(self) -> tuple[Exposure, ...]:
+        """Of each start; none where the gear sticks."""
+
+    @property
+    def mean_speed(self) -> float:
+        """Mean speed of the gear [rad/s]."""
+
+    @property
+    def min_speed(self) -> float:
+        """Smallest speed of the gear [rad/s]."""
+
+
+def life_dataset(
+    scene: Scene, coverage: Coverage, found: Life, seen: Sequence[Seen], *, frequency: bool
+) -> xr.Dataset:
+    """Make the dataset of a life.
+
+    Parameters
+    ----------
+    scene : Scene
+        That it began with.
+    coverage : Coverage
+    found : Life
+    seen : sequence
+        What each state has shown.
+    frequency : bool
+        Whether to find the characteristic frequency of each state.
+
+    Returns
+    -------
+    Dataset
+    """
+    states = np.array(found.states)
+    tables = states.reshape(len(states), *coverage.shape)
+    dims = ("passages", "side")
+    variables: dict[str, Any] = {
+        "coverage": (dims, tables.mean(axis=(2, 3)), _about("1", "mean covered share of the flanks")),
+        "coverage_loss": (
+            dims,
+            -np.array([each.rate for each in seen]).reshape(tables.shape).mean(axis=(2, 3)),
+            _about("1", "share lost in a passage"),
+        ),
+        "verdict": ("passages", [_word(each) for each in seen], _about("1", "what the gear does")),
+        "mean_gear_speed": (
+            "passages",
+            [each.mean_speed for each in seen],
+            _about("rad s-1", "mean speed of the gear"),
+        ),
+        "min_gear_speed": (
+            "passages",
+            [each.min_speed for each in seen],
+            _about("rad s-1", "smallest speed of the gear"),
+        ),
+    }
+    for name, (unit, meaning) in _EXPOSURES.items():
+        values = np.array([_mean(each, name, len(states[0])) for each in seen]).reshape(tables.shape)
+        together = values.max(axis=(2, 3)) if name == "pressure" else values.mean(axis=(2, 3))
+        variables[f"passage_{name}"] = (dims, together, _about(unit, meaning))
+        if name != "pressure":
+            summed = _cumulated(np.array(found.passages), together)
+            text = meaning.replace(" in a passage", "").replace("made ", "made so far ")
+            variables[f"total_{name}"] = (dims, summed, _about(unit, f"{text}, since the beginning"))
+    if coverage.resolved != "uniform":
+        text = "covered share by tooth of the pinion and place along the flank"
+        variables["coverage_by_place"] = (("passages", "side", "tooth", "place"), tables, _about("1", text))
+    if frequency:
+        variables["characteristic_frequency"] = (
+            "passages",
+            _frequencies(scene, coverage, states),
+            _about("Hz", "frequency of the first impact response"),
+        )
+    passages = _about("1", "passages of each tooth of the pinion")
+    coords: dict[str, Any] = {
+        "passages": ("passages", found.passages, passages),
+        "side": list(coverage.sides),
+    }
+    if coverage.resolved != "uniform":
+        own = exposure_coordinates(scene.replace({"run.exposures": coverage.shape[2]}))
+        coords["place"] = own["place"]
+        coords["tooth"] = np.arange(coverage.shape[1])
+    return xr.Dataset(
+        variables,
+        coords=coords,
+        attrs={
+            **provenance(scene, "simulated the life of the coating", swept=("coating.sam_fraction",)),
+            "title": f"{scene.name}: life of the coating",
+            "summary": "Coverage of the flanks against passages of their teeth, by cycle jump.",
+            "resolved": coverage.resolved,
+        },
+    )
+
+
+def _about(units: str, long_name: str) -> dict[str, str]:
+    return {"units": units, "long_name": long_name}
+
+
+def _word(seen: Seen) -> str:
+    return "sticks" if seen.sticks else "turns"
+
+
+def _mean(seen: Seen, name: str, size: int) -> Floats:
+    """Mean of an exposure over the starts; NaN where the gear sticks."""
+    if not seen.exposures:
+        return np.full(size, math.nan)
+    return np.asarray(np.mean([getattr(each, name) for each in seen.exposures], axis=0))
+
+
+def _cumulated(passages: Floats, rates: Floats) -> Floats:
+    """Integral over passages, by the trapezoidal rule."""
+    steps = 0.5 * (rates[1:] + rates[:-1]) * np.diff(passages)[:, None]
+    return np.concatenate([np.zeros((1, rates.shape[1])), np.cumsum(steps, axis=0)])
+
+
+def _frequencies(scene: Scene, coverage: Coverage, states: Floats) -> Floats:
+    """Characteristic frequency at each state, of the first impact of a run as a coating map has it."""
+    from gearidae.analysis import characteristic_frequency
+    from gearidae.runs.simulation import simulate
+
+    assert scene.gears is not None
+    found = []
+    for state in states:
+        own = scene.replace({**coverage.changes(state), "run.stop": "time", "run.exposures": 0})
+        ds = simulate(own, samples=own.run.samples if own.run.sample_count else 30_001)
+        found.append(float(characteristic_frequency(ds)))
+    return np.array(found)

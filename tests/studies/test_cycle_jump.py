@@ -1,0 +1,78 @@
+"""Cycle jump with rates that are known: closed forms, tolerances, and where the gear sticks."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gearidae.studies.cycle_jump import Sticks, jump
+
+
+def decay(state):
+    return -1e-9 * state
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_a_constant_rate_decays_exponentially(tolerance):
+    start = np.array([1.0, 0.5])
+    found = jump(decay, start, passages=2e9, tolerance=tolerance)
+    assert (found.ending, found.passages[-1]) == ("passages", 2e9)
+    assert math.isnan(found.sticks_by)
+    expected = start * np.exp(-1e-9 * np.array(found.passages))[:, None]
+    # each step may be out by the tolerance of the state then, and a tenth of it absolutely
+    np.testing.assert_allclose(found.states, expected, rtol=2 * tolerance * len(found.passages))
+
+
+def test_half_the_tolerance_halves_the_error_and_more():
+    """The pair's error in a step goes with the third power of its length, as its estimate does."""
+    errors = []
+    for tolerance in (4e-3, 5e-4, 6.25e-5):
+        found = jump(decay, np.ones(1), passages=2e9, tolerance=tolerance)
+        errors.append(abs(found.states[-1][0] - math.exp(-2.0)))
+    assert errors[1] < errors[0] / 4
+    assert errors[2] < errors[1] / 4
+
+
+def test_a_coverage_ends_it():
+    found = jump(decay, np.ones(1), passages=1e12, tolerance=1e-5, least=0.5)
+    assert found.ending == "coverage"
+    assert found.states[-1].mean() == pytest.approx(0.5, abs=1e-9)
+    assert found.passages[-1] == pytest.approx(1e9 * math.log(2.0), rel=1e-4)
+
+
+@pytest.mark.parametrize("bracket", [0.02, 0.002])
+def test_where_the_gear_sticks_is_bracketed(bracket):
+    """It sticks below 0.3, that is from ln(1/0.3) on."""
+
+    def rate(state):
+        if state.mean() < 0.3:
+            raise Sticks
+        return decay(state)
+
+    found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-6, bracket=bracket)
+    truth = -1e9 * math.log(0.3)
+    assert found.ending == "sticks"
+    # the bracket is that of the trial states, which are Euler steps of this width
+    assert found.passages[-1] <= truth * (1 + 1e-5)
+    assert found.sticks_by == pytest.approx(truth, rel=2 * bracket)
+    assert found.sticks_by - found.passages[-1] <= bracket * found.sticks_by
+
+
+def test_what_sticks_from_the_start_has_no_life():
+    def rate(state):
+        raise Sticks
+
+    found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-3)
+    assert (found.ending, found.sticks_by, found.passages) == ("sticks", 0.0, [0.0])
+
+
+def test_nothing_is_lost_without_a_rate():
+    found = jump(np.zeros_like, np.ones(3), passages=1e6, tolerance=1e-3)
+    assert found.passages == [0.0, 1e6]
+    np.testing.assert_array_equal(found.states[-1], 1.0)
+
+
+def test_archard_ends_at_zero():
+    found = jump(lambda f: np.where(f > 0.0, -1e-6, 0.0), np.array([1.0]), passages=3e6, tolerance=1e-3)
+    assert found.states[-1][0] == pytest.approx(0.0, abs=1e-3)
+    assert min(state.min() for state in found.states) >= 0.0

@@ -1,0 +1,146 @@
+"""The life of a coating: rates from windows, resuming, and what the dataset says."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.studies.life_coverage import coverage_of
+from gearidae.studies.life_window import Cycles, run_window, window_scene
+
+LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.7})
+LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)
+SHORT = {"cycles": 3, "settle": 1, "starts": 1, "places": 4, "frequency": False}
+
+
+@pytest.fixture(scope="module")
+def short():
+    return gd.studies.life(LOW, LAW, **SHORT, fraction=0.65)
+
+
+def test_exposures_of_a_window_are_those_of_its_cycles():
+    """One cycle and then three: what four have added up to, less the first."""
+    scene = window_scene(LOW, Cycles(1, 3), 4)
+    found, sticks = run_window(scene, Cycles(1, 3), "native")
+    assert not sticks
+    whole, _ = run_window(window_scene(LOW, Cycles(0, 4), 4), Cycles(0, 4), "native")
+    first, _ = run_window(window_scene(LOW, Cycles(0, 1), 4), Cycles(0, 1), "native")
+    sums = [
+        np.array(each.extremes.exposures).reshape(2, 19, -1, 4)[:, :, :-1].sum()
+        for each in (found, whole, first)
+    ]
+    assert sums[0] == pytest.approx(sums[1] - sums[2], rel=1e-3)
+    assert found.extremes.mesh_exits == 4
+
+
+def test_a_gear_that_stops_sticks():
+    scene = window_scene(LOW.replace({"coating.sam_fraction": 0.4}), Cycles(1, 5), 4)
+    assert run_window(scene, Cycles(1, 5), "native")[1]
+
+
+def test_a_life_follows_its_rate(short):
+    assert short.attrs["ending"] == "coverage"
+    assert float(short.coverage[-1, 0]) == pytest.approx(0.65, abs=1e-6)
+    assert (np.diff(short.coverage[:, 0]) < 0.0).all()
+    # Q and the work on coated flank give the rate
+    expected = short.coverage * short.passage_adhesion_work / 1e-6
+    np.testing.assert_allclose(short.coverage_loss, expected, rtol=1e-12)
+    assert set(short.verdict.values) == {"turns"}
+    assert short.mean_gear_speed[0] == pytest.approx(1.5, abs=0.01)
+    assert short.attrs["mesh_cycles_simulated"] == 4 * short.attrs["windows"]
+    assert json.loads(short.attrs["law"]) == {"name": "adhesion_work", "energy": 1e-6}
+
+
+def test_ten_times_the_energy_lasts_ten_times_as_long(short):
+    slow = gd.studies.life(LOW, gd.wear.loss_law("adhesion_work", energy=1e-5), **SHORT, fraction=0.65)
+    np.testing.assert_allclose(slow.passages, 10 * short.passages, rtol=1e-4)  # last digits of the states
+    np.testing.assert_allclose(slow.coverage, short.coverage, rtol=1e-4)
+
+
+def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
+    path = tmp_path / "life.nc"
+    run, seen = run_window, []
+
+    def cut(*args):
+        seen.append(args)
+        if len(seen) == 4:
+            raise KeyboardInterrupt
+        return run(*args)
+
+    monkeypatch.setattr(sys.modules["gearidae.studies.life"], "run_window", cut)
+    with pytest.raises(gd.Interrupted, match="resume"):
+        gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
+    assert not path.exists()
+    with pytest.raises(gd.SceneError, match="cut off"):
+        gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
+    resumed = gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path, resume=True)
+    for name in ("coverage", "coverage_loss", "passage_adhesion_work", "min_gear_speed"):
+        np.testing.assert_array_equal(resumed[name], short[name])
+    assert len(seen) - 1 == short.attrs["windows"]  # none was computed twice but for the one that was cut off
+    assert path.exists()
+    assert not path.with_name("life.nc.runs").exists()
+
+
+def test_coverage_along_the_flank():
+    scene = LOW.replace({"contact.model": "asperity"})
+    found = gd.studies.life(scene, LAW, **SHORT, resolved="place", fraction=0.68)
+    by_place = found.coverage_by_place.isel(side=0, tooth=0)
+    assert by_place.dims == ("passages", "place")
+    np.testing.assert_allclose(by_place[0], 0.7)
+    assert float(by_place[-1].max() - by_place[-1].min()) > 1e-3  # it does not go evenly
+    np.testing.assert_allclose(by_place.mean("place"), found.coverage.isel(side=0), rtol=1e-12)
+    assert gd.plot.coverage_along_flank(found).get_xlabel()
+
+
+def test_both_sides_of_independent_ones():
+    """The gear's flank has the larger curvature and four times as many teeth: it loses less in the same time."""
+    scene = LOW.replace({"coating.pairing": "independent", "coating.sam_fraction": 0.9})
+    found = gd.studies.life(scene, LAW, **SHORT, fraction=0.89)
+    assert found.side.values.tolist() == ["pinion", "gear"]
+    lost = found.coverage[0] - found.coverage[-1]
+    assert 0.0 < float(lost.sel(side="gear")) < 0.5 * float(lost.sel(side="pinion"))
+
+
+def test_each_tooth_has_its_own_share():
+    scene = LOW.replace({"contact.model": "asperity"})
+    scene = scene.replace({"coating.pinion_table": np.linspace(0.7, 0.9, 19)[:, None].tolist()})
+    coverage = coverage_of(scene, "tooth", 4)
+    assert coverage.shape == (1, 19, 4)
+    np.testing.assert_allclose(coverage.start.reshape(19, 4)[:, 2], np.linspace(0.7, 0.9, 19))
+    again = scene.replace(coverage.changes(coverage.start))
+    np.testing.assert_allclose(np.array(again.coating.pinion_table)[:, 0], np.linspace(0.7, 0.9, 19))
+
+
+def test_the_picture(short):
+    ax = gd.plot.life(short)
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), 100 * short.coverage[:, 0])
+    with pytest.raises(gd.SceneError, match="coverage_by_place"):
+        gd.plot.coverage_along_flank(short)
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"fraction": 1.0}, "fraction"),
+        ({"passages": 0.0}, "passages"),
+        ({"cycles": 0}, "cycles"),
+        ({"places": 1}, "places"),
+        ({"tolerance": 1.0}, "tolerance"),
+        ({"resolved": "flank"}, "resolved"),
+    ],
+)
+def test_settings_are_checked(changes, key):
+    with pytest.raises(gd.SceneError) as error:
+        gd.studies.life(LOW, LAW, **{**SHORT, **changes})
+    assert error.value.key == key
+
+
+def test_scenes_are_checked():
+    with pytest.raises(gd.SceneError, match="gears"):
+        gd.studies.life(gd.preset("roller_slow"), LAW)
+    with pytest.raises(gd.SceneError, match="windows of a life are alike"):
+        gd.studies.life(gd.preset("start_up"), LAW)
+    with pytest.raises(gd.SceneError, match="loss law"):
+        gd.studies.life(LOW, "contacts")
