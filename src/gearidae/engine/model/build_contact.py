@@ -25,7 +25,7 @@ from gearidae.contact.kernels.law import (
 from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
-from gearidae.engine.model.state import Floats, Record
+from gearidae.engine.model.state import MATERIALS, Floats, Record
 from gearidae.engine.model.tables import Tables
 from gearidae.scene import Material, Scene
 
@@ -96,6 +96,7 @@ def add_contact(
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
+    blended = np.zeros((loading.size, MATERIALS))
     longest = 0
     for material, (surface, share, offset, _) in enumerate(_parts(scene)):
         own, tip = s.material[material], asperity_of(surface)
@@ -115,11 +116,12 @@ def add_contact(
             push, stored = loading_pieces(law, kernel, float(own.gap_offset))
             loading += force * push
             potential += force * stored
-            if s.by_place != 0:
-                own.loading_at, own.potential_at = tables.add(force * push), tables.add(force * stored)
+            own.potential_at = tables.add(force * stored) if s.by_place != 0 else 0
+            blended[:, material] = force * push
             for floor, gap in reach.items():
                 reach[floor] = max(gap, _outermost(table, force * widest, floor) - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
+    s.blended_at = tables.add(blended.ravel()) if s.by_place != 0 else 0
     s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
     s.branch_length = 0 if s.nodes > 0 else longest
 
@@ -139,6 +141,7 @@ def _add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
     for own, table in zip(s.coverage, scene.coating.tables, strict=True):
         own.teeth, own.places = len(table), len(table[0])
         own.values_at = tables.add(np.array(table).ravel())
+        own.inverse_teeth, own.place_scale = 1.0 / len(table), len(table[0]) / float(s.contact_ratio)
 
 
 def _outermost(table: Floats, scale: float, floor: float) -> float:
