@@ -76,7 +76,8 @@ def test_shares_are_smooth_and_their_derivatives_true():
     step = 1e-5
     for inside in np.linspace(0.01, SHORT.geometry.contact_ratio - 0.01, 57):
         low, here, high = (np.array(shares_of(m, 0, 4, inside + by * step)) for by in (-1, 0, 1))
-        slope, bend = (np.array(one) for one in share_changes(m, 0, 4, inside))
+        value, slope, bend = (np.array(one) for one in share_changes(m, 0, 4, inside))
+        np.testing.assert_allclose(value, here, atol=1e-15)
         # differences of second order: the third and fourth derivatives times step^2, and rounding over step
         np.testing.assert_allclose((high - low) / (2 * step), slope, atol=1e-6)
         np.testing.assert_allclose((high - 2 * here + low) / step**2, bend, atol=1e-3)

@@ -100,16 +100,21 @@ def shares_of(m: Model, coast: int, pair: int, inside: float) -> Shares:
 
 
 @compiled
-def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Shares, Shares]:
-    """First and second derivatives of the shares along the path of contact, per pitch."""
+def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Shares, Shares, Shares]:
+    """Shares of the materials in a pair, and their first and second derivatives along the path, per pitch."""
     number = pair + m.state.turns
-    f, g = _fraction(m, 0, number, inside), _fraction(m, 1, number + coast, inside)
+    f = _fraction(m, 0, number, inside)
     if m.scene.patches != 0:
-        return (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
-    both, cross = f.slope * g.value + f.value * g.slope, 2.0 * f.slope * g.slope
-    bend = f.bend * g.value + cross + f.value * g.bend
-    one, one_bend = f.slope + g.slope, f.bend + g.bend
-    return (both - one, both, one - 2.0 * both), (bend - one_bend, bend, one_bend - 2.0 * bend)
+        return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
+    g = _fraction(m, 1, number + coast, inside)
+    one, one_slope, one_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
+    both, slope = f.value * g.value, f.slope * g.value + f.value * g.slope
+    bend = f.bend * g.value + 2.0 * f.slope * g.slope + f.value * g.bend
+    return (
+        (1.0 - one + both, both, one - 2.0 * both),
+        (slope - one_slope, slope, one_slope - 2.0 * slope),
+        (bend - one_bend, bend, one_bend - 2.0 * bend),
+    )
 
 
 @compiled(inline=True)
