@@ -17,7 +17,10 @@ def test_a_thickness_lets_worn_gears_turn():
 
 
 def test_the_table_has_a_row_for_each():
-    rows = [Compared("jkr", "patches", 2.5e-9, 0.25, 0.26, 1.25), Compared("jkr", "x", 0.0, math.nan, math.nan, 1.0)]
+    rows = [
+        Compared("jkr", "patches", 2.5e-9, 0.25, 0.26, 1.25),
+        Compared("jkr", "x", 0.0, math.nan, math.nan, 1.0),
+    ]
     table = comparison_table(rows)
     assert table.count("\n") == 4
     assert "| `jkr` | patches | 2.5 nm | 0.250 | 0.260 | 1.2500 rad/s |" in table
