@@ -76,7 +76,8 @@ def test_shares_are_smooth_and_their_derivatives_true():
     step = 1e-5
     for inside in np.linspace(0.01, SHORT.geometry.contact_ratio - 0.01, 57):
         low, here, high = (np.array(shares_of(m, 0, 4, inside + by * step)) for by in (-1, 0, 1))
-        slope, bend = (np.array(one) for one in share_changes(m, 0, 4, inside))
+        value, slope, bend = (np.array(one) for one in share_changes(m, 0, 4, inside))
+        np.testing.assert_allclose(value, here, atol=1e-15)
         # differences of second order: the third and fourth derivatives times step^2, and rounding over step
         np.testing.assert_allclose((high - low) / (2 * step), slope, atol=1e-6)
         np.testing.assert_allclose((high - 2 * here + low) / step**2, bend, atol=1e-3)
@@ -111,8 +112,10 @@ def test_a_table_of_one_fraction_is_that_fraction(pairing):
     one, other = solve(uniform), solve(uniform.replace(tables))
     swing = np.ptp(one.samples["gear_speed"])
     np.testing.assert_allclose(other.samples["gear_speed"], one.samples["gear_speed"], atol=1e-5 * swing)
-    assert other.balance.adhesion_loss == pytest.approx(one.balance.adhesion_loss, rel=1e-6, abs=0)
-    assert other.balance.radius_work == pytest.approx(one.balance.radius_work, rel=1e-5, abs=0)
+    # where a history begins depends on the accepted times, and moves 1e-5 from one sum to the other
+    assert other.balance.adhesion_loss == pytest.approx(one.balance.adhesion_loss, rel=1e-4, abs=0)
+    taken, expected = (each.balance.adhesion_loss - each.balance.radius_work for each in (other, one))
+    assert taken == pytest.approx(expected, rel=1e-6, abs=0)
 
 
 def test_only_the_teeth_that_meet_count():

@@ -92,6 +92,18 @@ def test_the_balance_closes_without_a_work_of_the_radius(backend, changes):
     assert abs(other.radius_work) > 100 * abs(balance.residual)
 
 
+def test_the_balance_closes_where_the_coating_changes_along_the_flank():
+    """The force then pays for the changing shares, too."""
+    table = {"coating.pinion_table": [[0.3, 0.6, 0.9]], "contact.model": "asperity"}
+    scene = LOW.replace({**ON, **table, "run.samples": "off", "run.duration": 0.1})
+    balance = solve(scene).balance
+    assert balance.radius_work == 0.0
+    # far below the bound, and below what the changing shares bring in without the force
+    assert abs(balance.residual) < 1e-6 * balance.throughput
+    other = solve(scene.replace({"mesh.radius_force": False})).balance
+    assert abs(other.radius_work) > 1e-4 * balance.throughput
+
+
 def test_both_drivers_find_the_same_motion():
     """Over one mesh exit and a quarter of a pitch; both at 1e-8, errors of some tens of tolerances."""
     scene = LOW.replace(

@@ -134,11 +134,12 @@ def _contact(scene: Scene) -> Rows:
 
 def _coating(scene: Scene) -> Rows:
     coating = scene.coating
+    pinion, gear = coating.fractions
+    means = "means of tooth and place" if coating.by_place else ""
     if coating.pairing == "patches":
-        yield "SAM fraction", f"{coating.sam_fraction:g}", ""
+        yield "SAM fraction", f"{pinion:g}", means
     else:
-        pinion, gear = coating.fractions
-        yield "SAM fractions", f"{pinion:g} of the pinion, {gear:g} of the gear", "independent sides"
+        yield "SAM fractions", f"{pinion:g} of the pinion, {gear:g} of the gear", means or "independent sides"
         shares = ", ".join(f"{100.0 * one.share:.3g} % {one.name}" for one in scene.materials())
         yield "interface", shares, ""
     if coating.thickness > 0.0:

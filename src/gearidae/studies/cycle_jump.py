@@ -1,7 +1,8 @@
 """Cycle jump: a state that changes slowly with the number of passages, from rates that cost a simulation each.
 
-The rates are those of a frozen state. Between them the state is integrated over passages by scipy's Runge-Kutta pair of
-order 3(2) (Bogacki and Shampine), so that the error of each jump is estimated and its length follows from the tolerance.
+The rates are those of a frozen state. Between them the state is integrated over passages by scipy's Runge-Kutta pair
+of order 3(2) (Bogacki and Shampine), so that the error of each jump is estimated and its length follows from the
+tolerance.
 Where the gear sticks there is no rate: steps are then shortened until the place is known.
 """
 
@@ -162,10 +163,6 @@ def _integrate(
         life.add(solver.t, np.clip(solver.y, 0.0, 1.0))
         if on_step is not None:
             on_step(life.passages[-1], life.states[-1])
-        if (
-            life.passages[-1] - n < 1e-12 * limits.passages
-        ):  # less than a rounding error: nothing changes any more
-            return
         step = solver.h_abs
         if upper < np.inf and upper - solver.t <= limits.bracket * upper:
             life.ending, life.sticks_by = "sticks", upper

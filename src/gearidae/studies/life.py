@@ -86,8 +86,8 @@ def life(
     places : int, optional
         Places along the flank.
     cycles, settle : int, optional
-        Mesh cycles of a window that count, and those before them. With ``resolved = "tooth"`` the first is rounded up to
-        whole turns of the pinion.
+        Mesh cycles of a window that count, and those before them. With ``resolved = "tooth"`` the first is rounded up
+        to whole turns of the pinion.
     starts : int, optional
         Windows for each state, from as many phases of mesh; their rates are averaged, and the gear sticks if it does in
         one of them. They run side by side.

@@ -99,29 +99,26 @@ class Coverage:
             sides.append(self._gathered(scene, cycles, (*met, *shared)))
         ratio = _gear_over_pinion(scene)
         pinion, gear = sides
-        scales = (ratio, ratio, ratio, 1.0)
-        both = zip(vars_of(pinion), vars_of(gear), scales, strict=True)
-        return Exposure(*(np.concatenate([one, scale * two]) for one, two, scale in both))
+        return Exposure(
+            np.concatenate([pinion.contacts, ratio * gear.contacts]),
+            np.concatenate([pinion.adhesion_work, ratio * gear.adhesion_work]),
+            np.concatenate([pinion.sliding_work, ratio * gear.sliding_work]),
+            np.concatenate([pinion.pressure, gear.pressure]),
+        )
 
     def _gathered(self, scene: Scene, cycles: int, tables: tuple[Floats, ...]) -> Exposure:
         """Put exposures by tooth and place together as the state has them, per passage."""
         area = exposure_coordinates(scene)["flank_area"][1]
-        *sums, pressure = tables
+        contacts, work, sliding, pressure = tables
         if self.resolved == "tooth":
-            per = [table * len(table) / cycles for table in sums]
-            return Exposure(*(each.ravel() for each in per), pressure.ravel())
-        per = [table.sum(axis=0) / cycles for table in sums]
+            per = [(table * len(table) / cycles).ravel() for table in (contacts, work, sliding)]
+            return Exposure(per[0], per[1], per[2], pressure.ravel())
+        per = [table.sum(axis=0) / cycles for table in (contacts, work, sliding)]
         most = pressure.max(axis=0)
-        if self.resolved == "place":
-            return Exposure(*per, most)
-        return Exposure(
-            *(np.array([(each * area).sum() / area.sum()]) for each in per), np.array([most.max()])
-        )
-
-
-def vars_of(exposure: Exposure) -> tuple[Floats, ...]:
-    """Return the arrays of an exposure in their order."""
-    return exposure.contacts, exposure.adhesion_work, exposure.sliding_work, exposure.pressure
+        if self.resolved == "uniform":
+            per = [np.array([(each * area).sum() / area.sum()]) for each in per]
+            most = np.array([most.max()])
+        return Exposure(per[0], per[1], per[2], most)
 
 
 def _gear_over_pinion(scene: Scene) -> float:

@@ -19,7 +19,7 @@ class AdhesionWork(LossLaw):
     name: ClassVar[str] = "adhesion_work"
     source: ClassVar[str] = (
         "energy description of wear, S. Fouvry, T. Liskiewicz, Ph. Kapsa, S. Hannel and E. Sauger, Wear 255 (2003) "
-        "287-298, doi:10.1016/S0043-1648(03)00117-0; the energy of monolayers is not known: give it, or fit it to a life"
+        "287-298, doi:10.1016/S0043-1648(03)00117-0; that of monolayers is not known: give it, or fit it to a life"
     )
 
     energy: float = parameter("J/m^2", "adhesion work per area that leaves 1/e of the coating, Q", above=0.0)

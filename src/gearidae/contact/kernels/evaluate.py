@@ -45,6 +45,7 @@ Eight: TypeAlias = tuple[float, float, float, float, float, float, float, float]
 # Indices are unsigned where it counts: a signed one makes numba test for Python's negative indices at every access.
 _AT: Final = tuple(np.uintp(i) for i in range(8))
 _A1, _A2, _A3, _A4, _A5, _A6, _A7 = _AT[1:]
+_THREES: Final = tuple(np.uintp(3 * i) for i in range(8))
 
 
 @compiled
@@ -96,18 +97,24 @@ def loading_value(table: Floats, offset: int, gap: float) -> tuple[float, float]
     return _septic(table, offset, gap, GAP_LOW, N_LOADING)
 
 
+@compiled(inline=True)
+def _blended(table: Floats, k: np.uintp, a: float, b: float, c: float) -> float:
+    """Sum of a coefficient of three branches, which lie side by side."""
+    return a * table[k] + b * table[k + _A1] + c * table[k + _A2]
+
+
 @compiled
 def blended_value(
-    table: Floats, offsets: tuple[int, int, int], shares: tuple[float, float, float], gap: float
+    table: Floats, offset: int, shares: tuple[float, float, float], gap: float
 ) -> tuple[float, float]:
     """Sum of three loading branches by their shares, and its slope: one polynomial of the sums of the coefficients.
 
     Parameters
     ----------
     table : ndarray
-        Where the branches lie.
-    offsets : tuple of three int
-        Where each begins.
+        Where the branches lie, in the layout of loading branches, the three numbers of each coefficient side by side.
+    offset : int
+        Where they begin.
     shares : tuple of three float
         By what each is multiplied.
     gap : float
@@ -117,22 +124,17 @@ def blended_value(
         return 0.0, 0.0
     position = (gap - GAP_LOW) * KNOTS_PER_SIGMA
     j = min(max(int(position), 0), N_LOADING - 1)
-    u = position - j
+    k, u = np.uintp(offset + 24 * j), position - j
     a, b, c = shares
-    first, second, third = (
-        np.uintp(offsets[0] + 8 * j),
-        np.uintp(offsets[1] + 8 * j),
-        np.uintp(offsets[2] + 8 * j),
-    )
     sums = (
-        a * table[first] + b * table[second] + c * table[third],
-        a * table[first + _A1] + b * table[second + _A1] + c * table[third + _A1],
-        a * table[first + _A2] + b * table[second + _A2] + c * table[third + _A2],
-        a * table[first + _A3] + b * table[second + _A3] + c * table[third + _A3],
-        a * table[first + _A4] + b * table[second + _A4] + c * table[third + _A4],
-        a * table[first + _A5] + b * table[second + _A5] + c * table[third + _A5],
-        a * table[first + _A6] + b * table[second + _A6] + c * table[third + _A6],
-        a * table[first + _A7] + b * table[second + _A7] + c * table[third + _A7],
+        _blended(table, k, a, b, c),
+        _blended(table, k + _THREES[1], a, b, c),
+        _blended(table, k + _THREES[2], a, b, c),
+        _blended(table, k + _THREES[3], a, b, c),
+        _blended(table, k + _THREES[4], a, b, c),
+        _blended(table, k + _THREES[5], a, b, c),
+        _blended(table, k + _THREES[6], a, b, c),
+        _blended(table, k + _THREES[7], a, b, c),
     )
     f, d = value_and_slope(sums, u)
     d *= KNOTS_PER_SIGMA

@@ -152,6 +152,8 @@ def _material_lags(
     """Rate of the lag of a pair whose shares change along the path, and the rate of that."""
     power = rate = 0.0
     losses, slopes = losses_by_material(m, k, gap)
+    if losses[0] == 0.0 and losses[1] == 0.0 and losses[2] == 0.0:
+        return 0.0, 0.0
     _, stretches, bends = material_lengths(m, coast, pair, y[PHASE], y[W], w_rate)
     closing = (1.0 - 2.0 * coast) * y[V]
     for material in range(MATERIALS):

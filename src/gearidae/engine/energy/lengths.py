@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.coverage import Shares, place_inside, share_changes, shares_of
+from gearidae.engine.model.coverage import Shares, place_inside, share_changes
 from gearidae.engine.model.state import Model
 
 __all__ = ["length_and_rates", "material_lengths"]
@@ -43,8 +43,7 @@ def material_lengths(
     along = m.scene.phase_rate * (1.0 - 2.0 * coast)
     speed, speed_rate = along * w, along * w_rate
     inside = place_inside(m, coast, pair, phase)
-    a, b, c = shares_of(m, coast, pair, inside)
-    (a1, b1, c1), (a2, b2, c2) = share_changes(m, coast, pair, inside)
+    (a, b, c), (a1, b1, c1), (a2, b2, c2) = share_changes(m, coast, pair, inside)
     # a' = da/dx v and a'' = d2a/dx2 v^2 + da/dx v', with x the place and v its rate
     twice, square, both = 2.0 * rate * speed, length * speed * speed, length * speed_rate
     return (

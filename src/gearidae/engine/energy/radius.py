@@ -56,12 +56,12 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
             k = history_of(m, coast, pair)
             if m.state.history[k].pair != pair:
                 continue
-            length, length_rate, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
             if m.scene.by_place != 0:
                 own_power, own_rate = coverage_power(m, k, coast, pair, gap, y, w_rate)
                 power += own_power
                 rate += own_rate
                 continue
+            length, length_rate, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
             if elastic:
                 pull, change = nodes_length_force(m, k, t, y, gap, -sign * y[V], length)
             else:

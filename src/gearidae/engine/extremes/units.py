@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Any
 
 from gearidae.engine.energy.exposures import PRESSURE, QUANTITIES
 from gearidae.engine.model.checkpoint import exposures_of
@@ -35,7 +35,7 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         "smallest_separation": float(s.length_unit * e.separation),
     }
     if s.kind == ROLLER:
-        return Extremes(**forces, **_NO_GEAR, **_NEVER, final_speed=float(y[V] * s.length_unit / s.time_unit))
+        return Extremes(**forces, final_speed=float(y[V] * s.length_unit / s.time_unit))
     speed = float(s.length_unit / (s.time_unit * s.gear_radius))
     place = float(y[PHASE] + m.state.turns)
     means = [_mean(m, part, time, place) for part in e.part]
@@ -69,26 +69,6 @@ def _exposures(m: Model) -> tuple[float, ...]:
     table[:, MATERIALS:PRESSURE] *= force * length
     table[:, PRESSURE] *= force
     return tuple(table.ravel().tolist())
-
-
-_NO_GEAR: Final[dict[str, Any]] = dict.fromkeys(
-    (
-        "min_gear_speed",
-        "max_gear_speed",
-        "settled_gear_speed",
-        "settled_spread",
-        "speed_fall",
-        "speed_rise",
-        "late_gear_speed",
-        "late_spread",
-        "last_min_gear_speed",
-        "stick_time",
-        "turned_back",
-        "time_adhering",
-    ),
-    math.nan,
-)
-_NEVER: Final[dict[str, Any]] = {"reversals": 0, "turn_backs": 0, "stick_exits": 0, "mesh_exits": 0}
 
 
 def _standstill(e: Record, tau: float, time: float, place: float) -> dict[str, Any]:

@@ -96,8 +96,7 @@ def make_problem(
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
             problem.deeper = lambda: make_problem(scene, deeper, *told)
     elif scene.contact.model == "auto":
-        bodies = scene.replace({"contact.model": "elastic"})
-        problem.elastic = lambda: make_problem(bodies, None, *told)
+        problem.elastic = lambda: make_problem(scene.replace({"contact.model": "elastic"}), None, *told)
     return problem
 
 
@@ -264,7 +263,7 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
     s.exposures = 2 * int(s.pinion_teeth) * QUANTITIES * int(s.places)
     s.exposures_at = rows.add(np.zeros(int(s.exposures)))
-    return blank_model(s, tables.whole(), rows.whole().size)
+    return blank_model(s, tables.whole(), rows.size)
 
 
 def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:

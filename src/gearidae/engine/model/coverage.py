@@ -5,6 +5,7 @@ Without tables the shares are in the materials' force scales, and these function
 
 from __future__ import annotations
 
+import math
 from typing import Final, NamedTuple, TypeAlias
 
 from gearidae.compiled import compiled
@@ -28,18 +29,40 @@ class Fraction(NamedTuple):
     bend: float
 
 
-@compiled
-def _fraction(m: Model, side: int, tooth: int, inside: float) -> Fraction:
-    """Fraction of a side's tooth, numbered without end, at a place on the path of contact in pitches."""
+@compiled(inline=True)
+def _row_and_place(m: Model, side: int, number: float, inside: float) -> tuple[int, float]:
+    """Where the row of a side's tooth begins, numbered without end, and the place in it, in middles of places."""
     own = m.scene.coverage[side]
-    n = own.places
-    row = own.values_at + (tooth % own.teeth) * n
-    if n == 1:
-        return Fraction(m.tables[row], 0.0, 0.0)
-    scale = n / m.scene.contact_ratio
-    position = min(max(inside * scale - 0.5, 0.0), n - 1.0)
-    low = min(int(position), n - 2)
+    # a remainder of floats takes a tenth of that of integers; the quotient may be rounded across a whole number
+    tooth = number - math.floor(number * own.inverse_teeth) * own.teeth
+    if tooth < 0.0:
+        tooth += own.teeth
+    elif tooth >= own.teeth:
+        tooth -= own.teeth
+    position = min(max(inside * own.place_scale - 0.5, 0.0), own.places - 1.0)
+    return own.values_at + int(tooth) * own.places, position
+
+
+@compiled(inline=True)
+def _value(m: Model, side: int, number: float, inside: float) -> float:
+    """Covered fraction of a side's tooth at a place on the path of contact in pitches."""
+    row, position = _row_and_place(m, side, number, inside)
+    low = int(position)
     u = position - low
+    before = m.tables[row + low]
+    if u == 0.0:
+        return before
+    return before + (m.tables[row + low + 1] - before) * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+
+
+@compiled
+def _fraction(m: Model, side: int, number: float, inside: float) -> Fraction:
+    """Covered fraction of a side's tooth at a place on the path of contact in pitches, with its derivatives."""
+    row, position = _row_and_place(m, side, number, inside)
+    low, scale = int(position), m.scene.coverage[side].place_scale
+    u = position - low
+    if u == 0.0:
+        return Fraction(m.tables[row + low], 0.0, 0.0)
     before = m.tables[row + low]
     change = m.tables[row + low + 1] - before
     value = before + change * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
@@ -48,19 +71,15 @@ def _fraction(m: Model, side: int, tooth: int, inside: float) -> Fraction:
 
 
 @compiled
-def _fractions(m: Model, coast: int, pair: int, inside: float) -> tuple[Fraction, Fraction]:
-    """Fractions of the pinion's and the gear's flank of a pair; on the coast flank the gear's tooth is the next."""
-    number = pair + int(m.state.turns)
-    return _fraction(m, 0, number, inside), _fraction(m, 1, number + coast, inside)
-
-
-@compiled
 def _shares_by_place(m: Model, coast: int, pair: int, inside: float) -> Shares:
-    f, g = _fractions(m, coast, pair, inside)
+    """Shares of the materials of a pair; on the coast flank the gear's tooth is the next."""
+    number = pair + m.state.turns
+    f = _value(m, 0, number, inside)
     if m.scene.patches != 0:
-        return 1.0 - f.value, f.value, 0.0
-    a, b = f.value, g.value
-    return (1.0 - a) * (1.0 - b), a * b, a * (1.0 - b) + b * (1.0 - a)
+        return 1.0 - f, f, 0.0
+    g = _value(m, 1, number + coast, inside)
+    both = f * g
+    return 1.0 - f - g + both, both, f + g - 2.0 * both
 
 
 @compiled(inline=True)
@@ -81,15 +100,21 @@ def shares_of(m: Model, coast: int, pair: int, inside: float) -> Shares:
 
 
 @compiled
-def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Shares, Shares]:
-    """First and second derivatives of the shares along the path of contact, per pitch."""
-    f, g = _fractions(m, coast, pair, inside)
+def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Shares, Shares, Shares]:
+    """Shares of the materials in a pair, and their first and second derivatives along the path, per pitch."""
+    number = pair + m.state.turns
+    f = _fraction(m, 0, number, inside)
     if m.scene.patches != 0:
-        return (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
-    both, cross = f.slope * g.value + f.value * g.slope, 2.0 * f.slope * g.slope
-    bend = f.bend * g.value + cross + f.value * g.bend
-    one, one_bend = f.slope + g.slope, f.bend + g.bend
-    return (both - one, both, one - 2.0 * both), (bend - one_bend, bend, one_bend - 2.0 * bend)
+        return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
+    g = _fraction(m, 1, number + coast, inside)
+    one, one_slope, one_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
+    both, slope = f.value * g.value, f.slope * g.value + f.value * g.slope
+    bend = f.bend * g.value + 2.0 * f.slope * g.slope + f.value * g.bend
+    return (
+        (1.0 - one + both, both, one - 2.0 * both),
+        (slope - one_slope, slope, one_slope - 2.0 * slope),
+        (bend - one_bend, bend, one_bend - 2.0 * bend),
+    )
 
 
 @compiled(inline=True)
@@ -97,8 +122,7 @@ def loading_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
     """Loading branch of all materials and its slope, scaled, for a contact of unit length."""
     if m.scene.by_place == 0:
         return loading_value(m.tables, m.scene.loading_at, gap)
-    bare, coated, mixed = m.scene.material[0], m.scene.material[1], m.scene.material[2]
-    return blended_value(m.tables, (bare.loading_at, coated.loading_at, mixed.loading_at), shares, gap)
+    return blended_value(m.tables, m.scene.blended_at, shares, gap)
 
 
 @compiled
@@ -107,9 +131,11 @@ def potential_of(m: Model, gap: float, shares: Shares) -> float:
     if m.scene.by_place == 0:
         return loading_value(m.tables, m.scene.potential_at, gap)[0]
     bare, coated, mixed = m.scene.material[0], m.scene.material[1], m.scene.material[2]
-    return blended_value(m.tables, (bare.potential_at, coated.potential_at, mixed.potential_at), shares, gap)[
-        0
-    ]
+    value = shares[0] * loading_value(m.tables, bare.potential_at, gap)[0]
+    value += shares[1] * loading_value(m.tables, coated.potential_at, gap)[0]
+    if shares[2] != 0.0:
+        value += shares[2] * loading_value(m.tables, mixed.potential_at, gap)[0]
+    return value
 
 
 @compiled
