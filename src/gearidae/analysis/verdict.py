@@ -16,12 +16,14 @@ import xarray as xr
 from gearidae.analysis.kept_verdicts import kept_fields
 from gearidae.analysis.sampled_extremes import extremes_of_samples
 from gearidae.analysis.verdict_table import Outcomes, Shown
+from gearidae.archive.dataset import to_dataset
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of
-from gearidae.records import EventKind, Extremes
+from gearidae.records import EventKind, Extremes, Solution
+from gearidae.scene import Scene
 
-__all__ = ["IRREGULAR_ABOVE", "START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
+__all__ = ["IRREGULAR_ABOVE", "START_UP", "GearOutcome", "RollerOutcome", "judge", "outcomes"]
 
 IRREGULAR_ABOVE = 0.25
 """A gear turns irregularly if its speed both falls and rises again by more than this fraction of its mean."""
@@ -177,6 +179,30 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
         return Outcomes(_roller(label, run) for label, run in runs(ds))
     scheduled = _is_scheduled(scene_of(ds))
     return Outcomes(_gear(label, run, scheduled) for label, run in runs(ds))
+
+
+def judge(scene: Scene, solution: Solution) -> tuple[str, int]:
+    """Judge a run before a dataset is made of it, which takes longer than many a run.
+
+    Parameters
+    ----------
+    scene : Scene
+        As it was run.
+    solution : Solution
+
+    Returns
+    -------
+    verdict : str
+        What `outcomes` says of the run's dataset.
+    impacts : int
+        Likewise.
+    """
+    found, drive, load = solution.extremes, scene.drive, scene.load
+    if drive is None or load is None or found is None or math.isnan(found.final_speed):
+        (outcome,) = outcomes(to_dataset(scene, solution))
+        return outcome.verdict, outcome.impacts
+    verdict = _gear_verdict(found, solution.status, bool(drive.schedule or load.schedule))
+    return verdict, int(np.count_nonzero(solution.events.kind == EventKind.ONSET))
 
 
 def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcome:

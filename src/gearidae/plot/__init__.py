@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.lazy import lazy_names
 from gearidae.plot.coating import coating_map, starting_torque
+from gearidae.plot.ensembles import sobol_indices, sticking_probability
 from gearidae.plot.files import write
 from gearidae.plot.gears import gap, gear_speed, transmission_error
 from gearidae.plot.overview import overview
@@ -32,8 +33,10 @@ __all__ = [
     "power_spectrum",
     "roller_force",
     "roller_gap",
+    "sobol_indices",
     "spectrogram",
     "starting_torque",
+    "sticking_probability",
     "teeth",
     "transmission_error",
     "write",

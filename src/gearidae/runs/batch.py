@@ -73,11 +73,9 @@ def leave(scene: Scene, solution: Solution, keep: Keep) -> Left:
     """Judge a run and drop what is not kept of it."""
     if keep.names is None:
         return Left(solution)
-    from gearidae.analysis.verdict import outcomes
-    from gearidae.archive import to_dataset
+    from gearidae.analysis.verdict import judge
 
-    (outcome,) = outcomes(to_dataset(scene, solution))
-    return Left(keep.thinned(solution), outcome.verdict, outcome.impacts)
+    return Left(keep.thinned(solution), *judge(scene, solution))
 
 
 class Batch:

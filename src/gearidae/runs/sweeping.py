@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["prepare_archive", "run_plan", "sweep"]
+__all__ = ["prepare_archive", "run_plan", "sweep", "whole_archive"]
 
 
 def sweep(
@@ -123,7 +123,7 @@ def sweep(
         archive,
         plan.scenes,
         backend,
-        partial(_whole, plan=plan, backend=backend, keep=parts),
+        partial(whole_archive, plan=plan, backend=backend, keep=parts),
         keep=parts,
         overwrite=overwrite,
         resume=resume,
@@ -265,19 +265,41 @@ def prepare_archive(
     return kept, None
 
 
-def _whole(target: Path, plan: SweepPlan, backend: str, keep: Keep) -> xr.Dataset | None:
-    """Return the archive of this very sweep, None if runs of it are missing; refuse any other file."""
+def whole_archive(
+    target: Path, plan: SweepPlan, backend: str, keep: Keep, more: Mapping[str, str] | None = None
+) -> xr.Dataset | None:
+    """Return the archive of this very sweep, None if runs of it are missing; refuse any other file.
+
+    Parameters
+    ----------
+    target : Path
+        That is there.
+    plan : SweepPlan
+    backend : str
+        As for `sweep`.
+    keep : Keep
+    more : mapping of str to str, optional
+        Further attributes that it must have.
+
+    Returns
+    -------
+    Dataset or None
+
+    Raises
+    ------
+    SceneError
+        If it is of another sweep, or cannot be read.
+    """
     try:
         ds = open_archive(target)
     except SceneError as error:
         raise SceneError("archive", target, f"exists and cannot be resumed: it {error.allowed}") from None
     asked = "" if keep.names is None else json.dumps(keep.asked)
-    expected = provenance(plan.base, "") | {"swept": plan.swept, "zipped": plan.zipped, "keep": asked}
-    differing = [
-        name
-        for name in ("scene", "swept", "zipped", "keep", "source")
-        if ds.attrs.get(name, "") != expected[name]
-    ]
+    expected = {
+        name: str(value) for name, value in provenance(plan.base, "").items() if name in ("scene", "source")
+    }
+    expected |= {"swept": plan.swept, "zipped": plan.zipped, "keep": asked, **(more or {})}
+    differing = [name for name, value in expected.items() if ds.attrs.get(name, "") != value]
     if differing or ds.attrs["backend"] not in ("", choose_backend(backend)):
         ds.close()
         raise SceneError(

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
     from gearidae.runs.run_time import run_time
     from gearidae.runs.validity import validity
     from gearidae.studies.coating_map import coating_map, open_map
+    from gearidae.studies.ensemble import ensemble
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
+    from gearidae.studies.sticking_probability import sticking_probability
     from gearidae.studies.sticking_threshold import sticking_threshold
     from gearidae.studies.tooth_contacts import tooth_contacts
 
@@ -28,6 +30,7 @@ __all__ = [
     "contact_resonance",
     "doubts",
     "effective_mass",
+    "ensemble",
     "natural_frequency",
     "open_map",
     "resting_gap",
@@ -36,6 +39,7 @@ __all__ = [
     "starting_torque",
     "static_starting_torque",
     "steady_speed",
+    "sticking_probability",
     "sticking_threshold",
     "tooth_contacts",
     "validity",
@@ -46,6 +50,7 @@ _HOME = {
     "contact_resonance": "equilibrium",
     "doubts": "gearidae.runs.plausibility",
     "effective_mass": "gearidae.runs.estimates",
+    "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
     "open_map": "coating_map",
     "resting_gap": "gearidae.runs.estimates",
@@ -54,6 +59,7 @@ _HOME = {
     "starting_torque": "starting_torque",
     "static_starting_torque": "starting_torque",
     "steady_speed": "gearidae.runs.estimates",
+    "sticking_probability": "sticking_probability",
     "sticking_threshold": "sticking_threshold",
     "tooth_contacts": "tooth_contacts",
     "validity": "gearidae.runs.validity",
