@@ -15,6 +15,7 @@ from gearidae.analysis.verdict_codes import VerdictCode, sticking, verdict_codes
 from gearidae.archive import to_dataset
 from gearidae.cli import main
 from gearidae.errors import Interrupted
+from gearidae.records import EventKind
 from gearidae.runs import batch
 from gearidae.runs.kept_runs import folder_beside
 from gearidae.runs.running import solve, unsolved
@@ -59,8 +60,9 @@ def test_a_run_is_judged_alike_with_and_without_a_dataset():
     ):
         solution = solve(scene.replace({"run.samples": "off"}), "auto")
         (outcome,) = outcomes(to_dataset(scene.replace({"run.samples": "off"}), solution))
-        assert judge(scene, solution) == (outcome.verdict, outcome.impacts)
-    assert judge(LOW, unsolved("failed", "of a test")) == ("unfinished", 0)
+        changes = int((solution.events.kind == EventKind.FLANK_CHANGE).sum())
+        assert judge(scene, solution) == (outcome.verdict, outcome.impacts, changes)
+    assert judge(LOW, unsolved("failed", "of a test")) == ("unfinished", 0, 0)
 
 
 def test_codes_stand_for_words():

@@ -181,7 +181,7 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     return Outcomes(_gear(label, run, scheduled) for label, run in runs(ds))
 
 
-def judge(scene: Scene, solution: Solution) -> tuple[str, int]:
+def judge(scene: Scene, solution: Solution) -> tuple[str, int, int]:
     """Judge a run before a dataset is made of it, which takes longer than many a run.
 
     Parameters
@@ -194,15 +194,18 @@ def judge(scene: Scene, solution: Solution) -> tuple[str, int]:
     -------
     verdict : str
         What `outcomes` says of the run's dataset.
-    impacts : int
-        Likewise.
+    impacts, flank_changes : int
+        Contacts made, and how often contact went over to the other flank.
     """
+    kinds = solution.events.kind
+    impacts, changes = (
+        int(np.count_nonzero(kinds == kind)) for kind in (EventKind.ONSET, EventKind.FLANK_CHANGE)
+    )
     found, drive, load = solution.extremes, scene.drive, scene.load
     if drive is None or load is None or found is None or math.isnan(found.final_speed):
         (outcome,) = outcomes(to_dataset(scene, solution))
-        return outcome.verdict, outcome.impacts
-    verdict = _gear_verdict(found, solution.status, bool(drive.schedule or load.schedule))
-    return verdict, int(np.count_nonzero(solution.events.kind == EventKind.ONSET))
+        return outcome.verdict, impacts, changes
+    return _gear_verdict(found, solution.status, bool(drive.schedule or load.schedule)), impacts, changes
 
 
 def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcome:

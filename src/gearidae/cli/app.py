@@ -233,6 +233,35 @@ def threshold(
     return search_threshold(str(case), over, exits, output, given, jobs, overwrite=overwrite, resume=resume)
 
 
+@app.command(name="operating-map")
+def operating_map(
+    case: Case,
+    *,
+    over: Annotated[
+        list[str],
+        Parameter(
+            help="Two keys and their values, drive.torque=4e-18:5e-18:1e-19 coating.sam_fraction=1:0.4:-0.1.",
+            consume_multiple=False,
+            completer=completing.keys,
+        ),
+    ],
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    dask: Dask = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished map in the output file.")] = False,
+    overwrite: Overwrite = False,
+) -> int:
+    """Map over two keys where the gear turns, where it sticks, and where its teeth cross the backlash.
+
+    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+    """
+    from gearidae.cli.operating_map import map_outcomes
+
+    given = settings or []
+    return map_outcomes(str(case), over, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+
+
 @app.command
 def ensemble(
     case: Case,

@@ -120,7 +120,7 @@ def _open(archive: Path) -> tuple[xr.Dataset, str]:
         ds = gd.open_archive(archive)
         if "ensemble" in ds.attrs:
             return ds, "sobol_indices" if "total_order" in ds else "sticking_probability"
-        return ds, "overview"
+        return ds, "outcome_map" if "outcome" in ds else "overview"
     except SceneError:
         try:
             return gd.analysis.open_map(archive), "coating_map"

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from gearidae.studies.coating_map import coating_map, open_map
     from gearidae.studies.ensemble import ensemble
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
+    from gearidae.studies.operating_map import operating_map
     from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.sticking_probability import sticking_probability
@@ -33,6 +34,7 @@ __all__ = [
     "ensemble",
     "natural_frequency",
     "open_map",
+    "operating_map",
     "resting_gap",
     "run_time",
     "sensitivity",
@@ -53,6 +55,7 @@ _HOME = {
     "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
     "open_map": "coating_map",
+    "operating_map": "operating_map",
     "resting_gap": "gearidae.runs.estimates",
     "run_time": "gearidae.runs.run_time",
     "sensitivity": "sensitivity",

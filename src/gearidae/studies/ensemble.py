@@ -6,34 +6,26 @@ import json
 import os
 from collections.abc import Mapping
 from concurrent.futures import Executor
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from gearidae.archive import save
-from gearidae.archive.keep import read_keep
 from gearidae.archive.variables import EXTREMES, ROLLER_EXTREMES
-from gearidae.errors import Interrupted, SceneError
-from gearidae.runs.executors import check_executor, check_jobs
-from gearidae.runs.kept_validity import with_validity
+from gearidae.errors import SceneError
 from gearidae.runs.running import prepare
-from gearidae.runs.sweeping import prepare_archive, run_plan, whole_archive
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.studies.design import Design, check_design, pick_freeze_design, plain_design
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.indices import Indices, indices_of
 from gearidae.studies.members import along_members, member_plan, names_of
+from gearidae.studies.study_run import Execution, run_study
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
 
-__all__ = ["KEPT", "ensemble", "figure_names"]
-
-KEPT = ("extremes",)
-"""What each run leaves behind, beside its verdict."""
+__all__ = ["ensemble", "figure_names"]
 
 
 def ensemble(
@@ -106,43 +98,27 @@ def ensemble(
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
     distributions = read_distributions(base, vary)
-    check_jobs(jobs)
-    check_executor(executor)
+    how = Execution(
+        executor=executor,
+        jobs=jobs,
+        backend=backend,
+        progress=progress,
+        archive=archive,
+        overwrite=overwrite,
+        resume=resume,
+    )
+    how.check()
     drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
     texts = names_of(distributions)
     values = {each.key: drawn.values[:, number] for number, each in enumerate(distributions)}
     plan = member_plan(base, values, texts)
-    keep = read_keep(KEPT, base)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": of, "distributions": texts}
-    attributes = {"ensemble": json.dumps(about)}
-    whole = partial(whole_archive, plan=plan, backend=backend, keep=keep, more=attributes)
-    kept, found = prepare_archive(
-        archive, plan.scenes, backend, whole, keep=keep, overwrite=overwrite, resume=resume
-    )
-    if found is not None:
-        return found
-    ds, interrupted = run_plan(
-        plan,
-        kept if resume else None,
-        kept,
-        executor,
-        keep=keep,
-        backend=backend,
-        jobs=jobs,
-        progress=progress,
-    )
-    ds = _with_design(along_members(ds, tuple(texts)), drawn, tuple(texts), of, int(seed))
-    ds = ds.assign_attrs(attributes | _titles(base, texts, len(plan.scenes)))
-    if archive is not None:
-        save(with_validity(ds, base), archive, overwrite=overwrite or resume)
-    if interrupted:
-        where = "the error's dataset has the finished runs"
-        if archive is not None:
-            where = f"the finished runs are in {os.fspath(archive)}; go on with --resume"
-        raise Interrupted(where, ds)
-    if kept is not None:
-        kept.remove(plan.scenes)
-    return ds
+
+    def finish(ds: xr.Dataset) -> xr.Dataset:
+        ds = _with_design(along_members(ds, tuple(texts)), drawn, tuple(texts), of, int(seed))
+        return ds.assign_attrs(_titles(base, texts, len(plan.scenes)))
+
+    return run_study(plan, how, {"ensemble": json.dumps(about)}, finish)
 
 
 def figure_names(scene: Scene) -> tuple[str, ...]:
