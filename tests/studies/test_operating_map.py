@@ -8,10 +8,10 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
+from gearidae.analysis.verdict_codes import Outcome
 from gearidae.cli import main
 from gearidae.errors import Interrupted
 from gearidae.records import EventKind
-from gearidae.studies.operating_map import Outcome
 from sweeps import without_times
 
 RATTLING = gd.preset("teodorescu2009_low_speed").replace(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CODE_ATTRIBUTES", "VerdictCode", "sticking", "verdict_codes"]
+__all__ = ["CODE_ATTRIBUTES", "Outcome", "VerdictCode", "sticking", "verdict_codes"]
 
 
 class VerdictCode(IntEnum):
@@ -31,6 +31,15 @@ class VerdictCode(IntEnum):
     def word(self) -> str:
         """The verdict's word."""
         return self.name.lower().replace("_", " ")
+
+
+class Outcome(IntEnum):
+    """What a gear does at one place of an operating map."""
+
+    UNFINISHED = -1
+    TURNS = 0
+    CROSSES_BACKLASH = 1
+    STICKS = 2
 
 
 CODE_ATTRIBUTES: dict[str, Any] = {

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import gearidae as gd
+from gearidae.analysis.verdict_codes import Outcome
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.values import default_output, sweep_values
 from gearidae.runs.executors import check_jobs, dask_executor
-from gearidae.studies.operating_map import Outcome
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,9 +9,9 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from gearidae.analysis.verdict_codes import Outcome
 from gearidae.errors import SceneError
 from gearidae.plot.style import new_axes, scale_for
-from gearidae.studies.operating_map import Outcome
 
 __all__ = ["outcome_map"]
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, sticking, verdict_codes
+from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, Outcome, sticking, verdict_codes
 from gearidae.errors import SceneError
 from gearidae.runs.running import prepare
 from gearidae.runs.sweep_plan import plan_sweep
@@ -22,16 +21,7 @@ if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
 
-__all__ = ["Outcome", "operating_map"]
-
-
-class Outcome(IntEnum):
-    """What a gear does at one place of an operating map."""
-
-    UNFINISHED = -1
-    TURNS = 0
-    CROSSES_BACKLASH = 1
-    STICKS = 2
+__all__ = ["operating_map"]
 
 
 _OUTCOME = {

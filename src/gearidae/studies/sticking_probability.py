@@ -7,7 +7,6 @@ from typing import Any, Final
 
 import numpy as np
 import xarray as xr
-from scipy.stats import binomtest
 
 from gearidae.archive.dataset import dimension_names
 from gearidae.errors import SceneError
@@ -111,6 +110,8 @@ def _bin_count(members: int, bins: int | None) -> int:
 
 def _band(groups: list[np.ndarray[Any, Any]], dims: tuple[str, ...], confidence: float) -> dict[str, Any]:
     """Probability, interval and counts of each group."""
+    from scipy.stats import binomtest  # which takes half a second to load, and pictures do without
+
     counts = [(int(each.sum()), each.size) for each in groups]
     intervals = [
         binomtest(stuck, size).proportion_ci(confidence_level=confidence, method="wilson")
