@@ -10,9 +10,10 @@ import xarray as xr
 from scipy import stats
 
 import gearidae as gd
-from gearidae.analysis.verdict import judge, outcomes
+from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict_codes import VerdictCode, sticking, verdict_codes
 from gearidae.archive import to_dataset
+from gearidae.archive.verdict import verdict_of
 from gearidae.cli import main
 from gearidae.errors import Interrupted
 from gearidae.records import EventKind
@@ -61,8 +62,8 @@ def test_a_run_is_judged_alike_with_and_without_a_dataset():
         solution = solve(scene.replace({"run.samples": "off"}), "auto")
         (outcome,) = outcomes(to_dataset(scene.replace({"run.samples": "off"}), solution))
         changes = int((solution.events.kind == EventKind.FLANK_CHANGE).sum())
-        assert judge(scene, solution) == (outcome.verdict, outcome.impacts, changes)
-    assert judge(LOW, unsolved("failed", "of a test")) == ("unfinished", 0, 0)
+        assert verdict_of(scene, solution) == (outcome.verdict, outcome.impacts, changes)
+    assert verdict_of(LOW, unsolved("failed", "of a test")) == ("unfinished", 0, 0)
 
 
 def test_codes_stand_for_words():
