@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from gearidae.analysis.verdict_codes import VerdictCode, sticking, verdict_codes
 from gearidae.archive import to_dataset
 from gearidae.archive.verdict import verdict_of
 from gearidae.cli import main
+from gearidae.cli.ensemble import executor_for
 from gearidae.errors import Interrupted
 from gearidae.records import EventKind
 from gearidae.runs import batch
@@ -225,6 +226,23 @@ def test_pictures(found, stuck):
     ax.figure.canvas.draw()
     with pytest.raises(gd.SceneError, match="of=figure"):
         gd.plot.sobol_indices(stuck)
+
+
+@pytest.mark.parametrize(
+    ("key", "members", "workers", "kind"),
+    [
+        ("surface.asperity_radius", 64, 2, ProcessPoolExecutor),
+        ("coating.energy", 64, 2, ProcessPoolExecutor),
+        ("surface.asperity_radius", 64, 1, type(None)),
+        ("surface.asperity_radius", 8, 2, type(None)),
+        ("coating.sam_fraction", 64, 2, type(None)),
+    ],
+)
+def test_the_command_takes_processes_where_each_member_needs_tables_of_its_own(key, members, workers, kind):
+    with executor_for(
+        [key], members, workers, None
+    ) as executor:  # no process is started before the first run
+        assert type(executor) is kind
 
 
 def test_the_command(tmp_path, monkeypatch, capsys):

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,14 +17,16 @@ from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.values import default_output, texts
-from gearidae.runs.executors import check_jobs, dask_executor
+from gearidae.runs.executors import check_jobs, dask_executor, own_executor
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["run_ensemble"]
+__all__ = ["executor_for", "run_ensemble"]
 
 _SHOWN = ("min_gear_speed", "max_gear_speed", "largest_mesh_force", "smallest_mesh_force", "stick_time")
+_WORTH_PROCESSES = 64
+"""Members from which on it is worth while to start processes, which takes some seconds."""
 _NAMED = 3
 """Failed members that are named."""
 
@@ -76,7 +79,7 @@ def run_ensemble(
             scene,
             distributions,
             **drawn,
-            executor=None if dask is None else stack.enter_context(dask_executor(dask)),
+            executor=stack.enter_context(executor_for(distributions, drawn["size"], workers, dask)),
             jobs=workers,
             progress=not is_quiet(),
             archive=target,
@@ -92,6 +95,39 @@ def run_ensemble(
     if failed.size > _NAMED:
         complain(f"{failed.size - _NAMED} more members could not be finished")
     return UNFINISHED if failed.size else DONE
+
+
+@contextmanager
+def executor_for(
+    keys: Iterable[str], members: int, workers: int, dask: str | None
+) -> Iterator[Executor | None]:
+    """Provide the executor that suits an ensemble; None leaves the choice to the solver.
+
+    Where members differ in their surface each makes tables of the force law, which takes longer than its run and which
+    threads cannot do side by side.
+
+    Parameters
+    ----------
+    keys : iterable of str
+        That are drawn.
+    members, workers : int
+        Runs, and runs at a time.
+    dask : str or None
+        Address of a Dask scheduler.
+
+    Yields
+    ------
+    Executor or None
+    """
+    own_tables = any(key.startswith("surface.") or key == "coating.energy" for key in keys)
+    if dask is not None:
+        with dask_executor(dask) as executor:
+            yield executor
+    elif own_tables and members >= _WORTH_PROCESSES:
+        with own_executor(workers, members, releases_gil=False) as processes:
+            yield processes
+    else:
+        yield None
 
 
 def _rows(ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
