@@ -117,7 +117,10 @@ def _is_moving(path: Path) -> bool:
 def _open(archive: Path) -> tuple[xr.Dataset, str]:
     """Dataset of a file, and its default picture."""
     try:
-        return gd.open_archive(archive), "overview"
+        ds = gd.open_archive(archive)
+        if "ensemble" in ds.attrs:
+            return ds, "sobol_indices" if "total_order" in ds else "sticking_probability"
+        return ds, "outcome_map" if "outcome" in ds else "overview"
     except SceneError:
         try:
             return gd.analysis.open_map(archive), "coating_map"
