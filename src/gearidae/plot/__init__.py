@@ -14,6 +14,7 @@ from gearidae.plot.gears import gap, gear_speed, transmission_error
 from gearidae.plot.overview import overview
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
+from gearidae.plot.surface import surface
 from gearidae.plot.torque import contact_torque
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ __all__ = [
     "roller_gap",
     "spectrogram",
     "starting_torque",
+    "surface",
     "teeth",
     "transmission_error",
     "write",

@@ -23,6 +23,8 @@ from gearidae.errors import SceneError
 from gearidae.plot.picture import PictureAxes, new_picture
 
 __all__ = [
+    "COLOURS",
+    "LINE_STYLES",
     "NEGATIVE",
     "POSITIVE",
     "Run",
@@ -41,8 +43,8 @@ Floats = NDArray[np.float64]
 
 # Okabe and Ito's palette, dark colours first: told apart by colour-blind readers and, with the line styles,
 # in grey.
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-_LINE_STYLES = (
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+LINE_STYLES = (
     "-",
     (0, (6, 1.5)),
     (0, (1.5, 1)),
@@ -51,7 +53,7 @@ _LINE_STYLES = (
     (0, (8, 2, 1, 1, 1, 2)),
     "-",
 )
-POSITIVE, NEGATIVE = _COLOURS[:2]
+POSITIVE, NEGATIVE = COLOURS[:2]
 """Colours of what pushes and of what pulls."""
 
 _PREFIXES = {
@@ -142,8 +144,8 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
         Run(
             _label(label, run),
             run,
-            _COLOURS[number % len(_COLOURS)],
-            _LINE_STYLES[number % len(_LINE_STYLES)],
+            COLOURS[number % len(COLOURS)],
+            LINE_STYLES[number % len(LINE_STYLES)],
         )
         for number, (label, run) in enumerate(found)
     ]

@@ -1,7 +1,7 @@
 """What a user describes: a frozen, validated scene, its presets and its case files."""
 
 from gearidae.scene.case import load_case
-from gearidae.scene.dump import dump_case
+from gearidae.scene.dump import dump_case, dump_keys
 from gearidae.scene.gears import Gears, Mesh, StaticErrorHarmonic
 from gearidae.scene.keys import KeyInfo
 from gearidae.scene.knots import Knots
@@ -35,6 +35,7 @@ __all__ = [
     "describe_keys",
     "differences",
     "dump_case",
+    "dump_keys",
     "load_case",
     "nearest_preset",
     "preset",
