@@ -11,6 +11,7 @@ from gearidae.lazy import lazy_names
 from gearidae.plot.coating import coating_map, starting_torque
 from gearidae.plot.files import write
 from gearidae.plot.gears import gap, gear_speed, transmission_error
+from gearidae.plot.outcome import outcome
 from gearidae.plot.overview import overview
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
@@ -29,6 +30,7 @@ __all__ = [
     "gap",
     "gear_speed",
     "impact_spectrum",
+    "outcome",
     "overview",
     "power_spectrum",
     "roller_force",

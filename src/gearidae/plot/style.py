@@ -16,10 +16,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from gearidae.analysis.verdict import START_UP
+from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
 from gearidae.errors import SceneError
+from gearidae.plot.picking import pick
 from gearidae.plot.picture import PictureAxes, new_picture
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "new_axes",
     "runs_of",
     "scale_for",
+    "scaled",
     "thin",
     "tidy",
 ]
@@ -70,6 +72,8 @@ _PREFIXES = {
     6: "M",
     9: "G",
 }
+_PREFIXED = ("m", "s", "Pa", "Hz", "N", "N m", "J", "W")
+_SPELT = {"rad s-1": "rad/s", "m s-1": "m/s", "kg m2": "kg m²", "J m-2": "J/m²", "m-2": "1/m²"}
 _MOST_POINTS = 6000
 _MOST_RUNS = 7
 
@@ -125,8 +129,8 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     Returns
     -------
     list of Run
-        At most seven, evenly picked, the first and the last among them: more cannot be told apart in one
-        picture.
+        At most seven, because more cannot be told apart in one picture: the first, the last, and those at which the
+        outcome changes, see `gearidae.plot.picking`.
 
     Raises
     ------
@@ -134,12 +138,13 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
         If the dataset lacks the variable or has no samples.
     """
     everything = list(runs(ds)) if name in ds else []
-    found = [(label, run) for label, run in everything if _has_samples(run[name])]
+    kept = [number for number, (_, run) in enumerate(everything) if _has_samples(run[name])]
+    if len(kept) > _MOST_RUNS:
+        judged = outcomes(ds)
+        kept = [kept[number] for number in pick([judged[each].verdict for each in kept], _MOST_RUNS)]
+    found = [everything[number] for number in kept]
     if not found:
         raise SceneError("plot", name, "the dataset has no samples of it")
-    if len(found) > _MOST_RUNS:
-        picked = np.unique(np.linspace(0, len(found) - 1, _MOST_RUNS).round().astype(int))
-        found = [found[index] for index in picked]
     return [
         Run(
             _label(label, run),
@@ -169,6 +174,21 @@ def scale_for(largest: float, unit: str) -> Scale:
         return Scale(1.0, unit)
     power = min(max(3 * math.floor(math.log10(largest * (1 + 1e-9)) / 3), min(_PREFIXES)), max(_PREFIXES))
     return Scale(10.0**-power, f"{_PREFIXES[power]}{unit}")
+
+
+def scaled(largest: float, unit: str) -> Scale:
+    """Choose a prefix as `scale_for` does, for units that take one; others stay as they are.
+
+    Parameters
+    ----------
+    largest : float
+        Largest magnitude to be shown [SI].
+    unit : str
+        Unit without prefix, as datasets have it.
+    """
+    if unit in _PREFIXED:
+        return scale_for(largest, unit)
+    return Scale(1.0, _SPELT.get(unit, unit))
 
 
 def largest(runs: Sequence[Run], name: str) -> float:
@@ -254,7 +274,7 @@ def legend(ax: Axes, runs: Sequence[Run]) -> None:
         [run.label for run in runs],
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
-        ncols=len(runs) if max(len(run.label) for run in runs) < 12 else 3,
+        ncols=min(len(runs), 4) if max(len(run.label) for run in runs) < 12 else 3,
         frameon=False,
         borderaxespad=0.2,
         handlelength=2.4,
@@ -285,11 +305,7 @@ def _label(label: Mapping[str, Any], run: xr.Dataset) -> str:
         if dim == "sam_fraction":
             words.append(f"SAM {100 * value:.4g} %")
         elif isinstance(value, float) and unit != "1":
-            scale = (
-                scale_for(abs(value), unit)
-                if unit in ("m", "s", "Pa", "Hz", "N", "N m")
-                else Scale(1.0, unit)
-            )
+            scale = scaled(abs(value), unit)
             words.append(f"{dim} {value * scale.factor:.4g} {scale.unit}")
         else:
             words.append(f"{dim} {value:g}" if isinstance(value, float) else f"{dim} {value}")
