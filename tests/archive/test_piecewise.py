@@ -13,9 +13,9 @@ import xarray as xr
 from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
 
 import gearidae as gd
-from gearidae.analysis import run_summary as account_module
 from gearidae.analysis.verdict import outcomes
 from gearidae.archive import netcdf, pieces, save, time_index, to_dataset
+from gearidae.archive import run_summary as account_module
 from gearidae.archive.growing import GrowingArchive
 from gearidae.plot import spectra, style
 from gearidae.report import build_report, series

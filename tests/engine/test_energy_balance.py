@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from balances import assert_balanced
 from gearidae import engine
 from gearidae.contact import asperity_of
 from gearidae.contact.asperities.jkr import JOINING, S_FOLD, jkr_root
@@ -29,7 +30,7 @@ def check(scene, solution):
     """The residual lies within the stated bound."""
     balance = solution.balance
     assert balance.throughput > 0.0
-    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=scene.roller is not None)
+    assert_balanced(balance, scene)
     return balance
 
 

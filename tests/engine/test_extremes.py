@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from balances import assert_balanced
 from gearidae import engine
 from gearidae.contact import asperity_of
 from gearidae.contact.asperities.registry import law_of_tip
@@ -145,7 +146,7 @@ def test_adhesion_loss_is_the_integral_of_the_contact_length(model, asperity, rt
     assert solution.balance.adhesion_loss == pytest.approx(lost, rel=error, abs=0)
     assert at_last_length != pytest.approx(lost, rel=2e-5, abs=0)
     balance = solution.balance
-    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=False)
+    assert_balanced(balance, scene)
 
 
 def joined_along(gap, limit, count):

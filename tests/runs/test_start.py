@@ -288,6 +288,21 @@ def test_a_stop_at_sticking_is_where_the_speed_falls_to_zero():
     assert float(ds.time[-1]) <= ds.attrs["t_end"]
 
 
+def test_runs_of_a_sweep_stop_each_for_itself():
+    """A worn gear's run ends where it sticks; that of a coated one goes on to the end."""
+    scene = LOW.replace({"run.duration": 0.25, "run.samples": 251, "run.stop": "sticks"})
+    ds = gd.sweep(scene, {"coating.sam_fraction": [1.0, 0.45]}, jobs=1)
+    assert ds.status.values.tolist() == ["finished", "finished"]
+    coated, worn = ds.reached.values
+    assert (coated, np.isnan(ds.stick_time.values[0])) == (0.25, True)
+    assert worn == pytest.approx(float(ds.stick_time[1]), rel=1e-9)
+    sampled = np.isfinite(ds.gear_speed.values)
+    assert sampled[0].all()
+    np.testing.assert_array_equal(sampled[1], ds.time.values <= worn)
+    alone = gd.simulate(scene.replace({"coating.sam_fraction": 0.45}))
+    assert alone.attrs["t_end"] == worn
+
+
 def test_a_block_may_end_the_run(tmp_path):
     seen = []
 

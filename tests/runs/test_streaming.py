@@ -18,7 +18,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import growing
+from gearidae.archive import growing, growing_layout
 from gearidae.cli import main
 from gearidae.engine.integrate import driver, native, portable
 from gearidae.runs import streaming
@@ -45,7 +45,8 @@ def many_small_blocks(monkeypatch):
     monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
     monkeypatch.setattr(growing, "EVENT_ROOM", 16)
-    monkeypatch.setattr(growing, "_COPIED", 50)
+    for module in (growing, growing_layout):
+        monkeypatch.setattr(module, "COPIED", 50)
 
 
 def assert_same(one, other):

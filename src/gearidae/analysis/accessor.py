@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.run_summary import with_account
 from gearidae.archive.keep import kept_in
+from gearidae.archive.run_summary import with_account
 from gearidae.archive.select import run_scene, runs, scene_of, swept_dims
 from gearidae.archive.single import single_run
 from gearidae.archive.tables import LARGEST_TABLE, event_table, run_labels, time_series

@@ -30,35 +30,13 @@ def extremes_of_samples(run: xr.Dataset) -> Extremes | None:
     end = reached(speed)
     if not end:
         return None
-    shown: dict[str, Any] = dict.fromkeys(_FLOATS, math.nan) | {
-        "largest_mesh_force": force.high,
-        "smallest_mesh_force": force.low,
-        "final_speed": float(speed[end - 1]),
-    }
-    counts: dict[str, Any] = dict.fromkeys(("reversals", "turn_backs", "stick_exits", "mesh_exits"), 0)
-    return Extremes(**shown, **counts) if roller else Extremes(**(shown | _of_gear(run, end)), **counts)
-
-
-_FLOATS = (
-    "min_gear_speed",
-    "max_gear_speed",
-    "settled_gear_speed",
-    "settled_spread",
-    "speed_fall",
-    "speed_rise",
-    "late_gear_speed",
-    "late_spread",
-    "last_min_gear_speed",
-    "stick_time",
-    "turned_back",
-    "time_adhering",
-    "largest_mesh_force",
-    "largest_mesh_force_time",
-    "smallest_mesh_force",
-    "smallest_mesh_force_time",
-    "smallest_separation",
-    "final_speed",
-)
+    gear: dict[str, Any] = {} if roller else _of_gear(run, end)
+    return Extremes(
+        **gear,
+        largest_mesh_force=force.high,
+        smallest_mesh_force=force.low,
+        final_speed=float(speed[end - 1]),
+    )
 
 
 def _of_gear(run: xr.Dataset, end: int) -> dict[str, float]:
@@ -99,10 +77,8 @@ def _standstill(run: xr.Dataset, end: int) -> dict[str, float]:
     first, last = (float(angle.variable[k].values) / pitch for k in (0, end - 1))
     if not first_above(speed, 0.0) and float(speed.variable[0].values) <= 0.0:
         return {"stick_time": 0.0, "turned_back": max(first - last, 0.0)}
-    held, farthest = (
-        None,
-        -math.inf,
-    )  # the sample where it came to stand, with its place, and how far it has been since
+    # the sample where it came to stand, with its place, and how far it has been since
+    held, farthest = None, -math.inf
     before = math.inf
     for start, values in pieces(speed, 0, end):
         places = angle.variable[start : start + values.size].values / pitch

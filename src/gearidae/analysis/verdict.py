@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from gearidae.analysis.kept_verdicts import kept_fields
@@ -19,16 +18,13 @@ from gearidae.analysis.verdict_table import Outcomes, Shown
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of
-from gearidae.records import EventKind, Extremes
+from gearidae.archive.verdict import IRREGULAR_ABOVE, gear_verdict, in_touch, is_scheduled, roller_verdict
+from gearidae.records import EventKind
 
 __all__ = ["IRREGULAR_ABOVE", "START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
 
-IRREGULAR_ABOVE = 0.25
-"""A gear turns irregularly if its speed both falls and rises again by more than this fraction of its mean."""
 START_UP = 0.05
 """Share of the run in which the teeth may still bounce from how they were set down."""
-BACK_FROM = 0.5
-"""Pitches that a gear must be turned back by to be said to run back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +46,8 @@ class GearOutcome(Shown):
         - ``irregular``: after the `START_UP` its speed fell below what it had been, and rose above what it had fallen
           to, by more than `IRREGULAR_ABOVE` of its mean.
         - ``running up`` or ``running down``: it did only one of both, and goes on to.
-        - ``runs`` or ``stops``: where a torque follows a schedule, changing speed and coming to rest are what was
-          asked for; judged is then only whether the gear turns during the last twentieth of the run.
+        - ``runs`` or ``stops``: where a torque or the held speed follows a schedule, changing speed and coming to rest
+          are what was asked for; judged is then only whether the gear turns during the last twentieth of the run.
         - ``unfinished``: the solver ended early and the gear had not come to stand until then.
     min_speed, max_speed : float
         Extremes of the gear's speed [rad/s].
@@ -175,7 +171,7 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
         return [kind(**fields) for fields in kept_fields(ds)]
     if is_roller(ds):
         return Outcomes(_roller(label, run) for label, run in runs(ds))
-    scheduled = _is_scheduled(scene_of(ds))
+    scheduled = is_scheduled(scene_of(ds))
     return Outcomes(_gear(label, run, scheduled) for label, run in runs(ds))
 
 
@@ -185,7 +181,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcom
     return GearOutcome(
         label=label,
         status=status,
-        verdict=_gear_verdict(found, status, scheduled),
+        verdict=gear_verdict(found, status, scheduled=scheduled),
         min_speed=found.min_gear_speed if found else math.nan,
         max_speed=found.max_gear_speed if found else math.nan,
         impacts=count(run["event_kind"], EventKind.ONSET),
@@ -196,40 +192,15 @@ def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcom
     )
 
 
-def _gear_verdict(found: Extremes | None, status: str, scheduled: bool) -> str:
-    if found is None:
-        return "unfinished"
-    if scheduled:
-        if status != "finished":
-            return "unfinished"
-        return "runs" if found.last_min_gear_speed > 0.0 else "stops"
-    if not math.isnan(found.stick_time):
-        return "runs back" if found.turned_back > BACK_FROM else "sticks"
-    return _turning(found) if status == "finished" else "unfinished"
-
-
-def _turning(found: Extremes) -> str:
-    """How a gear turned that has not come to stand."""
-    allowed = IRREGULAR_ABOVE * found.settled_gear_speed
-    if found.settled_spread <= allowed:
-        return "turns smoothly"
-    if min(found.speed_fall, found.speed_rise) > allowed:
-        return "irregular"
-    if found.late_spread <= IRREGULAR_ABOVE * found.late_gear_speed:
-        return "turns smoothly"
-    return "running up" if found.speed_rise > found.speed_fall else "running down"
-
-
 def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
     found = extremes_of(run) or extremes_of_samples(run)
     status = str(run_value(run, "status"))
     impacts = count(run["event_kind"], EventKind.ONSET)
-    verdict, restitution = "unfinished", np.nan
-    if status == "finished" and found is not None:
-        verdict, last = ("sticks" if impacts else "flies"), found.final_speed
-        if impacts and not _in_touch(run) and last > 0.0:
-            approach = float(label.get("speed", label.get("roller_speed", scene_of(run)["roller"]["speed"])))
-            verdict, restitution = "rebounds", last / abs(approach) if approach != 0.0 else np.nan
+    kinds = (values for _, values in pieces(run["event_kind"]))
+    verdict, restitution = roller_verdict(found, status, impacts, in_touch(kinds)), math.nan
+    if verdict == "rebounds" and found is not None:
+        approach = float(label.get("speed", label.get("roller_speed", scene_of(run)["roller"]["speed"])))
+        restitution = found.final_speed / abs(approach) if approach != 0.0 else math.nan
     return RollerOutcome(
         label=label,
         status=status,
@@ -240,17 +211,3 @@ def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
         impacts=impacts,
         wall_time=float(run_value(run, "wall_time")),
     )
-
-
-def _in_touch(run: xr.Dataset) -> bool:
-    """Whether the last contact made has not been broken."""
-    last = None
-    for _, kinds in pieces(run["event_kind"]):
-        changes = kinds[np.isin(kinds, (EventKind.ONSET, EventKind.SEPARATION))]
-        last = changes[-1] if changes.size else last
-    return bool(last == EventKind.ONSET)
-
-
-def _is_scheduled(scene: dict[str, Any]) -> bool:
-    """Whether a torque of the scene follows a schedule."""
-    return any((scene.get(shaft) or {}).get("schedule") for shaft in ("drive", "load"))

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Self
 
@@ -24,14 +24,14 @@ from numpy.typing import NDArray
 
 from gearidae.archive.definition import define, offsets
 from gearidae.archive.disk import commit, disk_errors, open_file, read_at, sync, write_at
-from gearidae.archive.end_state import packed_state
+from gearidae.archive.growing_layout import COPIED, lay_out
 from gearidae.archive.integrity import with_checksums
-from gearidae.archive.journal import COUNTERS, HEADER, Checkpoint, newest
+from gearidae.archive.journal import HEADER, Checkpoint, newest
 from gearidae.archive.lock import WriterLock, take_or_refuse
 from gearidae.archive.variables import EVENTS
-from gearidae.records import Block, Statistics, first_sample
+from gearidae.records import Block, Statistics
 
-__all__ = ["GrowingArchive", "is_growing", "trimmed"]
+__all__ = ["GrowingArchive"]
 
 Floats = NDArray[np.float64]
 
@@ -39,46 +39,7 @@ EVENT_ROOM = 65_536
 """Least number of events to make room for; as many as samples are, and twice as many whenever they run out."""
 CHECKPOINT_SECONDS = 1.0
 """Least wall time between checkpoints [s]: each waits for the disk."""
-_COPIED = 2**20
-"""Rows copied at a time."""
-_BOOKS = {
-    "committed_samples": (),
-    "committed_events": (),
-    "checkpoint": ("checkpoint_slot", "checkpoint_word"),
-}
 _EVENT_COLUMNS = ("event_time", "event_kind", "event_pair", "event_flank", "event_gap_rate")
-
-
-def is_growing(ds: xr.Dataset) -> bool:
-    """Whether a dataset has been read from the archive of a run that is not at its end."""
-    return all(name in ds.variables for name in _BOOKS)
-
-
-def trimmed(ds: xr.Dataset, *, running: bool) -> xr.Dataset:
-    """Cut a growing archive down to what has been committed, and say how the run stands.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        As read from the file.
-    running : bool
-        Whether a process was writing it.
-    """
-    counts = {
-        dim: min(max(int(ds[f"committed_{dim}s"].item()), 0), ds.sizes["time" if dim == "sample" else dim])
-        for dim in ("sample", "event")
-    }
-    point = newest(slot.astype("<f8").tobytes() for slot in ds["checkpoint"].values)
-    cut = ds.isel(time=slice(counts["sample"]), event=slice(counts["event"])).drop_vars(list(_BOOKS))
-    if point.sequence:
-        cut.attrs["end_state"] = packed_state(point.state)
-    cut.attrs |= {
-        "status": "running" if running else "interrupted",
-        "message": f"not at its end yet; checkpoint at {point.time:g} s",
-        "wall_time": point.wall_time,
-        **{name: getattr(point.statistics, name) for name in COUNTERS if name in cut.attrs},
-    }
-    return cut
 
 
 class GrowingArchive:
@@ -159,7 +120,7 @@ class GrowingArchive:
         try:
             with disk_errors():
                 try:
-                    _lay_out(part, template, sizes, duration)
+                    lay_out(part, template, sizes, duration)
                     part.replace(path)
                 finally:
                     part.unlink(missing_ok=True)
@@ -321,8 +282,10 @@ class GrowingArchive:
             room *= 2
         part = _part(self.path)
         try:
+            begin = float(self._template.attrs.get("start_time", 0.0))
             last = self._times(max(self._sizes["time"] - 1, 0), 1)
-            _lay_out(part, self._template, self._sizes | {dimension: room}, float(last.max(initial=0.0)))
+            duration = float(last.max(initial=begin)) - begin
+            lay_out(part, self._template, self._sizes | {dimension: room}, duration)
             self._copy_all(part)
             self._close_file()  # Windows replaces no file that is open
             try:
@@ -372,36 +335,19 @@ class GrowingArchive:
     def _raw(self, name: str) -> Iterator[tuple[int, bytes]]:
         """Go through a variable's bytes piece by piece."""
         length = self._length(name)
-        for start in range(0, length, 8 * _COPIED):
-            size = min(8 * _COPIED, length - start)
+        for start in range(0, length, 8 * COPIED):
+            size = min(8 * COPIED, length - start)
             yield start, read_at(self._descriptor, size, self._places[name] + start)
 
     def _copy(self, name: str, variable: Any) -> None:
         """Copy what is committed into a variable of another file, whole chunks at a time."""
-        chunks, step = variable.chunking(), _COPIED
+        chunks, step = variable.chunking(), COPIED
         if isinstance(chunks, list):
-            step = max(_COPIED // chunks[0], 1) * chunks[0]
+            step = max(COPIED // chunks[0], 1) * chunks[0]
             variable.set_var_chunk_cache(size=0)  # whole chunks come once each: nothing to remember
         for start in range(0, len(variable), step):
             count = min(step, len(variable) - start)
             variable[start : start + count] = self.read(name, slice(start, start + count))
-
-
-def _lay_out(path: Path, template: xr.Dataset, sizes: Mapping[str, int], duration: float) -> None:
-    """Write the file's structure, and the times of the samples, which are known."""
-    path.unlink(missing_ok=True)
-    define(template, path, sizes, _BOOKS)
-    total, begin = sizes["time"], float(template.attrs.get("start_time", 0.0))
-    first = first_sample(begin, begin + duration, total)
-    with netCDF4.Dataset(path, "a") as file:
-        for start in range(0, total, _COPIED):
-            number = np.arange(start, min(start + _COPIED, total), dtype=np.float64)
-            times = (first + number) * (duration / (total - 1))  # as `sample_times` has it, to the last bit
-            times[number == 0] = begin
-            times[number == total - 1] = begin + duration
-            file["time"][start : start + times.size] = times
-        file["checkpoint"][:] = 0.0
-    sync(path)
 
 
 def _part(path: Path) -> Path:

@@ -14,7 +14,7 @@ import xarray as xr
 from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import sync
-from gearidae.archive.growing import is_growing, trimmed
+from gearidae.archive.growing_layout import is_growing, trimmed
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
 from gearidae.archive.keep import kept_in
 from gearidae.archive.lock import is_locked

@@ -224,19 +224,8 @@ def statistics_of(
     statistics: Statistics, wall_time: float, backend: str, skipped: dict[str, int]
 ) -> Statistics:
     """Turn a run's counters into what is kept of them."""
-    return Statistics(
-        steps=statistics.steps,
-        residual_evaluations=statistics.residual_evaluations,
-        jacobian_evaluations=statistics.jacobian_evaluations,
-        error_test_failures=statistics.error_test_failures,
-        convergence_failures=statistics.convergence_failures,
-        restarts=statistics.restarts,
-        guard_evaluations=statistics.guard_evaluations,
-        wall_time=wall_time,
-        backend=backend,
-        skipped=skipped | {"flight_steps": statistics.flight_steps},
-        method=statistics.method,
-    )
+    skipped = skipped | {"flight_steps": statistics.flight_steps}
+    return replace(statistics, wall_time=wall_time, backend=backend, skipped=skipped)
 
 
 def solve(

@@ -8,7 +8,7 @@ from functools import cache, partial
 from importlib import import_module
 from types import ModuleType
 
-from gearidae.compiling import compiling
+from gearidae.engine.compiling import compiling
 from gearidae.engine.integrate.driver import Block
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import GEARS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from dataclasses import dataclass
 
@@ -178,25 +179,25 @@ class Extremes:
         Speed of the gear [rad/s] or the roller [m/s] where the run stands.
     """
 
-    min_gear_speed: float
-    max_gear_speed: float
-    settled_gear_speed: float
-    settled_spread: float
-    speed_fall: float
-    speed_rise: float
-    late_gear_speed: float
-    late_spread: float
-    last_min_gear_speed: float
-    reversals: int
-    stick_time: float
-    stick_exits: int
-    turned_back: float
-    turn_backs: int
-    time_adhering: float
-    mesh_exits: int
-    largest_mesh_force: float
-    largest_mesh_force_time: float
-    smallest_mesh_force: float
-    smallest_mesh_force_time: float
-    smallest_separation: float
-    final_speed: float
+    min_gear_speed: float = math.nan
+    max_gear_speed: float = math.nan
+    settled_gear_speed: float = math.nan
+    settled_spread: float = math.nan
+    speed_fall: float = math.nan
+    speed_rise: float = math.nan
+    late_gear_speed: float = math.nan
+    late_spread: float = math.nan
+    last_min_gear_speed: float = math.nan
+    reversals: int = 0
+    stick_time: float = math.nan
+    stick_exits: int = 0
+    turned_back: float = math.nan
+    turn_backs: int = 0
+    time_adhering: float = math.nan
+    mesh_exits: int = 0
+    largest_mesh_force: float = math.nan
+    largest_mesh_force_time: float = math.nan
+    smallest_mesh_force: float = math.nan
+    smallest_mesh_force_time: float = math.nan
+    smallest_separation: float = math.nan
+    final_speed: float = math.nan

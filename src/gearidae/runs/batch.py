@@ -14,6 +14,7 @@ import numpy as np
 from gearidae.archive.keep import Keep
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.variables import VERDICT
+from gearidae.archive.verdict import verdict_of
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress
 from gearidae.records import Solution
@@ -73,11 +74,7 @@ def leave(scene: Scene, solution: Solution, keep: Keep) -> Left:
     """Judge a run and drop what is not kept of it."""
     if keep.names is None:
         return Left(solution)
-    from gearidae.analysis.verdict import outcomes
-    from gearidae.archive import to_dataset
-
-    (outcome,) = outcomes(to_dataset(scene, solution))
-    return Left(keep.thinned(solution), outcome.verdict, outcome.impacts)
+    return Left(keep.thinned(solution), *verdict_of(scene, solution))
 
 
 class Batch:

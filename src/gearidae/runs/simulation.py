@@ -75,7 +75,7 @@ def simulate(
     -------
     xarray.Dataset
         Samples along ``time``, events along ``event``, all in SI units, with the scene as it was run, provenance,
-        solver statistics and (as JSON, see `gearidae.analysis.run_summary`) the account of the run as attributes.
+        solver statistics and (as JSON, see `gearidae.archive.run_summary`) the account of the run as attributes.
         With `archive`,
         what `open_archive` returns.
 
@@ -124,8 +124,8 @@ def simulate(
         origin = None if started is None else started.origin
         solution = solve(scene, backend, report, origin=origin, on_block=on_block)
 
-    from gearidae.analysis.run_summary import with_account
     from gearidae.archive import reached, to_dataset
+    from gearidae.archive.run_summary import with_account
 
     ds = with_account(to_dataset(scene, solution))
     if started is not None:

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearidae import __version__, engine
-from gearidae.analysis.run_summary import account_of
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
 from gearidae.archive.disk import DiskError
 from gearidae.archive.energy import balance_of
 from gearidae.archive.journal import Checkpoint
+from gearidae.archive.run_summary import account_of
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress

@@ -20,6 +20,7 @@ import xarray as xr
 
 from gearidae.archive import check_target, save
 from gearidae.archive.provenance import provenance
+from gearidae.archive.verdict import is_scheduled
 from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -280,8 +281,8 @@ def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, flo
 def _check(scene: Scene, exits: int, width: float) -> None:
     if scene.gears is None or scene.drive is None or scene.load is None:
         raise SceneError("scene", scene.name, "must be a scene with gears")
-    if scene.drive.schedule or scene.load.schedule:
-        allowed = "must not be there: where torques change, coming to rest is no sticking"
+    if is_scheduled(scene.to_dict()):
+        allowed = "must not be there: where torques or the held speed change, coming to rest is no sticking"
         raise SceneError("drive.schedule", "a schedule", allowed)
     if not isinstance(exits, int) or isinstance(exits, bool) or exits < 1:
         raise SceneError("exits", exits, "must be a whole number, 1 or more")

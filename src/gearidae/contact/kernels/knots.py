@@ -44,10 +44,10 @@ def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats
     panels = math.ceil((12.0 - gap[0]) / PANEL)
     step = np.arange(len(gap) + panels * half)
     shared = kernel_at(kernel, (gap[0] + step / KNOTS_PER_SIGMA)[:, None] + within[None, :])
+    load_weights = 0.25 * w * law.load(0.5 * np.arange(panels)[:, None] + within)
     for panel in range(1, panels):
-        load_weight = 0.25 * w * law.load(0.5 * panel + within)
         first = panel * half
-        result += shared[:, first : first + len(gap)] @ load_weight
+        result += shared[:, first : first + len(gap)] @ load_weights[panel]
     return np.asarray(result)
 
 

@@ -41,6 +41,7 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.compiled import compiled
 from gearidae.contact.asperities import AsperityLaw
 from gearidae.contact.kernels.branches import B_PIECES, branch_length, branch_value, set_branch
 from gearidae.contact.kernels.evaluate import law_value, loading_value, stretched_value
@@ -83,8 +84,10 @@ __all__ = [
     "branch_value",
     "check_reach",
     "force_scale",
+    "largest_forces",
     "law_table",
     "law_value",
+    "loading_table",
     "loading_value",
     "set_branch",
     "stretch_followed",
@@ -163,14 +166,67 @@ def law_table(law: AsperityLaw, kernel: Kernel = "line") -> Floats:
     ndarray, shape (n,)
         Header and coefficients as `law_value` reads them. Read-only, shared between callers.
     """
-    knots = GAP_LOW + np.arange(N_LOADING + 1) / KNOTS_PER_SIGMA
-    header = np.zeros(HEADER)
-    parts = [header, hermite_pieces(knots, loading_derivatives(knots, law, kernel)).ravel()]
+    loading = loading_table(law, kernel)
+    parts = [loading[:HEADER].copy(), loading[HEADER:]]
     if stretch_followed(law) > 0.0:
         _add_stretched(parts, law, kernel)
     table = np.concatenate(parts)
     table.setflags(write=False)
     return table
+
+
+@lru_cache(maxsize=32)
+def loading_table(law: AsperityLaw, kernel: Kernel = "line") -> Floats:
+    """Tabulate the loading branch alone, as `law_table` does it for asperities that cannot stretch.
+
+    Parameters
+    ----------
+    law : AsperityLaw
+        As for `law_table`.
+    kernel : {"line", "plane"}, optional
+        As for `law_table`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Likewise. Read-only, shared between callers.
+    """
+    knots = GAP_LOW + np.arange(N_LOADING + 1) / KNOTS_PER_SIGMA
+    pieces = hermite_pieces(knots, loading_derivatives(knots, law, kernel)).ravel()
+    table = np.concatenate([np.zeros(HEADER), pieces])
+    table.setflags(write=False)
+    return table
+
+
+@lru_cache(maxsize=32)
+def largest_forces(law: AsperityLaw, kernel: Kernel = "line") -> tuple[Floats, Floats]:
+    """Return gaps from the widest with any force inwards, an eighth apart, and the largest force at each.
+
+    Parameters
+    ----------
+    law : AsperityLaw
+        As for `law_table`.
+    kernel : {"line", "plane"}, optional
+        As for `law_table`.
+
+    Returns
+    -------
+    gaps, forces : ndarray, shape (n,)
+        In roughnesses, and sizes of q; fully joined or fully stretched, whichever is larger.
+    """
+    # a copy: numba compiles everything a second time for arrays that are read-only
+    table = law_table(law, kernel).copy()
+    gaps = np.arange(GAP_HIGH + table[H_STRETCH], GAP_LOW, -0.125)
+    forces = np.empty_like(gaps)
+    _larger_forces(table, gaps, forces)
+    return gaps, forces
+
+
+@compiled
+def _larger_forces(table: Floats, gaps: Floats, out: Floats) -> None:
+    for i in range(gaps.size):
+        joined, stretched = law_value(table, gaps[i], gaps[i])[0], law_value(table, gaps[i], -math.inf)[0]
+        out[i] = max(abs(joined), abs(stretched))
 
 
 def _add_stretched(parts: list[Floats], law: AsperityLaw, kernel: Kernel) -> None:

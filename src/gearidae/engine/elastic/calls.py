@@ -23,7 +23,7 @@ from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
 from gearidae.compiled import compiled
-from gearidae.compiling import compiling
+from gearidae.engine.compiling import compiling
 from gearidae.engine.model.state import Floats, Model
 
 __all__ = [

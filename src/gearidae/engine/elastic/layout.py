@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.contact.asperities import law_of
 from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_nodes
-from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_table, law_value
+from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_value, loading_table
 from gearidae.contact.tip import asperity_of, contact_modulus
 from gearidae.engine.elastic.rows import FINER, point_count
 from gearidae.scene import Scene
@@ -226,7 +226,7 @@ def _static(
         if share > 0.0:
             tip = asperity_of(surface)
             # a copy: numba compiles everything a second time for arrays that are read-only
-            table = law_table(law_of(scene.contact.asperity, surface), "plane").copy()
+            table = loading_table(law_of(scene.contact.asperity, surface), "plane").copy()
             scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
             surfaces.append((table, scale))
     return grid, kappa, surfaces
@@ -254,16 +254,17 @@ def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     """
     grid, kappa, surfaces = _static(scene, bounds, -4.0)
     profile, weights = grid.body[: grid.nodes], grid.body[grid.nodes : 2 * grid.nodes]
-    work, last = 0.0, 0.0
     step = 0.125
-    for gap in np.arange(GAP_HIGH, -4.0, -step):
-        pressure = np.zeros(grid.nodes)
-        for table, scale in surfaces:
-            pressure += scale * _loading(table, gap + profile)[0]
-        force = float(bounds.longest * weights @ pressure)
-        work += 0.5 * (force + last) * step * scene.surface.roughness
-        last = force
-        if abs(kappa[0] @ pressure) > RIGID_DEFLECTION:
-            deep_enough = work > bounds.impact and force > bounds.load
-            return float(gap) + step, bool(deep_enough and bounds.start > gap + step)
-    return -4.0, bounds.start > -4.0
+    gaps = np.arange(GAP_HIGH, -4.0, -step)
+    pressure = np.zeros((gaps.size, grid.nodes))
+    for table, scale in surfaces:
+        pressure += scale * _loading(table, np.add.outer(gaps, profile).ravel())[0].reshape(pressure.shape)
+    force = bounds.longest * (pressure @ weights)
+    work = np.cumsum(0.5 * (force + np.concatenate([[0.0], force[:-1]])) * step * scene.surface.roughness)
+    deflected = np.flatnonzero(np.abs(pressure @ kappa[0]) > RIGID_DEFLECTION)
+    if not deflected.size:
+        return -4.0, bounds.start > -4.0
+    first = deflected[0]
+    deep_enough = work[first] > bounds.impact and force[first] > bounds.load
+    lowest = float(gaps[first]) + step
+    return lowest, bool(deep_enough and bounds.start > lowest)

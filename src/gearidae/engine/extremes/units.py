@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Any
 
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, Record, V, W
 from gearidae.records import Extremes
@@ -33,7 +33,7 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         "smallest_separation": float(s.length_unit * e.separation),
     }
     if s.kind == ROLLER:
-        return Extremes(**forces, **_NO_GEAR, **_NEVER, final_speed=float(y[V] * s.length_unit / s.time_unit))
+        return Extremes(**forces, final_speed=float(y[V] * s.length_unit / s.time_unit))
     speed = float(s.length_unit / (s.time_unit * s.gear_radius))
     place = float(y[PHASE] + m.state.turns)
     means = [_mean(m, part, time, place) for part in e.part]
@@ -55,26 +55,6 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         mesh_exits=int(e.mesh_exits),
         reversals=int(e.reversals),
     )
-
-
-_NO_GEAR: Final[dict[str, Any]] = dict.fromkeys(
-    (
-        "min_gear_speed",
-        "max_gear_speed",
-        "settled_gear_speed",
-        "settled_spread",
-        "speed_fall",
-        "speed_rise",
-        "late_gear_speed",
-        "late_spread",
-        "last_min_gear_speed",
-        "stick_time",
-        "turned_back",
-        "time_adhering",
-    ),
-    math.nan,
-)
-_NEVER: Final[dict[str, Any]] = {"reversals": 0, "turn_backs": 0, "stick_exits": 0, "mesh_exits": 0}
 
 
 def _standstill(e: Record, tau: float, time: float, place: float) -> dict[str, Any]:

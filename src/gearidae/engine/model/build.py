@@ -94,8 +94,7 @@ def make_problem(
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
             problem.deeper = lambda: make_problem(scene, deeper, *told)
     elif scene.contact.model == "auto":
-        bodies = scene.replace({"contact.model": "elastic"})
-        problem.elastic = lambda: make_problem(bodies, None, *told)
+        problem.elastic = lambda: make_problem(scene.replace({"contact.model": "elastic"}), None, *told)
     return problem
 
 
@@ -254,7 +253,7 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.branches_at = rows.add(np.zeros(4 * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
-    return blank_model(s, tables.whole(), rows.whole().size)
+    return blank_model(s, tables.whole(), rows.size)
 
 
 def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:

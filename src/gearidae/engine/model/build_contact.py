@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from gearidae.contact.asperities import law_of
+from gearidae.contact.asperities.base import AsperityLaw
 from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table
 from gearidae.contact.kernels.law import (
-    GAP_HIGH,
     GAP_LOW,
     H_STRETCH,
     HEADER,
@@ -19,13 +18,13 @@ from gearidae.contact.kernels.law import (
     branch_length,
     check_reach,
     force_scale,
+    largest_forces,
     law_table,
-    law_value,
 )
 from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
-from gearidae.engine.model.state import Floats, Record
+from gearidae.engine.model.state import Record
 from gearidae.engine.model.tables import Tables
 from gearidae.scene import Scene
 
@@ -100,7 +99,7 @@ def add_contact(
         own, tip = s.material[material], asperity_of(surface)
         law = law_of(scene.contact.asperity, surface)
         check_reach(law, surface.roughness)
-        table = law_table(law, kernel).copy() if share > 0.0 else np.zeros(HEADER)
+        table = law_table(law, kernel) if share > 0.0 else np.zeros(HEADER)
         energy = energy_table(law, kernel) if share > 0.0 else table
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * unit_length / float(s.force_unit)
@@ -113,16 +112,14 @@ def add_contact(
             loading += force * table[HEADER : HEADER + loading.size]
             potential += force * energy[HEADER : HEADER + potential.size]
             for floor, gap in reach.items():
-                reach[floor] = max(gap, _outermost(table, force * widest, floor))
+                reach[floor] = max(gap, _outermost(law, kernel, floor / (force * widest)))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
     s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
     s.branch_length = 0 if s.nodes > 0 else longest
 
 
-def _outermost(table: Floats, scale: float, floor: float) -> float:
-    """Widest gap at which this surface's force still exceeds `floor`, on a grid of an eighth."""
-    for gap in np.arange(GAP_HIGH + table[H_STRETCH], GAP_LOW, -0.125):
-        largest = max(abs(law_value(table, gap, joined)[0]) for joined in (gap, -math.inf))
-        if scale * largest > floor:
-            return float(gap)
-    return GAP_LOW
+def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:
+    """Widest gap at which this surface's force still exceeds `least`, on a grid of an eighth."""
+    gaps, forces = largest_forces(law, kernel)
+    felt = np.flatnonzero(forces > least)
+    return float(gaps[felt[0]]) if felt.size else GAP_LOW

@@ -94,8 +94,9 @@ def add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
     )
     for which, schedule, unit in schedules:
         knots |= _add_schedule(s, tables, which, schedule, unit)
-        omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
-        fastest = max(fastest, omega / (2.0 * math.pi * tau))
+        if s.schedule[which].cubic:
+            omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
+            fastest = max(fastest, omega / (2.0 * math.pi * tau))
     set_run(s, tables, scene, knots, begin)
     # a torque that knows the speed vibrates with it, and is looked at in each step
     knows_speed = scene.drive.law is not None or scene.load.law is not None or s.speed_gain != 0.0

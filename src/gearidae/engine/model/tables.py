@@ -12,17 +12,23 @@ __all__ = ["Tables"]
 
 
 class Tables:
-    """One flat array in the making."""
+    """One flat array in the making.
+
+    Attributes
+    ----------
+    size : int
+        How many numbers have been added.
+    """
 
     def __init__(self) -> None:
         self._parts: list[Floats] = []
-        self._size = 0
+        self.size = 0
 
     def add(self, numbers: Floats | Sequence[float]) -> int:
         """Append numbers, and return the place where they begin."""
-        part, start = np.asarray(numbers, np.float64), self._size
+        part, start = np.asarray(numbers, np.float64), self.size
         self._parts.append(part)
-        self._size += part.size
+        self.size += part.size
         return start
 
     def whole(self) -> Floats:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.analysis import run_summary as account_module
-from gearidae.analysis.run_summary import account
+from gearidae.archive import run_summary as account_module
+from gearidae.archive.run_summary import account
 from reference.sampled_work import SampledWork
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -6,7 +6,7 @@ import sys
 import numba
 import pytest
 
-from gearidae.compiling import compiling
+from gearidae.engine.compiling import compiling
 
 
 @pytest.fixture

@@ -1,0 +1,134 @@
+"""The outcome of a run in one word, from what the engine kept of it; the words are defined in ``docs/verdicts.md``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.records import EventKind, Extremes, Solution
+from gearidae.scene import Scene
+
+__all__ = [
+    "BACK_FROM",
+    "IRREGULAR_ABOVE",
+    "gear_verdict",
+    "in_touch",
+    "is_scheduled",
+    "roller_verdict",
+    "verdict_of",
+]
+
+IRREGULAR_ABOVE = 0.25
+"""A gear turns irregularly if its speed both falls and rises again by more than this fraction of its mean."""
+BACK_FROM = 0.5
+"""Pitches that a gear must be turned back by to be said to run back."""
+
+
+def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int]:
+    """Judge a run as the engine leaves it.
+
+    Parameters
+    ----------
+    scene : Scene
+    solution : Solution
+        Of a run that has its extremes; one without them is unfinished.
+
+    Returns
+    -------
+    verdict : str
+    impacts : int
+        Contacts made (onset events).
+    """
+    kinds, found, status = solution.events.kind, solution.extremes, solution.status
+    impacts = int(np.count_nonzero(kinds == EventKind.ONSET))
+    if scene.roller is not None:
+        return roller_verdict(found, status, impacts, in_touch([kinds])), impacts
+    return gear_verdict(found, status, scheduled=is_scheduled(scene.to_dict())), impacts
+
+
+def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str:
+    """Judge the run of a gear pair.
+
+    Parameters
+    ----------
+    found : Extremes or None
+        None if the run has left none.
+    status : str
+        How the run ended.
+    scheduled : bool
+        Whether speeds change because they are asked to, see `is_scheduled`.
+    """
+    if found is None:
+        return "unfinished"
+    if scheduled:
+        if status != "finished":
+            return "unfinished"
+        return "runs" if found.last_min_gear_speed > 0.0 else "stops"
+    if not math.isnan(found.stick_time):
+        return "runs back" if found.turned_back > BACK_FROM else "sticks"
+    return _turning(found) if status == "finished" else "unfinished"
+
+
+def roller_verdict(found: Extremes | None, status: str, impacts: int, touching: bool) -> str:
+    """Judge the run of a roller.
+
+    Parameters
+    ----------
+    found : Extremes or None
+        None if the run has left none.
+    status : str
+        How the run ended.
+    impacts : int
+        Contacts made.
+    touching : bool
+        Whether it touches the plane at the end.
+    """
+    if status != "finished" or found is None:
+        return "unfinished"
+    if impacts and not touching and found.final_speed > 0.0:
+        return "rebounds"
+    return "sticks" if impacts else "flies"
+
+
+def in_touch(kinds: Iterable[NDArray[Any]]) -> bool:
+    """Whether the last contact made has not been broken.
+
+    Parameters
+    ----------
+    kinds : iterable of ndarray
+        Kinds of the run's events, piece by piece.
+    """
+    last = None
+    for piece in kinds:
+        changes = piece[np.isin(piece, (EventKind.ONSET, EventKind.SEPARATION))]
+        last = changes[-1] if changes.size else last
+    return bool(last == EventKind.ONSET)
+
+
+def is_scheduled(scene: Mapping[str, Any]) -> bool:
+    """Whether a torque of a scene follows a schedule, or the speed that its drive holds.
+
+    Parameters
+    ----------
+    scene : mapping
+        As `Scene.to_dict` gives it.
+    """
+    drive, load = scene.get("drive") or {}, scene.get("load") or {}
+    held = drive.get("speed")
+    return bool(drive.get("schedule") or load.get("schedule") or isinstance(held, (dict, list)))
+
+
+def _turning(found: Extremes) -> str:
+    """How a gear turned that has not come to stand."""
+    allowed = IRREGULAR_ABOVE * found.settled_gear_speed
+    if found.settled_spread <= allowed:
+        return "turns smoothly"
+    if min(found.speed_fall, found.speed_rise) > allowed:
+        return "irregular"
+    if found.late_spread <= IRREGULAR_ABOVE * found.late_gear_speed:
+        return "turns smoothly"
+    return "running up" if found.speed_rise > found.speed_fall else "running down"
