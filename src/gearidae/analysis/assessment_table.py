@@ -41,7 +41,10 @@ def _rows(found: Assessment) -> Iterator[tuple[str, str]]:
         yield "SAM fraction", f"{found.sam_fraction:.4g}"
     if not math.isnan(found.low):
         yield "95 % interval", f"{found.low:.4g} to {found.high:.4g}"
-    yield "record begins", {"start": "with the start of the map's runs"}.get(found.history, "at a time not known")
+    yield (
+        "record begins",
+        {"start": "with the start of the map's runs"}.get(found.history, "at a time not known"),
+    )
     if not math.isnan(found.gear_speed):
         yield "median gear speed", f"{found.gear_speed:.4g} rad/s"
     if not math.isnan(found.torque):
