@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from matplotlib.collections import LineCollection, PolyCollection
 
 import gearidae as gd
+from gearidae.cli import main
+from gearidae.plot.outcome import outcome
 from gearidae.plot.picking import pick
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.1, "run.samples": 201})
@@ -67,6 +69,17 @@ def test_fields_over_two_keys_need_no_samples(grid):
     for one in gd.outcomes(grid):
         assert shown[round(100 * one.label["sam_fraction"]), one.label["torque"]] == one.verdict
     ax.figure.canvas.draw()
+
+
+def test_the_command_draws_outcomes_where_there_are_no_samples(grid, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    gd.save(grid, "grid.nc")
+    drawn = []
+    monkeypatch.setattr(gd.plot, "outcome", lambda ds: drawn.append(ds) or outcome(ds))
+    assert main(["plot", "grid.nc"]) == 0
+    assert len(drawn) == 1
+    assert (tmp_path / "grid.png").is_file()
+    capfd.readouterr()
 
 
 def test_rollers_and_words(sweep):

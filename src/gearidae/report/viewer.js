@@ -31,7 +31,7 @@
 
   function drawAll() {
     for (const panel of panels) if (panel.values && !panel.box.hidden) draw(panel);
-    legend.querySelectorAll(".swatch").forEach((swatch, run) => { swatch.style.borderTopColor = colour(run); });
+    legend.querySelectorAll(".swatch").forEach((swatch, run) => { swatch.style.color = colour(run); });
     report();
   }
 
@@ -319,11 +319,22 @@
   boxButton.setAttribute("aria-pressed", "false");
   boxButton.addEventListener("click", () => chooseBoxes(!boxing));
   gearidae.saveButtons(controls, [["CSV", "download the shown plots as a table", saveTable]]);
+  // A piece of a run's line, with its dashes.
+  function swatchOf(parent, dashes) {
+    const name = "http://www.w3.org/2000/svg", svg = document.createElementNS(name, "svg"), line = document.createElementNS(name, "path");
+    svg.setAttribute("class", "swatch");
+    svg.setAttribute("viewBox", "0 0 32 4");
+    line.setAttribute("d", "M0 2H32");
+    line.setAttribute("stroke-dasharray", dashes.join(" "));
+    svg.append(line);
+    parent.append(svg);
+  }
+
   const legend = element("div", holder, "", { className: "controls" });
   data.runs.forEach((run, number) => {
     if (data.runs.length < 2) return;
     const button = element("button", legend, "", { type: "button" });
-    element("span", button, "", { className: "swatch" });
+    swatchOf(button, DASHES[number % 7]);
     button.append(run.label);
     button.setAttribute("aria-pressed", "true");
     button.addEventListener("click", () => {

@@ -25,7 +25,7 @@ _WAVES_ALONG_SIDE = 8  # longest cut-off: a margin of one at each edge leaves si
 _POINTS_OF_WAVE = 2  # shortest cut-off, in points of the map: below that nothing has been measured
 _SHORTEST_USUAL = 4
 _MOST_GRID_POINTS = 40_000_000
-_USUAL_COUNT = 24
+_USUAL_COUNT = 16
 
 _VARIABLES = {
     "m0": ("m2", "variance of the heights"),
