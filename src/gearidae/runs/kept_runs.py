@@ -8,27 +8,25 @@ import os
 import re
 import secrets
 import warnings
-from collections.abc import Collection
-from dataclasses import asdict, fields
+from collections.abc import Collection, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import netCDF4
 import numpy as np
 
-from gearidae.archive import check_target
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
-from gearidae.engine import choose_backend
-from gearidae.errors import SceneError
+from gearidae.archive.variables import VERDICT
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["KeptRuns", "folder_beside", "kept_beside"]
+__all__ = ["KeptRuns", "folder_beside"]
 
-_LAYOUT = 3
+_LAYOUT = 4
 """Version of the files' layout."""
 _OURS = re.compile(r"\.?[0-9a-f]{64}(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
 """Names of our files, finished or cut off while they were written."""
@@ -84,8 +82,8 @@ class KeptRuns:
         text = json.dumps({**self._circumstances, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def keep(self, scene: Scene, solution: Solution, verdict: str = "", impacts: int = 0) -> None:
-        """Write a finished run, or what it leaves behind and how it was judged.
+    def keep(self, scene: Scene, solution: Solution, judged: Mapping[str, str | int] | None = None) -> None:
+        """Write a finished run, or what it leaves behind and how it was judged, a value for each of `VERDICT`.
 
         A run that cannot be kept is no reason to stop; that is said in one warning for the sweep.
         """
@@ -94,7 +92,7 @@ class KeptRuns:
         try:
             self.folder.mkdir(exist_ok=True)
             try:
-                _write(part, key, solution, {"verdict": verdict, "impacts": impacts})
+                _write(part, key, solution, {name: (judged or {}).get(name) for name in VERDICT})
                 part.replace(self._path(key))
             finally:
                 part.unlink(missing_ok=True)
@@ -103,8 +101,8 @@ class KeptRuns:
                 warnings.warn(f"finished runs cannot be kept in {self.folder} ({error})", stacklevel=2)
             self._warned = True
 
-    def take(self, scene: Scene) -> tuple[Solution, str, int] | None:
-        """Read a run back, with its verdict and its impacts.
+    def take(self, scene: Scene) -> tuple[Solution, dict[str, Any]] | None:
+        """Read a run back, with how it was judged; that is empty if it was not.
 
         None, and a warning, if its file is damaged or not what its name says.
         """
@@ -147,35 +145,6 @@ class KeptRuns:
         return [path for path in self.folder.iterdir() if _OURS.fullmatch(path.name)]
 
 
-def kept_beside(
-    archive: str | os.PathLike[str] | None, scene: Scene, backend: str, *, overwrite: bool, resume: bool
-) -> KeptRuns | None:
-    """Where the finished runs of a search are kept until its archive is written; None without an archive.
-
-    Raises
-    ------
-    SceneError
-        If there are runs of a search that was cut off and neither `overwrite` nor `resume` is wanted, or there is
-        nothing to resume.
-    """
-    if archive is None:
-        if resume:
-            raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
-        return None
-    kept = KeptRuns(
-        check_target(Path(archive), overwrite=overwrite or resume), scene, choose_backend(backend)
-    )
-    if kept.count() and overwrite:
-        kept.remove()
-    elif kept.count() and not resume:
-        allowed = (
-            f"is of a search that was cut off, {kept.count()} of its runs are in {kept.folder.name}: "
-            "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)"
-        )
-        raise SceneError("archive", archive, allowed)
-    return kept
-
-
 def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> None:
     """Two tables and a header in the classic format: a tenth of the time that an archive takes."""
     samples = np.stack([solution.time, *solution.samples.values()])
@@ -189,8 +158,8 @@ def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> 
             "status": solution.status,
             "message": solution.message,
             "reached": solution.reached,
-            "balance": None if solution.balance is None else asdict(solution.balance),
-            "extremes": None if solution.extremes is None else asdict(solution.extremes),
+            "balance": None if solution.balance is None else _numbers(solution.balance),
+            "extremes": None if solution.extremes is None else _numbers(solution.extremes),
         },
         default=int,  # numpy's integers
     )
@@ -212,7 +181,12 @@ def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> 
         )
 
 
-def _read(path: Path, key: str) -> tuple[Solution, str, int]:
+def _numbers(record: EnergyBalance | Extremes) -> dict[str, float]:
+    """Fields of a record of numbers; `dataclasses.asdict` copies each of them deeply, which takes longer."""
+    return {field.name: getattr(record, field.name) for field in fields(record)}
+
+
+def _read(path: Path, key: str) -> tuple[Solution, dict[str, Any]]:
     """Rebuild what `_write` wrote; ValueError if the file is another's or damaged."""
     with netCDF4.Dataset(path, "r") as file:
         file.set_auto_maskandscale(False)
@@ -239,7 +213,9 @@ def _read(path: Path, key: str) -> tuple[Solution, str, int]:
         None if header["balance"] is None else EnergyBalance(**header["balance"]),
         _extremes(header.get("extremes")),
     )
-    return solution, str(header["judged"]["verdict"]), int(header["judged"]["impacts"])
+    found = {name: header["judged"][name] for name in VERDICT}
+    kinds = {name: str if variable.dtype is np.str_ else int for name, variable in VERDICT.items()}
+    return solution, {name: kinds[name](value) for name, value in found.items() if value is not None}
 
 
 def _extremes(numbers: dict[str, Any] | None) -> Extremes | None:

@@ -2,7 +2,7 @@
 
 from gearidae.scene.case import load_case
 from gearidae.scene.coating import MATERIAL_NAMES, Coating, Material
-from gearidae.scene.dump import dump_case
+from gearidae.scene.dump import dump_case, dump_keys
 from gearidae.scene.gears import Gears, Mesh, StaticErrorHarmonic
 from gearidae.scene.keys import KeyInfo
 from gearidae.scene.knots import Knots
@@ -36,6 +36,7 @@ __all__ = [
     "describe_keys",
     "differences",
     "dump_case",
+    "dump_keys",
     "load_case",
     "nearest_preset",
     "preset",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from gearidae.contact.asperities import law_names
 from gearidae.contact.tip import INTERACTION_RANGE
@@ -14,7 +14,14 @@ from gearidae.scene.quantity import Quantity
 
 __all__ = ["Contact", "Energy", "Surface"]
 
+_LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
+
+
+def _line(value: object) -> str:
+    if isinstance(value, str) and (value.isprintable() or not value) and len(value) <= _LONGEST_LINE:
+        return value
+    raise ValueError(f"must be a printable line of at most {_LONGEST_LINE} characters")
 
 
 class Surface(Group):
@@ -39,6 +46,10 @@ class Surface(Group):
     interaction_range: Annotated[float, Quantity(unit="m", above=0, at_most=1e-6, shown=("nm", -9))] = Field(
         default=INTERACTION_RANGE,
         description="range of the adhesive forces, eps (equilibrium spacing of atoms); for maugis asperities",
+    )
+    provenance: Annotated[str, BeforeValidator(_line)] = Field(
+        default="",
+        description="where roughness, density and radius of the asperities come from; not computed with",
     )
 
 

@@ -25,8 +25,9 @@ from gearidae.archive import save
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor
-from gearidae.runs.kept_runs import KeptRuns, kept_beside
+from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import prepare, runs_in_threads
+from gearidae.runs.sweeping import kept_beside
 from gearidae.studies.cycle_jump import Life, Sticks, jump
 from gearidae.studies.life_coverage import Coverage, coverage_of
 from gearidae.studies.life_dataset import life_dataset
@@ -261,11 +262,11 @@ class _Windows:
         found: list[tuple[Solution, bool]] = []
         for scene, one in zip(scenes, taken, strict=True):
             if one is not None:
-                found.append((one[0], one[1] == "sticks"))
+                found.append((one[0], one[1].get("verdict") == "sticks"))
                 continue
             solution, stuck = next(fresh)
             if self.kept is not None:
-                self.kept.keep(scene, solution, "sticks" if stuck else "turns")
+                self.kept.keep(scene, solution, {"verdict": "sticks" if stuck else "turns"})
             found.append((solution, stuck))
         self.run += len(scenes)
         return found

@@ -24,8 +24,9 @@ from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import steady_speed
 from gearidae.runs.executors import check_executor, check_jobs, own_executor
-from gearidae.runs.kept_runs import KeptRuns, kept_beside
+from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import prepare, runs_in_threads
+from gearidae.runs.sweeping import kept_beside
 from gearidae.scene.keys import find_key
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
