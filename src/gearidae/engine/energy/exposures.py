@@ -71,7 +71,7 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
             for material in range(MATERIALS):
                 own.front[material] = 0.0
             own.power = own.power_rate = 0.0
-            _follow_pair(m, 0.0, t, y, yp, coast, pair, k, False)
+            _follow_pair(m, 0.0, t, y, yp, coast, pair, k)
 
 
 @compiled
@@ -100,7 +100,7 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         coast, pair = pair_at(reach, i)
         k = history_of(m, coast, pair)
         if m.state.history[k].pair == pair:
-            _follow_pair(m, h, t, y, yp, coast, pair, k, True)
+            _follow_pair(m, h, t, y, yp, coast, pair, k)
 
 
 @compiled
@@ -109,11 +109,11 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     own = m.work.exposed[k]
     if own.known != SEEN or own.pair != pair:
         return
-    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    gap, _, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     if gap < m.scene.cutoff:
         length = contact_length(m, inside)
         _join(m, y, coast, pair, k, gap, inside, 0.5 * (length + contact_length(m, own.place)))
-        force, _ = _force(m, coast, pair, k, t, y, gap, rate, inside)
+        force, _ = _force(m, t, y, coast, pair, k)
         _note_pressure(m, coast, pair, inside, force / length)
 
 
@@ -125,12 +125,11 @@ def close_exposures_at(place: int, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled
-def _follow_pair(
-    m: Model, h: float, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int, booked: bool
-) -> None:
-    """Follow one pair over an interval, or begin with it."""
+def _follow_pair(m: Model, h: float, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int) -> None:
+    """Follow one pair over an interval, or begin with it if that has no length."""
     own = m.work.exposed[k]
-    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    gap, _, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    booked = h > 0.0
     if gap >= m.scene.cutoff:
         own.known = 0
         return
@@ -147,10 +146,10 @@ def _follow_pair(
         _join(m, y, coast, pair, k, gap, inside, 0.5 * (length + contact_length(m, own.place)))
     else:
         _note_front(m, y, k, gap)
-    force, stiffness = _force(m, coast, pair, k, t, y, gap, rate, inside)
+    force, force_rate = _force(m, t, y, coast, pair, k)
     speed, speed_rate = _sliding_speed(m, coast, y, yp, inside)
     power = force * abs(speed)
-    power_rate = stiffness * rate * abs(speed) + (force * speed_rate if speed > 0.0 else -force * speed_rate)
+    power_rate = force_rate * abs(speed) + (force * speed_rate if speed > 0.0 else -force * speed_rate)
     if booked:
         work = _pushing(h, own.power, own.power_rate, power, power_rate)
         if work != 0.0:
@@ -176,13 +175,14 @@ def _pushing(h: float, power0: float, rate0: float, power1: float, rate1: float)
 
 
 @compiled
-def _force(
-    m: Model, coast: int, pair: int, k: int, t: float, y: Floats, gap: float, rate: float, inside: float
-) -> tuple[float, float]:
-    """Force of a pair and its slope in the gap."""
+def _force(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> tuple[float, float]:
+    """Force of a pair and its rate along the gap."""
+    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     if m.scene.nodes > 0:
-        return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
-    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, coast, pair, inside))
+        force, stiffness = node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
+    else:
+        force, stiffness = pair_force(m, k, True, t, gap, rate, inside, shares_of(m, coast, pair, inside))
+    return force, stiffness * rate
 
 
 @compiled

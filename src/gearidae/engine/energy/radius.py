@@ -86,7 +86,7 @@ def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
 
 @compiled
 def radius_force(
-    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, known: bool, gap: float, rate: float
+    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float, rate: float
 ) -> tuple[float, float, float]:
     """Force on the gear that pays for the changing length of a pair's contact, with its slopes.
 
@@ -100,9 +100,7 @@ def radius_force(
     coast, pair : int
         Flank and number of the pair.
     k : int
-        Index of its history.
-    known : bool
-        Whether that is about this pair.
+        Index of its history, if that is about this pair.
     gap, rate : float
         The pair's gap and gap rate.
 
@@ -117,9 +115,9 @@ def radius_force(
         return 0.0, 0.0, 0.0
     sign = 1.0 - 2.0 * coast
     if m.scene.by_place != 0:
-        return _force_by_place(m, t, y, coast, pair, k, known, gap, rate)
+        return _force_by_place(m, t, y, coast, pair, k, gap, rate)
     length, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], 1.0, 0.0)
-    slope = 0.0
+    slope, known = 0.0, m.state.history[k].pair == pair
     if m.scene.nodes == 0:
         energy, slope = free_energy(m, k, known, t, gap, rate, WHOLE)
     elif known:
@@ -131,10 +129,11 @@ def radius_force(
 
 @compiled
 def _force_by_place(
-    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, known: bool, gap: float, rate: float
+    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float, rate: float
 ) -> tuple[float, float, float]:
     """Do the same for a pair whose shares change along the path, material by material."""
     force = force_u = force_phase = 0.0
+    known = m.state.history[k].pair == pair
     _, stretches, bends = material_lengths(m, coast, pair, y[PHASE], 1.0, 0.0)
     for material in range(MATERIALS):
         if stretches[material] == 0.0 and bends[material] == 0.0:

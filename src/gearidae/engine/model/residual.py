@@ -94,7 +94,7 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
             relief_u += by_u * slope
             relief_phase += by_phase * slope + sign * load * m.scene.relief_slope
         if m.scene.radius_force != 0:
-            load, by_u, by_phase = radius_force(m, t, y, coast, pair, k, known, gap, rate)
+            load, by_u, by_phase = radius_force(m, t, y, coast, pair, k, gap, rate)
             relief += load
             relief_u += by_u
             relief_phase += by_phase
