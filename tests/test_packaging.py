@@ -72,6 +72,8 @@ def test_what_the_report_needs_is_in_the_package():
         ("gearidae", "py.typed"),
         ("gearidae.report", "page.css"),
         ("gearidae.report", "viewer.js"),
+        ("gearidae.report", "save.js"),
+        ("gearidae.report", "box.js"),
     ):
         assert (files(package) / name).is_file()
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from gearidae.lazy import lazy_names, when_imported
 
 if TYPE_CHECKING:
-    from gearidae import analysis, contact, plot, report, scene, studies, torques
+    from gearidae import analysis, contact, plot, report, scene, studies, surfaces, torques
     from gearidae.analysis.verdict import outcomes
     from gearidae.archive import open_archive, save
     from gearidae.archive.concat import concat
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from gearidae.runs.simulation import simulate
     from gearidae.runs.sweeping import sweep
     from gearidae.scene import Scene, describe_key, describe_keys, dump_case, load_case, preset
+    from gearidae.surfaces import surface_from
     from gearidae.torques import register_torque, torque_names, unregister_torque
 
 __version__ = "0.1.0"
@@ -52,6 +53,8 @@ __all__ = [
     "scene",
     "simulate",
     "studies",
+    "surface_from",
+    "surfaces",
     "sweep",
     "torque_names",
     "torques",
@@ -83,6 +86,8 @@ _HOME: dict[str, str | None] = {
     "scene": None,
     "simulate": "runs.simulation",
     "studies": None,
+    "surface_from": "surfaces",
+    "surfaces": None,
     "sweep": "runs.sweeping",
     "torque_names": "torques",
     "torques": None,

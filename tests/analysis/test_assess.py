@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -9,6 +12,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.analysis import assess, coating_map, open_map
 from gearidae.archive import save
+from gearidae.scene.prefixes import with_prefix
 
 SCENE = gd.preset("teodorescu2009_low_speed")
 
@@ -248,3 +252,15 @@ def test_damaged_maps_are_named(change, message, chart, worn):
 def test_a_filter_is_a_frequency(cutoff, chart, worn):
     with pytest.raises(gd.SceneError, match="must be a frequency in Hz"):
         assess(worn, chart, anti_alias_filter=cutoff)
+
+
+def test_assessment_shows_itself_in_a_notebook(chart, worn):
+    found = assess(worn, chart)
+    shown = found._repr_html_()
+    assert f"<b>{found.verdict}</b>" in shown
+    assert f"{found.low:.4g} to {found.high:.4g}" in shown
+    assert with_prefix(found.frequencies[0], "Hz", 4) in shown
+    unknown = replace(found, sam_fraction=math.nan, low=math.nan, high=math.nan, explanation="<a & b>")
+    shown = unknown._repr_html_()
+    assert "interval" not in shown
+    assert "&lt;a &amp; b&gt;" in shown

@@ -118,6 +118,14 @@ def test_at_most_seven_runs_first_and_last_among_them():
     assert (shown[0], shown[-1]) == ("SAM 100 %", "SAM 40 %")
 
 
+def test_every_line_of_a_sweep_has_a_style_of_its_own(sweep):
+    """Told apart in grey print: solid, dashed, dotted and so on, in the picture and in its legend."""
+    for draw in (gd.plot.gear_speed, gd.plot.transmission_error, gd.plot.gap):
+        ax = draw(sweep)
+        for lines in (ax.get_lines()[:4], ax.get_legend().get_lines()):
+            assert len({str(line._unscaled_dash_pattern) for line in lines}) == 4
+
+
 def test_torque_scale_is_not_set_by_the_start_up(single):
     single["gear_contact_torque"][:10] = 1e-12
     ax = gd.plot.contact_torque(single)

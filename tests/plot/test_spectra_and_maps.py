@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 
 import gearidae as gd
+from gearidae.plot.bands import banded, crowded_from
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.1, "run.samples": 10_001})
 HIGH = gd.preset("teodorescu2009").replace({"run.duration": 3e-4, "run.samples": 6001})
@@ -49,10 +51,51 @@ def test_one_cycle_of_the_drive_is_shown_or_one_pitch():
 
 def test_drive_and_mesh_are_marked_in_the_spectrum():
     ax = gd.plot.power_spectrum(gd.simulate(HIGH))
-    marked = {text.get_text(): text.xy[0] for text in ax.texts}
+    marked = {text.get_text(): text.xy[0] for text in ax.texts if isinstance(text, Annotation)}
     assert marked["drive"] == 10e3
     assert marked["mesh"] == pytest.approx(35.0e3, rel=0.02, abs=0)  # 2893 rad/s, 76 teeth
     assert marked["2 mesh"] == 2 * marked["mesh"]
+
+
+def test_the_ring_of_a_slow_gear_is_seen():
+    """At 9.2 kHz, 500 times the mesh frequency: a peak ten times its surroundings, where the impacts say it is."""
+    run = gd.simulate(LOW.replace({"coating.sam_fraction": 0.5}))
+    ax = gd.plot.power_spectrum(run)
+    assert ax.get_xscale() == "log"
+    ring = float(gd.analysis.characteristic_frequency(run))
+    marked = {text.get_text(): text.xy[0] for text in ax.texts if isinstance(text, Annotation)}
+    assert marked["rings"] == pytest.approx(ring, rel=0.05)
+    assert any("Tukey window over 95 ms" in text.get_text() for text in ax.texts)
+    (line,) = (line for line in ax.get_lines() if len(line.get_xdata()) > 10)
+    frequency, power = line.get_xdata(), line.get_ydata()
+    # two bands of 1/24 octave to each side
+    near = power[np.abs(np.log2(frequency / ring)) < 2 / 24].max()
+    beside = power[(np.abs(np.log2(frequency / ring)) > 0.15) & (np.abs(np.log2(frequency / ring)) < 0.4)]
+    assert near > 10.0 * np.median(beside)
+    assert len(frequency) > 200
+
+
+def test_bands_keep_the_power():
+    """Of a white spectrum the mean; of any spectrum, the power of each band, which is the sum of its lines."""
+    frequency = 0.25 * np.arange(20_000)
+    density = np.random.default_rng(4).gamma(2.0, 1e-6, frequency.size)
+    at, means = banded(frequency, density, 1.0)
+    plain = at < crowded_from(1.0)
+    np.testing.assert_array_equal(means[plain], density[: plain.sum()])
+    assert np.all(np.diff(at) > 0.0)
+    edges = np.searchsorted(frequency, crowded_from(1.0) * 2.0 ** (np.arange(40) / 24))
+    for one, other, mean in zip(edges[:-1], edges[1:], means[plain.sum() :], strict=False):
+        assert mean == pytest.approx(density[one:other].mean(), rel=1e-12)
+
+
+def test_padding_adds_points_and_nothing_else(low):
+    """Every fourth value of a spectrum padded to four times the length is that of the plain one."""
+    run = low.sel(sam_fraction=0.7)
+    plain, padded = (gd.analysis.power_spectrum(run, segment=0.05, padding=each) for each in (1, 4))
+    np.testing.assert_allclose(padded[::4], plain, rtol=1e-9, atol=1e-12 * float(plain.max()))
+    assert padded.attrs["resolution"] == plain.attrs["resolution"]
+    with pytest.raises(gd.SceneError, match="padding"):
+        gd.analysis.power_spectrum(run, padding=0)
 
 
 def test_impact_response_is_named_with_its_frequency(low):

@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
-import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -16,15 +12,9 @@ from gearidae.records import Flank
 from gearidae.report import build_report
 from gearidae.report.teeth import FRAME, PAIR, pack_teeth
 from gearidae.studies.tooth_contacts import tooth_contacts
+from reference.browser import CHROMIUM, looked_at
 
 SCENE = gd.preset("teodorescu2009_low_speed")
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-
-# A browser without a window paints when it likes; frames come by the clock instead, which is a virtual one.
-CLOCK = """<script>
-window.requestAnimationFrame = (then) => setTimeout(() => then(performance.now()), 16);
-window.cancelAnimationFrame = clearTimeout;
-</script>"""
 
 # Looks at the page as a reader would, and leaves what it saw in the title.
 LOOK = """<script>
@@ -134,24 +124,8 @@ def test_rollers_have_no_teeth():
 
 
 def shown_in_browser(page, slider, tmp_path, *options):
-    page = page.replace("</head>", CLOCK + "</head>")
-    target = tmp_path / "page.html"
-    target.write_text(
-        page.replace("</body>", LOOK.replace("SLIDER", str(slider)) + "</body>"), encoding="utf-8"
-    )
-    command = [
-        CHROMIUM,
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        f"--user-data-dir={tmp_path / 'profile'}",
-    ]
-    command += ["--virtual-time-budget=5000", "--dump-dom", *options, target.as_uri()]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-    title = re.search("<title>(.*?)</title>", done.stdout)[1]
-    for escape, char in (("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")):
-        title = title.replace(escape, char)
-    return dict(entry.split(": ", 1) for entry in json.loads(title))
+    seen = looked_at(page, LOOK.replace("SLIDER", str(slider)), tmp_path, *options)
+    return dict(entry.split(": ", 1) for entry in seen)
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")

@@ -21,6 +21,8 @@ from gearidae.scene.prefixes import with_prefix
         (1e3, "Hz", "1 kHz"),
         (1.42e-4, "N/m", "142 uN/m"),
         (1.8e-17, "N m", "18 aN m"),
+        (-3.36059e-19, "J", "-336 zJ"),
+        (2.2e-26, "J", "2.2e-26 J"),
         (1e-25, "N m", "1e-25 N m"),
         (1e15, "Hz", "1e+15 Hz"),
         (6.1052e-20, "kg m^2", "6.11e-20 kg m^2"),

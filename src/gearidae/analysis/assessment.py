@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis import doubts
+from gearidae.analysis.assessment_table import assessment_table
 from gearidae.analysis.fitting import COMMON, SPEED_RANGE, Fit, Heard, first_explanation
 from gearidae.analysis.map_model import BEFORE, MapModel, map_model
 from gearidae.analysis.measured import read_signal
@@ -89,6 +90,10 @@ class Assessment:
 
     def __str__(self) -> str:
         return self.explanation
+
+    def _repr_html_(self) -> str:
+        """Return a table for a notebook: the answer, and what it rests on."""
+        return assessment_table(self)
 
 
 def assess(

@@ -19,9 +19,11 @@ from scipy import signal as dsp
 
 from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, Floats, signals, stack
 from gearidae.errors import SceneError
+from gearidae.scene.group import shorten
 
 __all__ = ["power_spectrum", "spectrogram"]
 
+_MOST_PADDING = 64
 _PIECES = 64
 """A spectrogram's segment is this part of the record unless asked for otherwise."""
 
@@ -31,7 +33,8 @@ def power_spectrum(
     variable: str = "gear_speed",
     *,
     segment: float | None = None,
-    window: str = "hann",
+    window: str | tuple[str, float] = "hann",
+    padding: int = 1,
 ) -> xr.DataArray:
     """Power spectral density by Welch's method (Teodorescu et al. 2009, Fig. 6).
 
@@ -44,8 +47,11 @@ def power_spectrum(
     segment : float, optional
         Length of the segments that are averaged, overlapping by half [s]; by default half the record. Lines closer
         than about two over this length are not told apart.
-    window : str, optional
-        Taper, by its scipy name.
+    window : str or tuple, optional
+        Taper, by its scipy name; with its parameter where it has one, ``("tukey", 0.2)``.
+    padding : int, optional
+        Length of the transform over that of a segment, filled up by zeros: so many times closer values of the same
+        estimate, with no more resolution.
 
     Returns
     -------
@@ -59,19 +65,22 @@ def power_spectrum(
     SceneError
         If the variable is missing, the time is not uniform, or the segment or the window is not allowed.
     """
+    if not (isinstance(padding, int) and 1 <= padding <= _MOST_PADDING):
+        raise SceneError("padding", shorten(padding), f"must be a whole number in 1..{_MOST_PADDING}")
     batch = signals(data, variable)
     size, rate = _segment(batch, segment, 0.5), batch.signals[0].rate
     taper = _taper(window, size)
+    long = padding * size
     rows = [
-        dsp.welch(each.values, rate, window=taper, noverlap=size // 2, detrend="constant")[1]
+        dsp.welch(each.values, rate, window=taper, noverlap=size // 2, nfft=long, detrend="constant")[1]
         if len(each.values) >= size
-        else np.full(size // 2 + 1, np.nan)
+        else np.full(long // 2 + 1, np.nan)
         for each in batch.signals
     ]
     spectrum = stack(
         batch, "frequency", rows, f"{batch.name}_power_spectrum", _attributes(batch, window, size, 0.5)
     )
-    return spectrum.assign_coords(frequency=_frequency(size, 1.0 / rate))
+    return spectrum.assign_coords(frequency=_frequency(long, 1.0 / rate))
 
 
 def spectrogram(
@@ -152,7 +161,7 @@ def _segment(batch: Batch, length: float | None, part: float) -> int:
     return size
 
 
-def _taper(window: str, size: int) -> Floats:
+def _taper(window: str | tuple[str, float], size: int) -> Floats:
     try:
         return np.asarray(dsp.get_window(window, size), dtype=np.float64)
     except (ValueError, TypeError):
@@ -164,13 +173,13 @@ def _frequency(size: int, interval: float) -> xr.Variable:
     return xr.Variable("frequency", frequency, {"units": "Hz", "long_name": "frequency"})
 
 
-def _attributes(batch: Batch, window: str, size: int, overlap: float) -> dict[str, Any]:
+def _attributes(batch: Batch, window: str | tuple[str, float], size: int, overlap: float) -> dict[str, Any]:
     interval = batch.signals[0].interval
     return {
         "long_name": f"power spectral density of {batch.name}",
         "units": f"({batch.units})2 Hz-1",
         "sampling_rate": 1.0 / interval,
-        "window": window,
+        "window": window if isinstance(window, str) else " ".join(map(str, window)),
         "segment_length": size * interval,
         "overlap": overlap,
         "resolution": 1.0 / (size * interval),

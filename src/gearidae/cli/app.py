@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import App, Parameter
 
@@ -346,6 +346,53 @@ def assess(
     return assess_signal(
         signal, map, history, anti_alias_filter, select=select or [], line=line or [], as_json=as_json
     )
+
+
+@app.command
+def surface(
+    scan: Annotated[
+        Path, Parameter(help="Height map: .npy, .csv, .txt, or a format that SurfaceTopography reads.")
+    ],
+    *,
+    size: Annotated[
+        str | None,
+        Parameter(help="Extent of the map: that of its rows, or of columns and rows, such as '2 um, 1 um'."),
+    ] = None,
+    unit: Annotated[
+        str | None, Parameter(help="Unit of the heights in .npy and text files. Default: m.")
+    ] = None,
+    cutoff: Annotated[
+        str | None, Parameter(help="Cut-off wavelength, such as 50 nm: shorter waves are left out.")
+    ] = None,
+    by: Annotated[
+        Literal["summits", "moments"], Parameter(help="Where the asperities are taken from.")
+    ] = "summits",
+    both_flanks: Annotated[bool, Parameter(help="Combine the roughness of two such flanks.")] = False,
+    into: Annotated[
+        Path | None,
+        Parameter(
+            name="--case",
+            help="Case or preset to put the surface into; -o is then a whole case file.",
+            completer=completing.cases,
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        Parameter(name=["--output", "-o"], help="Part of a case file to write, the table surface."),
+    ] = None,
+    picture: Annotated[
+        Path | None, Parameter(help="Image of the numbers against the cut-off to write.")
+    ] = None,
+    overwrite: Overwrite = False,
+) -> int:
+    """Take roughness, density and tip radius of the asperities from a measured height map.
+
+    They depend on the cut-off wavelength; without one, they are printed for the whole range.
+    """
+    from gearidae.cli.surface import Choices, analyse_scan
+
+    choices = Choices(size, unit, cutoff, by, both_flanks, None if into is None else str(into))
+    return analyse_scan(scan, choices, output, picture, overwrite=overwrite)
 
 
 @app.command

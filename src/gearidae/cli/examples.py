@@ -17,6 +17,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "plot": (
         "gearidae plot mine.nc",
         "gearidae plot mine.nc --picture power_spectrum -o spectrum.pdf",
+        "gearidae plot grid.nc --picture outcome",
         'gearidae plot mine.nc --picture teeth --from "76 ms" --to "79 ms" -o teeth.gif',
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
@@ -33,6 +34,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',
         "gearidae assess sweep.nc --select sam_fraction=0.7 --map over_torque.nc --line torque=4.5e-18",
+    ),
+    "surface": (
+        'gearidae surface scan.npy --size "2 um" --picture cutoffs.png',
+        'gearidae surface scan.csv --size "2 um" --unit nm --cutoff "80 nm" -o surface.toml',
+        'gearidae surface scan.csv --size "2 um, 1 um" --unit nm --cutoff "80 nm" --case mine.toml -o rough.toml',
     ),
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset start_up"),

@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import gearidae as gd
-from gearidae.archive.select import swept_dims
+from gearidae.archive.select import is_roller, swept_dims
+from gearidae.archive.variables import columns
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.selection import selected
@@ -46,7 +47,7 @@ def draw(
     archive : Path
         What to draw.
     picture : str or None
-        Name of a function of `gearidae.plot`; None for the overview, or the map.
+        Name of a function of `gearidae.plot`; None for the overview, the map, or outcomes where there are no samples.
     output : Path or None
         Image to write, its format by its extension; None for the archive's name with ``.png``, or ``.gif`` for a moving
         picture.
@@ -120,7 +121,10 @@ def _open(archive: Path) -> tuple[xr.Dataset, str]:
         ds = gd.open_archive(archive)
         if "ensemble" in ds.attrs:
             return ds, "sobol_indices" if "total_order" in ds else "sticking_probability"
-        return ds, "outcome_map" if "outcome" in ds else "overview"
+        if "outcome" in ds:
+            return ds, "outcome_map"
+        sampled = any(name in ds for name in columns(is_roller(ds)))
+        return ds, "overview" if sampled or not swept_dims(ds) else "outcome"
     except SceneError:
         try:
             return gd.analysis.open_map(archive), "coating_map"

@@ -12,10 +12,12 @@ from gearidae.plot.coating import coating_map, starting_torque
 from gearidae.plot.ensembles import sobol_indices, sticking_probability
 from gearidae.plot.files import write
 from gearidae.plot.gears import gap, gear_speed, transmission_error
+from gearidae.plot.outcome import outcome
 from gearidae.plot.outcome_map import outcome_map
 from gearidae.plot.overview import overview
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
+from gearidae.plot.surface import surface
 from gearidae.plot.torque import contact_torque
 
 if TYPE_CHECKING:
@@ -30,6 +32,7 @@ __all__ = [
     "gap",
     "gear_speed",
     "impact_spectrum",
+    "outcome",
     "outcome_map",
     "overview",
     "power_spectrum",
@@ -39,6 +42,7 @@ __all__ = [
     "spectrogram",
     "starting_torque",
     "sticking_probability",
+    "surface",
     "teeth",
     "transmission_error",
     "write",

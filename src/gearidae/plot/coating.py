@@ -9,12 +9,11 @@ from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
 from gearidae.analysis.assessment import Assessment
 from gearidae.errors import SceneError
-from gearidae.plot.style import new_axes, scale_for, tidy
+from gearidae.plot.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
 from gearidae.studies.coating_map import require_map
 
 __all__ = ["coating_map", "starting_torque"]
 
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _LATER = "0.6"
 
 
@@ -47,7 +46,7 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
     for number in range(lines.sizes["line"]):
         line = lines.isel(line=number)
         frequency, spread = line["characteristic_frequency"].values, line["uncertainty"].values
-        colour = _COLOURS[number % len(_COLOURS)]
+        colour = COLOURS[number % len(COLOURS)]
         if not further:
             for later in line["impact_frequency"].transpose("impact", ...).values[1:]:
                 ax.plot(percent, later, color=_LATER, linewidth=0.8, zorder=1)
@@ -59,6 +58,7 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
             percent,
             frequency,
             color=colour,
+            linestyle=LINE_STYLES[number % len(LINE_STYLES)],
             linewidth=1.4,
             marker=".",
             markersize=4,
@@ -117,7 +117,13 @@ def starting_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         if held.any():
             drawn = True
             ax.plot(
-                percent[held], torque[held], color=_COLOURS[number], marker=".", linewidth=1.2, label=label
+                percent[held],
+                torque[held],
+                color=COLOURS[number],
+                linestyle=LINE_STYLES[number],
+                marker=".",
+                linewidth=1.2,
+                label=label,
             )
     if not drawn:
         raise SceneError(

@@ -100,7 +100,14 @@ def _overlay(ax: Axes, runs: list[Run], name: str, factor: float) -> None:
     time = label_time(ax, runs)
     for run in sorted(runs, key=lambda run: _liveliness(run, name), reverse=True):
         at, values = run.trace(name)
-        ax.plot(at * time.factor, values * factor, color=run.colour, linewidth=1.0, label=run.label)
+        ax.plot(
+            at * time.factor,
+            values * factor,
+            color=run.colour,
+            linestyle=run.line,
+            linewidth=1.0,
+            label=run.label,
+        )
     tidy(ax)
     legend(ax, runs)
 

@@ -11,10 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter
 
 from gearidae import analysis
+from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
 from gearidae.archive.select import runs, scene_of
 from gearidae.errors import SceneError
+from gearidae.plot.bands import banded, crowded_from
 from gearidae.plot.style import Run, legend, new_axes, runs_of, scale_for, thin, tidy
+from gearidae.scene.prefixes import with_prefix
 
 __all__ = ["cycle", "impact_spectrum", "power_spectrum", "spectrogram"]
 
@@ -22,6 +25,14 @@ _DECADES = 6
 """Spectra are shown down to this many decades below their largest value."""
 _SETTLED = 0.2
 """Part of a run left out of its spectrum, because it has not settled."""
+_MOST_DECADES = 14
+"""As much of a spectrum that reaches to the ring, far below the mesh; rounding is another three decades down."""
+_PADDING = 8
+_FLAT = ("tukey", 0.2)
+"""Window in which the first impact, soon after the start-up, is not lost in the taper."""
+_MULTIPLES = 6.0
+_MARKED_IF_WIDE = 4
+"""Multiples of the highest line that a linear axis shows, and of the mesh that are marked on a logarithmic one."""
 _MOST_SAMPLES = 2**19
 """Samples of a run that are analysed for a picture, which could not show more lines."""
 
@@ -55,7 +66,14 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         speed = _between(run.data, end - _MOST_SAMPLES, end)["gear_speed"]
         last = speed.sel(time=slice(float(speed["time"][-1]) - period, None))
         at, values = thin(last["time"] - last["time"][0], last)
-        ax.plot(at * scale.factor, values, color=run.colour, linewidth=1.0, label=run.label)
+        ax.plot(
+            at * scale.factor,
+            values,
+            color=run.colour,
+            linestyle=run.line,
+            linewidth=1.0,
+            label=run.label,
+        )
     ax.set_xlabel(f"time within the last {name} ({scale.unit})")
     ax.set_ylabel("gear speed (rad/s)")
     tidy(ax)
@@ -77,7 +95,10 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        With the frequencies of the drive and of the mesh and its multiples marked, from the last run's mean speed.
+        With the frequencies of the drive and of the mesh and its multiples marked, from the fastest run's mean speed.
+        If there is no drive frequency and the teeth ring far above the mesh after impacts, both axes are logarithmic,
+        up to beyond the ringing, the frequencies of which are marked for a single run; the spectrum is averaged over
+        bands of 1/24 octave there, and only the start-up is left out. The estimate is named in the picture.
 
     Raises
     ------
@@ -86,24 +107,31 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
-    settled = {run.label: _settled(run) for run in shown}
-    # one segment: the lines stand still, and resolution tells them apart
-    spectra = {label: analysis.power_spectrum(part, segment=_length(part)) for label, part in settled.items()}
-    top = max(float(each.max()) for each in spectra.values())
-    mesh = _mesh_frequency(ds, settled[shown[-1].label])
     drive = [float(one["frequency"]) for one in scene_of(ds).get("drive", {}).get("harmonic", [])]
+    mesh = max(_mesh_frequency(ds, _settled(run, _SETTLED)) for run in shown)
+    rings = [] if drive else sorted({ring for run in shown for ring in _rings(run)})
     lines = [line for line in (mesh, *drive) if line > 0.0]
-    nyquist = float(next(iter(spectra.values()))["frequency"][-1])
-    highest = min(nyquist, 6.0 * max(lines)) if lines else nyquist
+    wide = bool(rings and lines) and rings[-1] > _MULTIPLES * max(lines)
+    # one segment: the lines stand still, and resolution tells them apart; zeros draw their shape instead of a zigzag
     for run in shown:
-        density = spectra[run.label].sel(frequency=slice(0.0, highest))
-        ax.semilogy(density["frequency"], density, color=run.colour, linewidth=0.9, label=run.label)
-    ax.set_xlim(0.0, highest)
-    ax.set_ylim(top * 10.0**-_DECADES, 3.0 * top)
-    for line in drive:
-        _mark(ax, line, "drive")
-    for multiple in range(1, 1 + int(ax.get_xlim()[1] / mesh) if mesh > 0.0 else 1):
-        _mark(ax, multiple * mesh, "mesh" if multiple == 1 else f"{multiple} mesh")
+        part = _settled(run, START_UP if wide else _SETTLED)
+        density = analysis.power_spectrum(
+            part, segment=_length(part), padding=_PADDING, window=_FLAT if wide else "hann"
+        )
+        resolution = float(density.attrs["resolution"])
+        frequency, power = density["frequency"].values, density.values
+        if wide:
+            frequency, power = banded(frequency[1:], power[1:], resolution)  # 0 has no place on the axis
+        ax.semilogy(frequency, power, color=run.colour, linestyle=run.line, linewidth=0.9, label=run.label)
+    nyquist = float(density["frequency"][-1])
+    if wide:
+        ax.set_xscale("log")
+        ax.set_xlim(2.0 * resolution, min(nyquist, 2.0 * rings[-1]))
+    else:
+        ax.set_xlim(0.0, min(nyquist, _MULTIPLES * max(lines)) if lines else nyquist)
+    _fit_heights(ax, wide)
+    _mark_all(ax, drive, mesh, rings if wide and len(shown) == 1 else [])
+    _name_estimate(ax, resolution, wide)
     ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
     ax.set_xlabel("frequency (Hz)")
     ax.set_ylabel("power spectral density\n((rad/s)²/Hz)")
@@ -192,7 +220,14 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         ring = float(rings[ringing[0]])
         highest = max(highest, ring)
         at_ring = float(density.sel(frequency=ring, method="nearest"))
-        ax.plot(density["frequency"], density / at_ring, color=run.colour, linewidth=1.0, label=run.label)
+        ax.plot(
+            density["frequency"],
+            density / at_ring,
+            color=run.colour,
+            linestyle=run.line,
+            linewidth=1.0,
+            label=run.label,
+        )
         ax.annotate(
             f"{ring:.0f} Hz",
             (ring, 1.0),
@@ -223,12 +258,12 @@ def _single(ds: xr.Dataset) -> xr.Dataset:
     return found[0][1]
 
 
-def _settled(run: Run) -> xr.Dataset:
-    """Leave the start of a run out."""
+def _settled(run: Run, share: float) -> xr.Dataset:
+    """Leave a share of a run out at its start."""
     time, end = run.data["time"], reached(run.data["gear_speed"])
     begin, stop = float(time[0]), float(time[end - 1])
     part = _between(run.data, end - _MOST_SAMPLES, end)
-    return part.sel(time=slice(begin + _SETTLED * (stop - begin), stop))
+    return part.sel(time=slice(begin + share * (stop - begin), stop))
 
 
 def _between(run: xr.Dataset, first: int, end: int) -> xr.Dataset:
@@ -244,6 +279,55 @@ def _between(run: xr.Dataset, first: int, end: int) -> xr.Dataset:
         for place, times in pieces(run["event_time"])
     ]
     return part.isel(event=np.concatenate([*events, np.empty(0, dtype=np.int64)])).load()
+
+
+def _rings(run: Run) -> list[float]:
+    """Frequencies of the impact responses of a run [Hz], those that stand out."""
+    record = _between(run.data, 0, _MOST_SAMPLES)
+    try:
+        rings = analysis.impact_frequencies(record)["frequency"].values
+    except SceneError:  # too short a record, or one without events
+        return []
+    return [float(ring) for ring in rings[np.isfinite(rings)]]
+
+
+def _fit_heights(ax: Axes, wide: bool) -> None:
+    """Show what is in view: some decades below the top; if the axis reaches to the ring, all that is not rounding."""
+    low, high = ax.get_xlim()
+    inside = []
+    for line in ax.get_lines():
+        at, power = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        inside.append(power[(at >= low) & (at <= high) & (power > 0.0)])
+    values = np.concatenate([*inside, np.ones(1)] if not any(map(len, inside)) else inside)
+    top = float(values.max())
+    bottom = max(float(values.min()), top * 10.0**-_MOST_DECADES) if wide else top * 10.0**-_DECADES
+    ax.set_ylim(0.5 * bottom if wide else bottom, 3.0 * top)
+
+
+def _mark_all(ax: Axes, drive: list[float], mesh: float, rings: list[float]) -> None:
+    """Mark drive, mesh with its multiples as far as they stand apart, and rings, as far as they are in view."""
+    low, high = ax.get_xlim()
+    wide = ax.get_xscale() == "log"
+    marks = [(line, "drive") for line in drive]
+    if mesh > 0.0:
+        last = _MARKED_IF_WIDE if wide else int(high / mesh)
+        marks += [
+            (multiple * mesh, "mesh" if multiple == 1 else "" if wide else f"{multiple} mesh")
+            for multiple in range(1, 1 + last)
+        ]
+    marks += [(ring, "" if number else "rings") for number, ring in enumerate(rings)]
+    for line, text in marks:
+        if low <= line <= high:
+            _mark(ax, line, text)
+
+
+def _name_estimate(ax: Axes, resolution: float, wide: bool) -> None:
+    """Say in a corner how the spectrum was estimated."""
+    window, length = ("Tukey" if wide else "Hann"), with_prefix(1.0 / resolution, "s")
+    words = f"{window} window over {length}, resolution {with_prefix(resolution, 'Hz')}"
+    if wide:
+        words += f"\naveraged over 1/24 octave above {crowded_from(resolution):.0f} Hz"
+    ax.text(0.995, 0.9, words, transform=ax.transAxes, ha="right", va="top", fontsize="x-small", color="0.35")
 
 
 def _length(run: xr.Dataset) -> float:
@@ -263,7 +347,7 @@ def _period(ds: xr.Dataset, shown: list[Run]) -> tuple[float, str]:
     duration = float(ds["time"][-1] - ds["time"][0])
     if harmonics and float(harmonics[0]["frequency"]) * duration > 1.0:
         return 1.0 / float(harmonics[0]["frequency"]), "cycle of the drive"
-    frequency = _mesh_frequency(ds, _settled(shown[0]))
+    frequency = _mesh_frequency(ds, _settled(shown[0], _SETTLED))
     return (min(1.0 / frequency, duration) if frequency > 0.0 else duration), "pitch of the gear"
 
 

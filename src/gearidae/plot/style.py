@@ -16,13 +16,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from gearidae.analysis.verdict import START_UP
+from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
 from gearidae.errors import SceneError
+from gearidae.plot.picking import pick
 from gearidae.plot.picture import PictureAxes, new_picture
 
 __all__ = [
+    "COLOURS",
+    "LINE_STYLES",
     "NEGATIVE",
     "POSITIVE",
     "Run",
@@ -33,6 +36,7 @@ __all__ = [
     "new_axes",
     "runs_of",
     "scale_for",
+    "scaled",
     "thin",
     "tidy",
 ]
@@ -41,8 +45,8 @@ Floats = NDArray[np.float64]
 
 # Okabe and Ito's palette, dark colours first: told apart by colour-blind readers and, with the line styles,
 # in grey.
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-_LINE_STYLES = (
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+LINE_STYLES = (
     "-",
     (0, (6, 1.5)),
     (0, (1.5, 1)),
@@ -51,7 +55,7 @@ _LINE_STYLES = (
     (0, (8, 2, 1, 1, 1, 2)),
     "-",
 )
-POSITIVE, NEGATIVE = _COLOURS[:2]
+POSITIVE, NEGATIVE = COLOURS[:2]
 """Colours of what pushes and of what pulls."""
 
 _PREFIXES = {
@@ -68,6 +72,8 @@ _PREFIXES = {
     6: "M",
     9: "G",
 }
+_PREFIXED = ("m", "s", "Pa", "Hz", "N", "N m", "J", "W")
+_SPELT = {"rad s-1": "rad/s", "m s-1": "m/s", "kg m2": "kg m²", "J m-2": "J/m²", "m-2": "1/m²"}
 _MOST_POINTS = 6000
 _MOST_RUNS = 7
 
@@ -123,8 +129,8 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     Returns
     -------
     list of Run
-        At most seven, evenly picked, the first and the last among them: more cannot be told apart in one
-        picture.
+        At most seven, because more cannot be told apart in one picture: the first, the last, and those at which the
+        outcome changes, see `gearidae.plot.picking`.
 
     Raises
     ------
@@ -132,18 +138,19 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
         If the dataset lacks the variable or has no samples.
     """
     everything = list(runs(ds)) if name in ds else []
-    found = [(label, run) for label, run in everything if _has_samples(run[name])]
+    kept = [number for number, (_, run) in enumerate(everything) if _has_samples(run[name])]
+    if len(kept) > _MOST_RUNS:
+        judged = outcomes(ds)
+        kept = [kept[number] for number in pick([judged[each].verdict for each in kept], _MOST_RUNS)]
+    found = [everything[number] for number in kept]
     if not found:
         raise SceneError("plot", name, "the dataset has no samples of it")
-    if len(found) > _MOST_RUNS:
-        picked = np.unique(np.linspace(0, len(found) - 1, _MOST_RUNS).round().astype(int))
-        found = [found[index] for index in picked]
     return [
         Run(
             _label(label, run),
             run,
-            _COLOURS[number % len(_COLOURS)],
-            _LINE_STYLES[number % len(_LINE_STYLES)],
+            COLOURS[number % len(COLOURS)],
+            LINE_STYLES[number % len(LINE_STYLES)],
         )
         for number, (label, run) in enumerate(found)
     ]
@@ -167,6 +174,21 @@ def scale_for(largest: float, unit: str) -> Scale:
         return Scale(1.0, unit)
     power = min(max(3 * math.floor(math.log10(largest * (1 + 1e-9)) / 3), min(_PREFIXES)), max(_PREFIXES))
     return Scale(10.0**-power, f"{_PREFIXES[power]}{unit}")
+
+
+def scaled(largest: float, unit: str) -> Scale:
+    """Choose a prefix as `scale_for` does, for units that take one; others stay as they are.
+
+    Parameters
+    ----------
+    largest : float
+        Largest magnitude to be shown [SI].
+    unit : str
+        Unit without prefix, as datasets have it.
+    """
+    if unit in _PREFIXED:
+        return scale_for(largest, unit)
+    return Scale(1.0, _SPELT.get(unit, unit))
 
 
 def largest(runs: Sequence[Run], name: str) -> float:
@@ -252,7 +274,7 @@ def legend(ax: Axes, runs: Sequence[Run]) -> None:
         [run.label for run in runs],
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
-        ncols=len(runs) if max(len(run.label) for run in runs) < 12 else 3,
+        ncols=min(len(runs), 4) if max(len(run.label) for run in runs) < 12 else 3,
         frameon=False,
         borderaxespad=0.2,
         handlelength=2.4,
@@ -283,11 +305,7 @@ def _label(label: Mapping[str, Any], run: xr.Dataset) -> str:
         if dim == "sam_fraction":
             words.append(f"SAM {100 * value:.4g} %")
         elif isinstance(value, float) and unit != "1":
-            scale = (
-                scale_for(abs(value), unit)
-                if unit in ("m", "s", "Pa", "Hz", "N", "N m")
-                else Scale(1.0, unit)
-            )
+            scale = scaled(abs(value), unit)
             words.append(f"{dim} {value * scale.factor:.4g} {scale.unit}")
         else:
             words.append(f"{dim} {value:g}" if isinstance(value, float) else f"{dim} {value}")

@@ -66,5 +66,7 @@ const gearidae = (() => {
     return { pen, width, height };
   }
 
-  return { decode, element, prefixOf, style, colour, seconds, quantity, whenSeenAnew, penOf };
+  const slug = (text) => text.toLowerCase().replace(/[^a-z0-9]+/g, "_").replace(/^_+|_+$/g, "") || "report";
+
+  return { slug, decode, element, prefixOf, style, colour, seconds, quantity, whenSeenAnew, penOf };
 })();

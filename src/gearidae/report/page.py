@@ -94,6 +94,8 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
 </main>
 <script>
 {_resource("common.js")}
+{_resource("save.js")}
+{_resource("box.js")}
 {_resource("viewer.js")}
 {_resource("teeth.js")}
 </script>
@@ -145,8 +147,8 @@ def _viewer(ds: xr.Dataset, most_values: int) -> str:
     if not data:
         return ""
     return (
-        '<div id="viewer"><p class="hint">Drag to move, pinch or Ctrl + wheel to zoom; with a plot focused: '
-        "arrows, + and -, 0 for everything.</p></div>\n"
+        '<div id="viewer"><p class="hint">Drag to move, Shift + drag (or b) for a box to zoom into, pinch or Ctrl + '
+        "wheel to zoom; with a plot focused: arrows, + and -, 0 for everything. All plots share their time.</p></div>\n"
         "<noscript><p>The viewer needs JavaScript; the pictures below do not.</p></noscript>\n"
         + html.json_block("data", data)
     )

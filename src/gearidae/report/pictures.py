@@ -1,9 +1,7 @@
-"""The pictures of a report, as data inside the page."""
+"""The pictures of a report, as drawings inside the page."""
 
 from __future__ import annotations
 
-import base64
-import io
 from collections.abc import Callable
 from typing import Any
 
@@ -14,12 +12,13 @@ from gearidae import plot
 from gearidae.archive.select import is_roller, swept_dims
 from gearidae.errors import SceneError
 from gearidae.report import html
+from gearidae.report.svg import colour_rules, drawing
 
 __all__ = ["pictures"]
 
-_DPI = 130
 _Draw = Callable[[xr.Dataset], Any]
 
+_OUTCOME: tuple[_Draw, str] = (plot.outcome, "Outcome of each run against what was swept")
 _GEARS: tuple[tuple[_Draw, str], ...] = (
     (plot.overview, "Speed of the gear and torque of the tooth contacts on it"),
     (plot.gap, "Smallest gap between the teeth, drive flank"),
@@ -42,23 +41,29 @@ def pictures(ds: xr.Dataset) -> str:
     Returns
     -------
     str
-        Figures with captions; a picture that the dataset is too short or too empty for is left out.
+        Figures with captions, and the colours of both schemes; a picture that the dataset is too short or too empty for
+        is left out.
     """
-    wanted = _ROLLER if is_roller(ds) else _GEARS if swept_dims(ds) else _GEARS + _SINGLE
-    return "\n".join(filter(None, (_figure(ds, draw, caption) for draw, caption in wanted)))
+    swept = bool(swept_dims(ds))
+    wanted = _ROLLER if is_roller(ds) else _GEARS if swept else _GEARS + _SINGLE
+    if swept:
+        wanted = (_OUTCOME, *wanted)
+    drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
+    shown = [(name, text, caption) for name, text, caption in drawn if text]
+    if not shown:
+        return ""
+    figures = "\n".join(
+        f'<figure class="picture" data-name="{html.text(name)}"><div class="wide" role="region" tabindex="0" '
+        f'aria-label="{html.text(caption)}">{text}</div><figcaption>{html.text(caption)}</figcaption></figure>'
+        for name, text, caption in shown
+    )
+    return f"<style>\n{colour_rules(text for _, text, _ in shown)}</style>\n{figures}"
 
 
-def _figure(ds: xr.Dataset, draw: _Draw, caption: str) -> str:
+def _drawn(ds: xr.Dataset, draw: _Draw, caption: str) -> str:
     try:
-        drawn = draw(ds)
+        made = draw(ds)
     except SceneError:
         return ""
-    figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=_DPI)
-    data = base64.b64encode(stream.getvalue()).decode("ascii")
-    width, height = (round(_DPI * inches) for inches in figure.get_size_inches())
-    return (
-        f'<figure><img alt="{html.text(caption)}" width="{width}" height="{height}" '
-        f'src="data:image/png;base64,{data}"><figcaption>{html.text(caption)}</figcaption></figure>'
-    )
+    figure = made if isinstance(made, Figure) else made.get_figure(root=True)
+    return drawing(figure, draw.__name__, caption)

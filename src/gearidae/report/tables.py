@@ -19,6 +19,7 @@ from gearidae.records import EventKind
 from gearidae.report import html
 from gearidae.scene import describe_keys
 from gearidae.scene.prefixes import with_prefix
+from gearidae.scene.shown import flat
 from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, holds_rows, rows_from_json
 
 __all__ = [
@@ -31,10 +32,12 @@ __all__ = [
     "validity_table",
 ]
 
+_NAMED_KEYS = 12
 _GEAR_HEADINGS = ("outcome", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
 _ROLLER_HEADINGS = (
     "outcome", "peak force", "pull-off force", "restitution", "impacts", "status"
 )  # fmt: skip
+_PREFIXED = ("m", "s", "N", "J", "Pa", "Hz", "W")
 _PROVENANCE = (
     ("title", "title"),
     ("date_created", "created"),
@@ -49,7 +52,7 @@ _PROVENANCE = (
     ("residual_evaluations", "evaluations of the residual"),
     ("jacobian_evaluations", "evaluations of the Jacobian"),
     ("restarts", "restarts"),
-    ("wall_time", "time in the solver (s)"),
+    ("wall_time", "time in the solver"),
     ("tabor_parameter_bare", "Tabor parameter, bare"),
     ("tabor_parameter_coated", "Tabor parameter, coated"),
     ("references", "reference"),
@@ -98,7 +101,7 @@ def outcome_table(ds: xr.Dataset) -> str:
     judged = outcomes(ds)
     dims = swept_dims(ds)
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
-    rows = [[*(_number(value) for value in each.label.values()), *_outcome_cells(each)] for each in judged]
+    rows = [[*_label_cells(ds, each.label), *_outcome_cells(each)] for each in judged]
     last = len(dims) + len(headings) - 1
     numeric = [place for place in range(last) if place != len(dims)]
     return html.table((*dims, *headings), rows, caption="Outcome of each run", numeric=numeric)
@@ -129,12 +132,12 @@ def event_table(ds: xr.Dataset) -> str:
     rows = []
     for label, counted in found:
         made = counted.counts[EventKind.ONSET]
-        first = f"{counted.first * 1e3:.6g}" if made else "-"
-        fastest = f"{max(counted.fastest, 0.0):.3g}" if made else "-"
+        first = _measure(counted.first, "s") if made else "-"
+        fastest = with_prefix(max(counted.fastest, 0.0), "m/s") if made else "-"
         counts = [str(counted.counts[each]) for each in kinds]
-        rows.append([*(_number(value) for value in label.values()), *counts, first, fastest])
+        rows.append([*_label_cells(ds, label), *counts, first, fastest])
     names = [each.name.lower().replace("_", " ") for each in kinds]
-    headings = [*dims, *names, "first onset (ms)", "fastest closing at an onset (m/s)"]
+    headings = [*dims, *names, "first onset", "fastest closing at an onset"]
     return html.table(headings, rows, caption="Events of each run", numeric=range(len(headings)))
 
 
@@ -163,17 +166,17 @@ def _count_events(run: xr.Dataset) -> _EventCounts:
 
 
 def parameter_tables(ds: xr.Dataset) -> str:
-    """List the scene key by key, in SI units, with what each key means."""
+    """List the scene key by key, in units with prefixes, with what each key means."""
     scene = scene_of(ds)
     swept = json.loads(ds.attrs.get("swept", "{}"))
     known = {info.key: info for info in describe_keys()}
     rows = []
     for key, value in _flatten(scene, swept):
-        info = known.get(key)
+        info = known.get(".".join(part for part in key.split(".") if not part.isdecimal()))
         unit, meaning = (info.unit, info.description) if info else ("", "")
-        shown = f"swept: {_values(swept[key])}" if key in swept else _value(value)
-        rows.append((key, shown, "" if unit == "1" else unit, meaning))
-    return html.table(("key", "value", "unit", "meaning"), rows, caption="Parameters of the scene (SI units)")
+        shown = f"swept: {_values(swept[key], unit)}" if key in swept else _value(value, unit)
+        rows.append((key, shown, meaning))
+    return html.table(("key", "value", "meaning"), rows, caption="Parameters of the scene")
 
 
 def validity_table(ds: xr.Dataset) -> str:
@@ -194,8 +197,16 @@ def provenance_list(ds: xr.Dataset) -> str:
     """List where the archive comes from and what it took to compute."""
     attributes = ds.attrs
     return html.definitions(
-        (name, _number(attributes[key])) for key, name in _PROVENANCE if attributes.get(key, "") != ""
+        (name, _provenance(key, attributes[key]))
+        for key, name in _PROVENANCE
+        if str(attributes.get(key, "")) != ""
     )
+
+
+def _provenance(key: str, value: Any) -> str:
+    if key == "wall_time" and isinstance(value, (int, float, np.number)):
+        return _measure(value, "s")
+    return _number(value)
 
 
 def _outcome_cells(outcome: GearOutcome | RollerOutcome) -> list[str]:
@@ -212,24 +223,43 @@ def _flatten(tables: dict[str, Any], swept: dict[str, Any]) -> Iterator[tuple[st
     seen = set()
     for name, content in tables.items():
         if isinstance(content, dict):
-            for key, value in content.items():
+            for key, value in flat(content).items():
                 seen.add(f"{name}.{key}")
                 yield f"{name}.{key}", value
     yield from ((key, None) for key in swept if key not in seen)
 
 
-def _value(value: Any) -> str:
+def _value(value: Any, unit: str) -> str:
+    """Write the value of a key; of a list, which may have thousands of knots, no more than its ends."""
+    if isinstance(value, list):
+        return _values(value, "")
+    if isinstance(value, float) and unit == "rad":
+        return f"{math.degrees(value):.6g} deg"
+    if isinstance(value, float) and unit == "1/m^2":
+        return f"{1e-12 * value:.6g} 1/um^2"
+    if isinstance(value, float) and unit not in ("", "1"):
+        return _measure(value, unit)
     return _number(value) if isinstance(value, (int, float, str)) else json.dumps(value)
 
 
-def _values(values: list[Any]) -> str:
-    shown = [_value(value) for value in values]
-    return ", ".join(shown if len(shown) <= 12 else [*shown[:6], "...", *shown[-3:]])
+def _values(values: list[Any], unit: str) -> str:
+    shown = [
+        _value(value, unit)
+        for value in (values if len(values) <= _NAMED_KEYS else [*values[:6], *values[-3:]])
+    ]
+    if len(values) > _NAMED_KEYS:
+        shown.insert(6, f"... ({len(values)} in all) ...")
+    return ", ".join(shown)
+
+
+def _label_cells(ds: xr.Dataset, label: dict[str, Any]) -> list[str]:
+    """Write the swept values of a run, with their units."""
+    return [_value(value, str(ds[dim].attrs.get("units", "1"))) for dim, value in label.items()]
 
 
 def _measure(value: Any, unit: str) -> str:
-    """Write a quantity with a prefix; angular speeds and texts have none."""
-    if isinstance(value, str) or unit == "rad/s":
+    """Write a quantity with a prefix; texts have none, nor have units that take none."""
+    if isinstance(value, str) or unit.split(" ")[0].split("/")[0].split("^")[0] not in _PREFIXED:
         return f"{_number(value)} {unit}".rstrip()
     return with_prefix(float(value), unit, 6)
 

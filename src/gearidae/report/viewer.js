@@ -13,7 +13,7 @@
   const view = { from: 0, to: data.end };
   const hidden = new Set();
   const panels = [];
-  let cursor = null, followed = null, waiting = false;
+  let cursor = null, followed = null, waiting = false, boxing = false;
 
   function ticks(low, high, wanted) {
     const rough = (high - low) / Math.max(wanted, 1), power = 10 ** Math.floor(Math.log10(rough));
@@ -31,12 +31,13 @@
 
   function drawAll() {
     for (const panel of panels) if (panel.values && !panel.box.hidden) draw(panel);
-    legend.querySelectorAll(".swatch").forEach((swatch, run) => { swatch.style.borderTopColor = colour(run); });
+    legend.querySelectorAll(".swatch").forEach((swatch, run) => { swatch.style.color = colour(run); });
     report();
   }
 
   // Extremes of what is in view, so that the scale follows the zoom.
   function rangeOf(panel) {
+    if (panel.chosen) return panel.chosen;
     let low = Infinity, high = -Infinity;
     panel.values.forEach((values, run) => {
       if (hidden.has(run)) return;
@@ -94,7 +95,7 @@
     pen.textAlign = "right";
     pen.fillText(seconds.prefix + "s", width - RIGHT, TOP + tall + 6);
 
-    const range = rangeOf(panel);
+    const range = panel.range = rangeOf(panel);
     if (!range) return;
     const scale = panel.unit ? prefixOf(Math.max(Math.abs(range[0]), Math.abs(range[1]))) : { factor: 1, prefix: "" };
     panel.title.textContent = panel.label + (panel.unit ? " (" + readable(scale.prefix, panel.unit) + ")" : "");
@@ -217,12 +218,32 @@
     const step = share * (view.to - view.from);
     look(view.from + step, view.to + step);
   }
-  const everything = () => look(0, data.end);
+  function everything() {
+    for (const panel of panels) panel.chosen = null;
+    look(0, data.end);
+  }
 
   function timeAt(canvas, clientX) {
     const box = canvas.getBoundingClientRect();
     const share = (clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
     return view.from + Math.min(1, Math.max(0, share)) * (view.to - view.from);
+  }
+
+  // A box zooms all panels in time, and its own in height.
+  function listenToBoxes(panel) {
+    const canvas = panel.canvas;
+    gearidae.boxZoom(canvas, (event) => boxing || event.shiftKey, (from, to, down) => {
+      const range = panel.range, tall = canvas.clientHeight - TOP - BOTTOM, left = canvas.getBoundingClientRect().left;
+      const value = (y) => range[1] - (range[1] - range[0]) * Math.min(1, Math.max(0, (y - TOP) / tall));
+      if (down && range) panel.chosen = [value(down[1]), value(down[0])];
+      look(timeAt(canvas, left + from), timeAt(canvas, left + to));
+    });
+  }
+
+  function chooseBoxes(wanted) {
+    boxing = wanted;
+    boxButton.setAttribute("aria-pressed", String(wanted));
+    holder.classList.toggle("boxing", wanted);
   }
 
   function listen(canvas) {
@@ -259,7 +280,7 @@
     canvas.addEventListener("keydown", (event) => {
       const actions = {
         ArrowLeft: () => move(-0.2), ArrowRight: () => move(0.2), "+": () => zoom(0.5), "=": () => zoom(0.5),
-        "-": () => zoom(2), "0": everything, Home: () => look(0, view.to - view.from),
+        "-": () => zoom(2), "0": everything, b: () => chooseBoxes(!boxing), Home: () => look(0, view.to - view.from),
         End: () => look(data.end - (view.to - view.from), data.end),
       };
       const action = actions[event.key];
@@ -267,6 +288,15 @@
       event.preventDefault();
       action();
     });
+  }
+
+  function saveTable() {
+    const shown = panels.filter((panel) => panel.values && !panel.box.hidden);
+    gearidae.save(gearidae.tableOf(data, shown, hidden, indices), "csv", "series");
+  }
+
+  function savePlot(panel) {
+    gearidae.savePlot(panel.canvas, panel.title.textContent, LEFT, panel.name);
   }
 
   function toggle(panel, wanted) {
@@ -285,11 +315,26 @@
     button.setAttribute("aria-label", name);
     button.addEventListener("click", action);
   }
+  const boxButton = element("button", controls, "box zoom", { type: "button", title: "drag boxes to zoom into" });
+  boxButton.setAttribute("aria-pressed", "false");
+  boxButton.addEventListener("click", () => chooseBoxes(!boxing));
+  gearidae.saveButtons(controls, [["CSV", "download the shown plots as a table", saveTable]]);
+  // A piece of a run's line, with its dashes.
+  function swatchOf(parent, dashes) {
+    const name = "http://www.w3.org/2000/svg", svg = document.createElementNS(name, "svg"), line = document.createElementNS(name, "path");
+    svg.setAttribute("class", "swatch");
+    svg.setAttribute("viewBox", "0 0 32 4");
+    line.setAttribute("d", "M0 2H32");
+    line.setAttribute("stroke-dasharray", dashes.join(" "));
+    svg.append(line);
+    parent.append(svg);
+  }
+
   const legend = element("div", holder, "", { className: "controls" });
   data.runs.forEach((run, number) => {
     if (data.runs.length < 2) return;
     const button = element("button", legend, "", { type: "button" });
-    element("span", button, "", { className: "swatch" });
+    swatchOf(button, DASHES[number % 7]);
     button.append(run.label);
     button.setAttribute("aria-pressed", "true");
     button.addEventListener("click", () => {
@@ -309,12 +354,14 @@
     panel.canvas.setAttribute("aria-label", series.label + " over time; arrow keys move, plus and minus zoom, 0 shows all");
     panel.button = element("button", quantities, series.name.replaceAll("_", " "), { type: "button" });
     panel.button.addEventListener("click", () => toggle(panel, box.hidden));
+    listenToBoxes(panel);
     listen(panel.canvas);
+    gearidae.saveButtons(box, [["PNG", "download the plot of " + series.label, () => savePlot(panel)]]);
     panels.push(panel);
     toggle(panel, series.shown);
   }
   const notes = [];
-  if (data.of > data.runs.length) notes.push(data.runs.length + " of " + data.of + " runs are shown.");
+  if (data.of > data.runs.length) notes.push(data.runs.length + " of " + data.of + " runs are shown: the first, the last, and those at which the outcome changes.");
   if (data.reduced > 1) notes.push("Of every " + data.reduced + " samples the page holds the smallest and the largest.");
   notes.push("Marks at the foot: contacts made (long) and broken (short).");
   element("p", holder, notes.join(" "), { className: "hint" });

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
+from pydantic.fields import FieldInfo
+
 from gearidae.scene.group import Group
+from gearidae.scene.knots import Knots
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.scene import Scene
 
-__all__ = ["dump_case"]
+__all__ = ["dump_case", "dump_keys"]
+
+_LONGEST_BESIDE = 80
+"""Characters of an entry that still has its comment beside it."""
 
 
 def dump_case(scene: Scene) -> str:
@@ -39,6 +45,33 @@ def dump_case(scene: Scene) -> str:
     return "\n".join(lines) + "\n"
 
 
+def dump_keys(table: str, values: Mapping[str, float | str]) -> str:
+    """Write some keys of one table of a scene as they stand in a case file.
+
+    Parameters
+    ----------
+    table : str
+        Such as ``"surface"``; of a table that every scene has.
+    values : mapping of str to float or str
+        Names of keys without that of the table, and what they hold: numbers in SI, or texts.
+
+    Returns
+    -------
+    str
+        TOML: a part of a case file, which `load_case` reads once the other keys are added.
+    """
+    fields = Scene.model_fields[table].annotation.model_fields  # type: ignore[union-attr]
+    entries = [
+        (f"{name} = {_value(value, _quantity(fields[name]))}", fields[name].description)
+        for name, value in values.items()
+    ]
+    return "\n".join([f"[{table}]", *_commented(entries)]) + "\n"
+
+
+def _quantity(field: FieldInfo) -> Quantity | None:
+    return next((one for one in field.metadata if isinstance(one, Quantity)), None)
+
+
 def _table(group: Group) -> Iterator[str]:
     """Write a table's plain keys, and its schedule."""
     entries = []
@@ -47,19 +80,28 @@ def _table(group: Group) -> Iterator[str]:
         if isinstance(value, tuple):
             if value and isinstance(value[0], float):
                 entries.append((f"{name} = {_plain(value)}", field.description))
-            elif value and not isinstance(value[0], Group):
+            elif isinstance(value, Knots) and value:
                 entries.append((f"{name} = {_knots(value)}", field.description))
+            elif value and not isinstance(value[0], Group):
+                entries.append((f"{name} = {_rows(value)}", field.description))
             continue
         if value is None:
             continue
         if isinstance(value, Group):
             entries.append((f"{name} = {_inline(value)}", field.description))
             continue
-        quantity = next((one for one in field.metadata if isinstance(one, Quantity)), None)
-        entries.append((f"{name} = {_value(value, quantity)}", field.description))
-    width = max((len(text) for text, _ in entries if "\n" not in text), default=0)
+        if value == "":
+            continue  # a text that need not be given
+        entries.append((f"{name} = {_value(value, _quantity(field))}", field.description))
+    yield from _commented(entries)
+
+
+def _commented(entries: Sequence[tuple[str, str | None]]) -> Iterator[str]:
+    """Write a comment beside each entry, or above long ones."""
+    long = {text for text, _ in entries if "\n" in text or len(text) > _LONGEST_BESIDE}
+    width = max((len(text) for text, _ in entries if text not in long), default=0)
     for text, description in entries:
-        yield f"# {description}\n{text}" if "\n" in text else f"{text:<{width}}  # {description}"
+        yield f"# {description}\n{text}" if text in long else f"{text:<{width}}  # {description}"
 
 
 def _knots(knots: tuple[tuple[float, float], ...]) -> str:
@@ -69,6 +111,11 @@ def _knots(knots: tuple[tuple[float, float], ...]) -> str:
     return (
         text if interpolation == "linear" else f"{{ interpolation = {_text(interpolation)}, knots = {text} }}"
     )
+
+
+def _rows(rows: tuple[tuple[float, ...], ...]) -> str:
+    """Write a table of numbers, one row in a line."""
+    return "[\n" + "".join(f"    {_plain(row)},\n" for row in rows) + "]"
 
 
 def _inline(group: Group) -> str:

@@ -6,7 +6,20 @@ import math
 
 __all__ = ["with_prefix"]
 
-_PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+_PREFIXES = {
+    -24: "y",
+    -21: "z",
+    -18: "a",
+    -15: "f",
+    -12: "p",
+    -9: "n",
+    -6: "u",
+    -3: "m",
+    0: "",
+    3: "k",
+    6: "M",
+    9: "G",
+}
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:
@@ -24,7 +37,7 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
     Returns
     -------
     str
-        ``"46.6 nm"``; without prefix beyond a million billion times the unit or its inverse. "-" if `value` is NaN.
+        ``"46.6 nm"``; without prefix below 1e-24 and from 1e12 times the unit on. "-" if `value` is NaN.
     """
     if math.isnan(value):
         return "-"

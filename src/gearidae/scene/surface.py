@@ -1,10 +1,10 @@
-"""The rough flanks, their coating, and the laws chosen for their contact."""
+"""The rough flanks, and the laws chosen for their contact."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from gearidae.contact.asperities import law_names
 from gearidae.contact.tip import INTERACTION_RANGE
@@ -12,9 +12,16 @@ from gearidae.scene.group import Group
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Quantity
 
-__all__ = ["MATERIAL_NAMES", "Coating", "Contact", "Material", "Surface"]
+__all__ = ["Contact", "Energy", "Surface"]
 
+_LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
+
+
+def _line(value: object) -> str:
+    if isinstance(value, str) and (value.isprintable() or not value) and len(value) <= _LONGEST_LINE:
+        return value
+    raise ValueError(f"must be a printable line of at most {_LONGEST_LINE} characters")
 
 
 class Surface(Group):
@@ -40,26 +47,10 @@ class Surface(Group):
         default=INTERACTION_RANGE,
         description="range of the adhesive forces, eps (equilibrium spacing of atoms); for maugis asperities",
     )
-
-
-MATERIAL_NAMES = ("bare", "coated")
-"""Names of a scene's materials, in the order of `Scene.materials`."""
-
-
-class Material(NamedTuple):
-    """A surface and the share of the flanks that it makes up [1]."""
-
-    surface: Surface
-    share: float
-
-
-class Coating(Group):
-    """The self-assembled monolayer and how much of it is left; it changes the surface energy alone."""
-
-    sam_fraction: Annotated[float, Quantity(unit="1", at_least=0, at_most=1)] = Field(
-        description="share of the flank that the monolayer still covers, f"
+    provenance: Annotated[str, BeforeValidator(_line)] = Field(
+        default="",
+        description="where roughness, density and radius of the asperities come from; not computed with",
     )
-    energy: Energy = Field(default=0.1, description="surface energy where the monolayer covers the flank")
 
 
 class Contact(Group):

@@ -1,0 +1,135 @@
+"""``gearidae surface``: from a height map to a table of a case file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import gearidae as gd
+from gearidae.cli.case import read_scene
+from gearidae.cli.codes import DONE
+from gearidae.cli.output import say
+from gearidae.cli.surface_table import show_surface
+from gearidae.errors import SceneError
+
+__all__ = ["Choices", "analyse_scan"]
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What the user chose about a scan.
+
+    Attributes
+    ----------
+    size : str or None
+        Extent, ``"2 um"`` or ``"2 um, 1 um"``; None to take it from the file.
+    unit : str or None
+        Unit of the heights in the file.
+    cutoff : str or None
+        Cut-off wavelength.
+    by : str
+        ``summits`` or ``moments``.
+    both_flanks : bool
+        Whether both flanks are as rough.
+    case : str or None
+        Case file or preset whose surface is to be replaced; None for a table ``[surface]`` alone.
+    """
+
+    size: str | None
+    unit: str | None
+    cutoff: str | None
+    by: str
+    both_flanks: bool
+    case: str | None
+
+
+def analyse_scan(
+    scan: Path, choices: Choices, output: Path | None, picture: Path | None, *, overwrite: bool
+) -> int:
+    """Print what a scan says about the asperities; write it as a part of a case file and as a picture.
+
+    Parameters
+    ----------
+    scan : Path
+        Height map.
+    choices : Choices
+    output : Path or None
+        Case file to write, or part of one.
+    picture : Path or None
+        Image to write.
+    overwrite : bool
+        Whether files may be replaced.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the scan cannot be read or analysed, a file may not be written, or its cut-off has not been chosen.
+    """
+    if output is not None and choices.cutoff is None:
+        raise SceneError("--cutoff", "(none)", "choose one before writing a case: the numbers depend on it")
+    if choices.case is not None and output is None:
+        raise SceneError("--case", choices.case, "needs -o, the case file to write")
+    for target in (output, picture):
+        if target is not None and target.exists() and not overwrite:
+            raise SceneError("output", target, "exists already: name another, or allow --overwrite")
+    heights, own_size = gd.surfaces.read_scan(scan, choices.unit)
+    found = gd.surface_from(
+        heights,
+        _size(choices.size, own_size),
+        choices.cutoff,
+        by=choices.by,
+        both_flanks=choices.both_flanks,
+        source=scan.name,
+    )
+    text = None if output is None else _text(found, choices.case)
+    show_surface(found)
+    if picture is not None:
+        gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)
+        say(f"Picture: {picture}")
+    if output is not None and text is not None:
+        _write(output, text, overwrite=overwrite)
+        say(f"{'Surface' if choices.case is None else 'Case'}: {output}")
+    elif choices.cutoff is None:
+        say("The numbers depend on the cut-off wavelength: choose one with --cutoff.")
+    return DONE
+
+
+def _size(given: str | None, own: tuple[float, float] | None) -> str | tuple[float | str, float | str]:
+    if given is not None:
+        parts = [part.strip() for part in given.split(",")]
+        if len(parts) > 2:
+            raise SceneError("--size", given, "must be one length or two")
+        return parts[0] if len(parts) == 1 else (parts[0], parts[1])
+    if own is None:
+        raise SceneError("--size", "(none)", "is needed: this file does not tell its extent, such as 2 um")
+    return own
+
+
+def _text(found: gd.surfaces.MeasuredSurface, case: str | None) -> str:
+    """Text of the file: a table, or a whole case with the surface replaced."""
+    if case is None:
+        return found.fragment()
+    comments = "".join(line for line in _comments(found.fragment()))
+    return comments + gd.dump_case(read_scene(case, []).replace(found.settings))
+
+
+def _comments(fragment: str) -> Iterator[str]:
+    for line in fragment.splitlines(keepends=True):
+        if line.startswith("#"):
+            yield line
+
+
+def _write(target: Path, text: str, *, overwrite: bool) -> None:
+    try:
+        with target.open("w" if overwrite else "x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise SceneError("output", target, "exists already: name another, or allow --overwrite") from None
+    except OSError as error:
+        raise SceneError("output", target, f"cannot be written ({error.strerror})") from error

@@ -1,0 +1,73 @@
+"""Table of a measured surface against the cut-off wavelength."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich import box
+from rich.table import Table
+
+from gearidae.cli.output import say, show
+from gearidae.scene.prefixes import with_prefix
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gearidae.surfaces import MeasuredSurface
+
+__all__ = ["show_surface"]
+
+_MOST_ROWS = 9
+_HEADINGS = (
+    "cut-off",
+    "rms height",
+    "roughness",
+    "density",
+    "radius",
+    "roughness",
+    "density",
+    "radius",
+    "summits",
+)
+
+
+def show_surface(found: MeasuredSurface) -> None:
+    """Print asperities by summits and by moments for some cut-off wavelengths, and the remarks.
+
+    Parameters
+    ----------
+    found : MeasuredSurface
+        A chosen cut-off has a row, marked by an arrow.
+    """
+    ds = found.statistics
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    table.title, table.title_justify = (
+        "Asperities of one flank by summits (left) and by moments (right)",
+        "left",
+    )
+    for heading in _HEADINGS:
+        table.add_column(heading, justify="right", no_wrap=True)
+    count = ds.sizes["cutoff"]
+    rows = set(np.linspace(0, count - 1, min(count, _MOST_ROWS)).round().astype(int).tolist())
+    if found.cutoff is not None:
+        rows.add(int(np.flatnonzero(ds["cutoff"].values == found.cutoff)[0]))
+    for place in sorted(rows):
+        row = ds.isel(cutoff=place)
+        chosen = float(row["cutoff"]) == found.cutoff
+        table.add_row(*_cells(row, "> " if chosen else ""))
+    show(table)
+    for remark in found.remarks:
+        say(f"Note: {remark}")
+
+
+def _cells(row: xr.Dataset, mark: str) -> list[str]:
+    cells = [mark + with_prefix(float(row["cutoff"]), "m"), with_prefix(float(row["rms_height"]), "m")]
+    for way in row["by"].values.tolist():
+        at = row.sel(by=way)
+        cells += [
+            with_prefix(float(at["roughness"]), "m"),
+            "-" if np.isnan(at["asperity_density"]) else f"{1e-12 * float(at['asperity_density']):.3g}/um2",
+            with_prefix(float(at["asperity_radius"]), "m"),
+        ]
+    return [*cells, str(int(row["summit_count"]))]

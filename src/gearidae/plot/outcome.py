@@ -1,0 +1,217 @@
+"""Picture of what the runs of a sweep did, against the parameters that were swept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
+from gearidae.archive.select import swept_dims
+from gearidae.errors import SceneError
+from gearidae.plot.style import new_axes, scale_for, scaled, tidy
+
+__all__ = ["outcome"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """How a verdict looks: colour, marker of a run, hatch of a field; each tells it without the others."""
+
+    colour: str
+    marker: str
+    hatch: str
+
+
+_LOOKS = {
+    "turns smoothly": _Look("#0072B2", "o", ""),
+    "rebounds": _Look("#0072B2", "o", ""),
+    "runs": _Look("#0072B2", "o", ""),
+    "irregular": _Look("#E69F00", "D", "//"),
+    "running up": _Look("#56B4E9", "^", ".."),
+    "running down": _Look("#009E73", "v", "--"),
+    "runs back": _Look("#CC79A7", "<", "++"),
+    "sticks": _Look("#D55E00", "X", "xx"),
+    "stops": _Look("#D55E00", "X", "xx"),
+    "flies": _Look("#56B4E9", "^", ".."),
+}
+_UNKNOWN = _Look("#999999", "P", "oo")
+_MOST_NAMES = 12
+
+
+def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the outcome of each run against what was swept.
+
+    Over one parameter, a bar for each run reaches from the lowest to the highest speed of the gear (of a roller: from
+    the largest pull to the largest push), with the verdict as a mark at its lower end; dotted lines stand where the
+    verdict changes. Over two parameters, the verdict fills a field for each run.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A sweep over one or two keys, or a selection from a larger one. Samples are not needed.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no sweep, or one along more than two dimensions.
+    """
+    dims = swept_dims(ds)
+    if not 1 <= len(dims) <= 2:
+        raise SceneError(
+            "plot",
+            f"({len(dims)} swept keys)",
+            "outcomes are drawn against one or two swept keys; pick some of the others with .sel",
+        )
+    judged = outcomes(ds)
+    ax = new_axes(ax, height=3.4 if len(dims) == 1 else 4.2)
+    axes = [_parameter(ds[dim]) for dim in dims]
+    if len(dims) == 1:
+        _bars(ax, axes[0], judged)
+    else:
+        _fields(ax, axes[0], axes[1], np.array([one.verdict for one in judged], dtype=object))
+    return ax
+
+
+@dataclass(frozen=True, slots=True)
+class _Parameter:
+    """A swept key as an axis: places of its values in increasing order.
+
+    Attributes
+    ----------
+    places : ndarray, shape (n,)
+        Where the values lie, in the unit of the label, in the dataset's order.
+    label : str
+        Name and unit.
+    words : tuple of str
+        Names of the places where the values are no numbers; else empty.
+    """
+
+    places: NDArray[np.float64]
+    label: str
+    words: tuple[str, ...] = ()
+
+
+def _parameter(coordinate: xr.DataArray) -> _Parameter:
+    values = coordinate.values
+    name = str(coordinate.name)
+    if not np.issubdtype(values.dtype, np.number):
+        return _Parameter(np.arange(len(values), dtype=np.float64), name, tuple(map(str, values.tolist())))
+    if name == "sam_fraction":
+        return _Parameter(100.0 * values, "SAM (%)")
+    scale = scaled(float(np.abs(values).max()), str(coordinate.attrs.get("units", "1")))
+    unit = "" if scale.unit == "1" else f" ({scale.unit})"
+    return _Parameter(values * scale.factor, f"{name.replace('_', ' ')}{unit}")
+
+
+def _look(verdict: str) -> _Look:
+    return _LOOKS.get(verdict, _UNKNOWN)
+
+
+def _bars(ax: Axes, along: _Parameter, judged: Sequence[GearOutcome | RollerOutcome]) -> None:
+    """One bar a run, over one parameter."""
+    lows, highs, unit, words = _extents(judged)
+    largest = float(np.nanmax(np.abs([*lows, *highs, 0.0])))
+    scale = scale_for(largest, unit) if unit == "N" else scaled(largest, unit)
+    lows, highs = lows * scale.factor, highs * scale.factor
+    ax.vlines(along.places, lows, highs, color="0.6", linewidth=1.6, zorder=2)
+    for verdict in dict.fromkeys(one.verdict for one in judged):
+        own = np.array([one.verdict == verdict for one in judged])
+        look = _look(verdict)
+        ax.plot(
+            along.places[own],
+            lows[own],
+            look.marker,
+            color=look.colour,
+            markersize=6,
+            label=verdict,
+            zorder=3,
+        )
+    order = np.argsort(along.places, kind="stable")
+    for one, other in pairwise(order):
+        if judged[one].verdict != judged[other].verdict:
+            middle = 0.5 * (along.places[one] + along.places[other])
+            ax.axvline(middle, color="0.3", linestyle=":", linewidth=1.0, zorder=1)
+    ax.axhline(0.0, color="0.3", linewidth=0.8, zorder=1)
+    tidy(ax)
+    ax.margins(x=0.03)
+    ax.set_xlabel(along.label)
+    if along.words:
+        ax.set_xticks(along.places, along.words)
+    ax.set_ylabel(f"{words} ({scale.unit})")
+    _legend(ax, *ax.get_legend_handles_labels())
+
+
+def _extents(
+    judged: Sequence[GearOutcome | RollerOutcome],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], str, str]:
+    """Lower and upper ends of the bars [SI], their unit, and what they are."""
+    if isinstance(judged[0], RollerOutcome):
+        rollers = [one for one in judged if isinstance(one, RollerOutcome)]
+        lows = np.array([-one.pull_off_force for one in rollers])
+        return lows, np.array([one.peak_force for one in rollers]), "N", "largest pull and push"
+    gears = [one for one in judged if isinstance(one, GearOutcome)]
+    lows, highs = (np.array([getattr(one, name) for one in gears]) for name in ("min_speed", "max_speed"))
+    return lows, highs, "rad/s", "lowest to highest gear speed"
+
+
+def _fields(ax: Axes, down: _Parameter, across: _Parameter, verdicts: NDArray[np.object_]) -> None:
+    """One field a run, all of a size however the values are spaced: each run is to be seen."""
+    grid = verdicts.reshape(len(down.places), len(across.places))
+    rows, columns = np.argsort(down.places, kind="stable"), np.argsort(across.places, kind="stable")
+    grid = grid[np.ix_(rows, columns)]
+    shown = list(dict.fromkeys(verdicts.tolist()))
+    for verdict in shown:
+        look = _look(verdict)
+        corners = [_square(row, column) for row, column in np.argwhere(grid == verdict)]
+        fields = PolyCollection(corners, facecolors=look.colour, edgecolors="white", linewidths=0.6)
+        fields.set_hatch(look.hatch)
+        ax.add_collection(fields, autolim=False)
+    handles = [
+        Patch(facecolor=_look(one).colour, hatch=_look(one).hatch, edgecolor="white", linewidth=0.0)
+        for one in shown
+    ]
+    ax.set_xlim(-0.5, len(columns) - 0.5)
+    ax.set_ylim(-0.5, len(rows) - 0.5)
+    _label_fields(ax, "x", across, columns)
+    _label_fields(ax, "y", down, rows)
+    ax.spines[["top", "right"]].set_visible(False)
+    _legend(ax, handles, shown)
+
+
+def _square(row: int, column: int) -> list[tuple[float, float]]:
+    return [(column + x, row + y) for x, y in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))]
+
+
+def _label_fields(ax: Axes, which: str, along: _Parameter, order: NDArray[np.intp]) -> None:
+    """Name the values below their fields, as many as there is room for."""
+    step = -(-len(order) // _MOST_NAMES)
+    places = np.arange(0, len(order), step)
+    words = [along.words[order[at]] if along.words else f"{along.places[order[at]]:.4g}" for at in places]
+    ax.set(**{f"{which}label": along.label, f"{which}ticks": places, f"{which}ticklabels": words})
+
+
+def _legend(ax: Axes, handles: Sequence[Artist], labels: Sequence[str]) -> None:
+    ax.legend(
+        handles,
+        labels,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=min(4, len(labels)),
+        frameon=False,
+        fontsize="small",
+    )

@@ -1,0 +1,178 @@
+"""A map of heights: checked, without its tilt and curvature, its holes filled and known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, sparse
+from scipy.sparse import linalg
+
+from gearidae.errors import SceneError
+
+__all__ = ["FEWEST_POINTS", "HeightMap", "height_map"]
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+FEWEST_POINTS = 64
+"""Points along each side of a map that are needed at least: sixteen wavelengths of four points."""
+_MOST_HOLES = 0.2
+_HIGHEST = 0.1  # m; rougher than that is no surface of a gear but a wrong unit
+
+
+@dataclass(frozen=True, slots=True)
+class HeightMap:
+    """Heights over a rectangle.
+
+    Attributes
+    ----------
+    heights : ndarray, shape (rows, columns)
+        Heights about the fitted paraboloid [m]; interpolated in the holes.
+    holes : ndarray of bool, shape (rows, columns)
+        Where nothing had been measured.
+    size : tuple of float
+        Extent along the rows' and along the columns' index [m]: number of points times their distance.
+    tilt : float
+        Slope of the plane that was taken out [1].
+    curvature : float
+        Largest curvature, in magnitude, of the paraboloid that was taken out [1/m].
+    """
+
+    heights: Floats
+    holes: Flags
+    size: tuple[float, float]
+    tilt: float
+    curvature: float
+
+    @property
+    def spacing(self) -> float:
+        """Distance of neighbouring points, the larger of both directions [m]."""
+        return float(max(length / count for length, count in zip(self.size, self.heights.shape, strict=True)))
+
+    @property
+    def hole_count(self) -> int:
+        """Number of holes; points that touch at an edge belong to one."""
+        return int(ndimage.label(self.holes)[1])
+
+    @property
+    def hole_share(self) -> float:
+        """Share of the points at which nothing had been measured [1]."""
+        return float(self.holes.mean())
+
+
+def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
+    """Level a measured map and fill its holes.
+
+    Parameters
+    ----------
+    heights : array_like, shape (rows, columns)
+        Heights [m]; NaN, or masked, where there is none.
+    size : tuple of float
+        Extent along both indices [m].
+
+    Returns
+    -------
+    HeightMap
+        Without the paraboloid ``a + b x + c y + d x^2 + e x y + f y^2`` that fits the measured points best.
+
+    Raises
+    ------
+    SceneError
+        If the map has not two dimensions with at least `FEWEST_POINTS` points each, heights are infinite or all equal,
+        or more than a fifth is missing.
+    """
+    measured = _read(heights)
+    holes = np.isnan(measured)
+    if holes.mean() > _MOST_HOLES:
+        raise SceneError(
+            "surface scan",
+            f"({100 * holes.mean():.3g} % missing)",
+            f"at most {100 * _MOST_HOLES:g} % of the points may be missing",
+        )
+    shape, coefficients = _paraboloid(measured, holes)
+    levelled = measured - shape
+    spread = float(np.nanstd(levelled))
+    if not spread > 1e-9 * float(np.nanmax(np.abs(measured))):
+        raise SceneError("surface scan", "(flat)", "the heights lie on a paraboloid: there is no roughness")
+    if spread > _HIGHEST:
+        raise SceneError(
+            "surface scan", f"(rms {spread:.3g} m)", "heights must be in metres: give their unit"
+        )
+    _, b, c, d, e, f = coefficients
+    half = [length / 2 for length in size]
+    slopes = (b / half[0], c / half[1])
+    second = np.array(
+        [
+            [2 * d / half[0] ** 2, e / (half[0] * half[1])],
+            [e / (half[0] * half[1]), 2 * f / half[1] ** 2],
+        ]
+    )
+    largest = float(np.abs(np.linalg.eigvalsh(second)).max())
+    return HeightMap(_filled(levelled, holes), holes, size, float(np.hypot(*slopes)), largest)
+
+
+def _read(heights: Any) -> Floats:
+    """Make an array of numbers, NaN where there is none."""
+    try:
+        if isinstance(heights, np.ma.MaskedArray):
+            heights = np.ma.filled(heights.astype(np.float64), np.nan)
+        measured = np.array(heights, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise SceneError("surface scan", "(heights)", "must be an array of numbers") from None
+    if measured.ndim != 2 or min(measured.shape) < FEWEST_POINTS:
+        raise SceneError(
+            "surface scan",
+            f"(shape {measured.shape})",
+            f"must have two dimensions with at least {FEWEST_POINTS} points each",
+        )
+    if np.isinf(measured).any():
+        raise SceneError("surface scan", "inf", "heights must be finite, or NaN where there is none")
+    return measured
+
+
+def _paraboloid(measured: Floats, holes: Flags) -> tuple[Floats, Floats]:
+    """Fit a paraboloid to the measured points, in coordinates -1..1; return it with its coefficients."""
+    rows, columns = ((2 * np.arange(count) + 1) / count - 1 for count in measured.shape)
+    y, x = np.meshgrid(rows, columns, indexing="ij")
+    terms = np.stack([np.ones_like(x), y, x, y * y, x * y, x * x], axis=-1)
+    known = ~holes
+    fitted = np.linalg.lstsq(terms[known], measured[known], rcond=None)[0]
+    return terms @ fitted, fitted
+
+
+def _filled(levelled: Floats, holes: Flags) -> Floats:
+    """Span a membrane over the holes: each missing height is the mean of its neighbours.
+
+    At the edge of the map, points have fewer neighbours. The heights solve Laplace's equation, so that they stay
+    between those around the hole.
+    """
+    if not holes.any():
+        return levelled
+    number = np.full(holes.shape, -1)
+    number[holes] = np.arange(holes.sum())
+    filled = np.where(holes, 0.0, levelled)
+    padded_number = np.pad(number, 1, constant_values=-2)  # -2: outside, -1: measured
+    padded_height = np.pad(filled, 1)
+    own = np.argwhere(holes) + 1
+    diagonal = np.zeros(len(own))
+    right = np.zeros(len(own))
+    places = [np.arange(len(own))]
+    others = [np.arange(len(own))]
+    entries: list[Floats] = []
+    for step in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        rows, columns = (own + step).T
+        neighbour = padded_number[rows, columns]
+        diagonal += neighbour != -2
+        right += np.where(neighbour == -1, padded_height[rows, columns], 0.0)
+        missing = np.flatnonzero(neighbour >= 0)
+        places.append(missing)
+        others.append(neighbour[missing])
+        entries.append(-np.ones(len(missing)))
+    matrix = sparse.csc_matrix(
+        (np.concatenate([diagonal, *entries]), (np.concatenate(places), np.concatenate(others)))
+    )
+    filled[holes] = linalg.spsolve(matrix, right)
+    return filled

@@ -1,0 +1,120 @@
+"""Outcomes against what was swept, and which runs of a large sweep are shown."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.collections import LineCollection, PolyCollection
+
+import gearidae as gd
+from gearidae.cli import main
+from gearidae.plot.outcome import outcome
+from gearidae.plot.picking import pick
+
+LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.1, "run.samples": 201})
+FRACTIONS = [1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.46, 0.42, 0.38, 0.34]
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    return gd.sweep(LOW, {"coating.sam_fraction": FRACTIONS}, jobs=1)
+
+
+@pytest.fixture(scope="module")
+def grid():
+    """Two keys, from the steep to the flat, and nothing but verdicts kept."""
+    keys = {"coating.sam_fraction": [0.34, 1.0, 0.42], "drive.torque": [3e-18, 4.5e-18]}
+    return gd.sweep(LOW, keys, keep=["min_gear_speed"], jobs=1)
+
+
+def test_bars_reach_over_the_speeds_and_marks_tell_the_verdict(sweep):
+    ax = gd.plot.outcome(sweep)
+    judged = gd.outcomes(sweep)
+    verdicts = [one.verdict for one in judged]
+    assert {"turns smoothly", "sticks"} <= set(verdicts)
+    (bars,) = (each for each in ax.collections if isinstance(each, LineCollection))
+    for one, bar in zip(judged, bars.get_segments(), strict=True):
+        np.testing.assert_allclose(bar[:, 0], 100.0 * one.label["sam_fraction"])
+        np.testing.assert_allclose(bar[:, 1], [one.min_speed, one.max_speed])
+    marks = {line.get_label(): line for line in ax.get_lines() if line.get_label() in verdicts}
+    assert len({line.get_marker() for line in marks.values()}) == len(set(verdicts))
+    for verdict, line in marks.items():
+        own = [100.0 * one.label["sam_fraction"] for one in judged if one.verdict == verdict]
+        np.testing.assert_allclose(line.get_xdata(), own)
+    changes = [line.get_xdata()[0] for line in ax.get_lines() if line.get_linestyle() == ":"]
+    expected = [
+        50.0 * (one + other)
+        for one, other, a, b in zip(FRACTIONS, FRACTIONS[1:], verdicts, verdicts[1:], strict=False)
+        if a != b
+    ]
+    assert sorted(changes) == pytest.approx(sorted(expected))
+
+
+def test_fields_over_two_keys_need_no_samples(grid):
+    ax = gd.plot.outcome(grid)
+    assert ax.get_xlabel() == "torque (aN m)"
+    assert ax.get_ylabel() == "SAM (%)"
+    assert [label.get_text() for label in ax.get_yticklabels()] == ["34", "42", "100"]
+    assert [label.get_text() for label in ax.get_xticklabels()] == ["3", "4.5"]
+    shown = {}
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    fields = [each for each in ax.collections if isinstance(each, PolyCollection)]
+    for name, one in zip(names, fields, strict=True):
+        for path in one.get_paths():
+            x, y = path.vertices[:4].mean(axis=0)
+            shown[[34, 42, 100][round(y)], [3e-18, 4.5e-18][round(x)]] = name
+    assert len({each.get_hatch() for each in fields}) == len(fields)  # told apart without colours
+    for one in gd.outcomes(grid):
+        assert shown[round(100 * one.label["sam_fraction"]), one.label["torque"]] == one.verdict
+    ax.figure.canvas.draw()
+
+
+def test_the_command_draws_outcomes_where_there_are_no_samples(grid, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    gd.save(grid, "grid.nc")
+    drawn = []
+    monkeypatch.setattr(gd.plot, "outcome", lambda ds: drawn.append(ds) or outcome(ds))
+    assert main(["plot", "grid.nc"]) == 0
+    assert len(drawn) == 1
+    assert (tmp_path / "grid.png").is_file()
+    capfd.readouterr()
+
+
+def test_rollers_and_words(sweep):
+    scene = gd.preset("roller_slow").replace({"run.samples": "off"})
+    ds = gd.sweep(scene, {"contact.asperity": ["jkr", "hertz"]}, jobs=1)
+    ax = gd.plot.outcome(ds)
+    assert [label.get_text() for label in ax.get_xticklabels()] == ["jkr", "hertz"]
+    assert ax.get_ylabel().startswith("largest pull and push (")
+    with pytest.raises(gd.SceneError, match="0 swept keys"):
+        gd.plot.outcome(sweep.isel(sam_fraction=0))
+
+
+def test_pictures_show_the_runs_at_which_the_outcome_changes(sweep):
+    verdicts = [one.verdict for one in gd.outcomes(sweep)]
+    begins = next(number for number, one in enumerate(verdicts) if one == "sticks")
+    shown = [text.get_text() for text in gd.plot.gear_speed(sweep).get_legend().get_texts()]
+    assert len(shown) == 7
+    for number in (0, begins - 1, begins, len(verdicts) - 1):
+        assert f"SAM {100 * FRACTIONS[number]:.4g} %" in shown
+
+
+def test_the_only_irregular_one_and_the_first_that_sticks_are_picked():
+    """The sweep of the bug: 24 runs, the irregular one at an odd place."""
+    verdicts = ["turns smoothly"] * 16 + ["irregular"] + ["sticks"] * 7
+    assert {0, 15, 16, 17, 23} <= set(pick(verdicts, 7))
+
+
+@given(st.lists(st.sampled_from(["turns smoothly", "irregular", "sticks"]), min_size=2, max_size=60))
+def test_picked_are_as_many_as_allowed_the_ends_and_a_change(verdicts):
+    picked = pick(verdicts, 7)
+    assert picked == sorted(set(picked))
+    assert len(picked) == min(7, len(verdicts))
+    assert {0, len(verdicts) - 1} <= set(picked)
+    begins = [
+        n for n in range(1, len(verdicts)) if (verdicts[n] == "sticks") != (verdicts[n - 1] == "sticks")
+    ]
+    if begins:
+        assert {begins[0] - 1, begins[0]} <= set(picked)
