@@ -30,6 +30,7 @@ __all__ = [
     "long_rows",
     "long_scene",
     "measure_long",
+    "peak_memory",
     "sound",
 ]
 
@@ -147,7 +148,7 @@ class _Watch:
     def __init__(self, scene: Scene, report: Callable[[int], object]) -> None:
         assert scene.gears is not None
         self._report = report
-        self._began, self._memory = time.process_time(), _memory()
+        self._began, self._memory = time.process_time(), peak_memory()
         self._pitch = 2.0 * math.pi / scene.gears.gear_teeth
         self._interval = scene.run.duration / (scene.run.sample_count - 1)
         self._samples = scene.run.sample_count
@@ -210,7 +211,7 @@ class _Watch:
                 part,
                 cpu_time=part.cpu_time - before.cpu_time,
                 steps=part.steps - before.steps,
-                memory=_memory() - self._memory,
+                memory=peak_memory() - self._memory,
                 speed=(part.angle - before.angle) / (part.time - before.time),
                 error=self._errors / (part.samples - before.samples),
                 scatter=float(intervals.std()) if intervals.size else math.nan,
@@ -275,7 +276,7 @@ def long_page(parts: Sequence[Part]) -> str:
     )
 
 
-def _memory() -> float:
+def peak_memory() -> float:
     """Largest memory of the process so far [bytes]."""
     if sys.platform == "win32":
         return math.nan  # the module resource is Unix's own

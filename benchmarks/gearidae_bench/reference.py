@@ -112,6 +112,7 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
     "run": {"method": "auto", "stop": "time"},
     "drive": {"speed_gain": 0.0},
     "load": {"viscous": 0.0},
+    "coating": {"pairing": "patches", "thickness": 0.0},
 }
 """Keys that the shipped references are older than, with the values that change nothing."""
 

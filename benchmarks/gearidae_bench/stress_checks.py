@@ -134,14 +134,14 @@ def _limits(scene: Scene, gaps: Floats, radii: Floats, width: float) -> tuple[Fl
     low, high, size = np.zeros_like(gaps), np.zeros_like(gaps), np.zeros_like(gaps)
     near = gaps < 14.0 * scene.surface.roughness
     law = scene.contact.asperity
-    for surface, share in scene.materials():
+    for surface, share, offset, _ in scene.materials():
         if share == 0.0 or not near.any():
             continue
-        unit = share * np.sqrt(radii[near])
-        loading = unit * line_force(gaps[near], 0.0, 1.0, width, surface, law)
+        unit, own_gaps = share * np.sqrt(radii[near]), gaps[near] + offset
+        loading = unit * line_force(own_gaps, 0.0, 1.0, width, surface, law)
         stretch = asperity_of(surface).stretch_limit
-        parting = unit * line_force(gaps[near], stretch, 1.0, width, surface, law)
-        pushing = unit * line_force(gaps[near], 0.0, 1.0, width, surface, "hertz")
+        parting = unit * line_force(own_gaps, stretch, 1.0, width, surface, law)
+        pushing = unit * line_force(own_gaps, 0.0, 1.0, width, surface, "hertz")
         low[near] += np.minimum(parting, loading)
         high[near] += np.maximum(parting, loading)
         size[near] += np.abs(pushing) + np.abs(parting) + np.abs(loading)

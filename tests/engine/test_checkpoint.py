@@ -17,7 +17,7 @@ from gearidae.engine.integrate import portable
 from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.checkpoint import HEADER, pack
-from gearidae.engine.model.state import EMPTY, STATE, U, V
+from gearidae.engine.model.state import EMPTY, MATERIALS, STATE, U, V
 from gearidae.records import Statistics
 from reference.damaged import BUDGET, SCENES
 
@@ -287,10 +287,10 @@ def nodes(sound):
 def test_only_what_is_state_is_kept_of_the_nodes(nodes):
     """Pressures, slopes, stiffness and adhered energy are worked out anew."""
     checkpoint, n, points, first = nodes
-    assert checkpoint.size - first == 2 * n + 2 * points
+    assert checkpoint.size - first == 2 * n + MATERIALS * points
     m, *_ = restored("elastic roller", checkpoint)
     problem = make_problem(SCENES["elastic roller"])
-    assert problem.model.rows.size > m.scene.node_rows_at + 2 * n + 2 * points
+    assert problem.model.rows.size > m.scene.node_rows_at + 2 * n + MATERIALS * points
     np.testing.assert_array_equal(row_of(m, 0, JOINED), checkpoint[first + 2 * n : first + 2 * n + points])
 
 

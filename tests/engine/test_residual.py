@@ -6,6 +6,7 @@ import pytest
 import gearidae as gd
 from gearidae.contact import line_force
 from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.coverage import WHOLE
 from gearidae.engine.model.residual import jacobian, residual
 from gearidae.engine.model.state import U, V
 from gearidae.engine.model.tooth_pairs import history_of, pair_force, set_joined
@@ -32,7 +33,7 @@ def test_pair_force_is_the_readable_law_with_history(roughness, fraction):
             set_joined(m, k, material, joined)
         for stretch in (0.01, 0.1, 0.5, 1.5):
             gap = joined + stretch
-            ours = pair_force(m, k, True, 0.0, gap, 1.0, 0.0)[0] * m.scene.force_unit
+            ours = pair_force(m, k, True, 0.0, gap, 1.0, 0.0, WHOLE)[0] * m.scene.force_unit
             geometry = (scene.roller.radius, scene.roller.width)
             terms = [
                 s * float(line_force(gap * roughness, stretch * roughness, *geometry, p)) for p, s in parts

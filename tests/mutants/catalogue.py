@@ -134,8 +134,8 @@ MUTANTS = (
     Mutant(
         "SAM fraction taken for the bare one",
         "engine/model/build_contact.py",
-        "enumerate(scene.materials())",
-        "enumerate([(s, 1.0 - f) for s, f in scene.materials()])",
+        "enumerate(_parts(scene))",
+        "enumerate([one._replace(share=1.0 - one.share) for one in _parts(scene)])",
         IMPACT,
     ),
     Mutant(

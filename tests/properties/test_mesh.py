@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 import gearidae as gd
 from gearidae.engine.events.histories import begin
 from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.coverage import WHOLE
 from gearidae.engine.model.residual import jacobian, mesh_forces, residual
 from gearidae.engine.model.tooth_pairs import (
     all_pairs,
@@ -143,7 +144,7 @@ def test_in_a_step_that_turns_round_the_contact_has_been_at_the_turning_point(ga
         h = m.state.history[k]
         h.pair, h.direction, h.gap, h.gap_rate = 0, way, gap, -toward
         m.state.time = 0.0
-        forces.append(pair_force(m, k, True, span, there, rate, 0.0)[0])
+        forces.append(pair_force(m, k, True, span, there, rate, 0.0, WHOLE)[0])
     within, after, never = forces
     # a rate that is linear in time leaves only the rounding of the turning point and the stored branch's 1e-9
     size = max(map(abs, forces))

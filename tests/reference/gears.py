@@ -14,6 +14,8 @@ from scipy.integrate import solve_ivp
 from gearidae.contact.line import line_force
 from gearidae.contact.tip import asperity_of
 from gearidae.mesh import curvature_radii, separation
+from gearidae.scene.coating import interface_shares
+from gearidae.scene.coating_table import fraction_at
 
 
 class SlowGears:
@@ -21,10 +23,9 @@ class SlowGears:
 
     def __init__(self, scene):
         self.scene, self.geometry = scene, scene.geometry
-        share = scene.coating.sam_fraction
         self.materials = [
-            (surface, part, asperity_of(surface).stretch_limit)
-            for surface, part in ((scene.surface, 1 - share), (scene.coated_surface, share))
+            (surface, part, asperity_of(surface).stretch_limit, offset, name)
+            for surface, part, offset, name in scene.materials()
             if part > 0
         ]
         self.pairs = (0, -1)
@@ -48,9 +49,16 @@ class SlowGears:
         self.joined = {} if fresh else self.joined
         for pair in self.pairs:
             gap, _, _ = self.gap(pair, u, angle)
-            for m, (_, _, limit) in enumerate(self.materials):
+            for m, (_, _, limit, _, _) in enumerate(self.materials):
                 before = gap if fresh else self.joined[pair, m]
                 self.joined[pair, m] = min(max(before, gap - limit), gap)
+
+    def share(self, material, pair, xi):
+        """Share of a material of a drive pair, by the readable table."""
+        coating, name = self.scene.coating, self.materials[material][4]
+        place = min(max(xi / self.geometry.path_length, 0.0), 1.0)
+        sides = [fraction_at(table, pair, place) for table in coating.tables]
+        return float(interface_shares(coating.pairing, *sides)[name])
 
     def forces(self, u, angle):
         """F and Fs [N]."""
@@ -60,10 +68,12 @@ class SlowGears:
             if gap > 12 * self.scene.surface.roughness:
                 continue
             radius = float(curvature_radii(self.geometry, xi)[2])
-            for m, (surface, part, limit) in enumerate(self.materials):
+            for m, (surface, part, limit, offset, _) in enumerate(self.materials):
                 joined = min(max(self.joined[pair, m], gap - limit), gap)
                 width = self.scene.gears.face_width
-                load = part * float(line_force(gap, gap - joined, radius, width, surface))
+                if self.scene.coating.by_place:
+                    part = self.share(m, pair, xi)
+                load = part * float(line_force(gap + offset, gap - joined, radius, width, surface))
                 force += load
                 relief += load * slope
         return force, relief

@@ -20,6 +20,7 @@ _ROLLER = gd.preset("roller_slow").replace({"contact.model": "asperity", "run.sa
 SCENES = {
     "roller": _ROLLER,
     "two materials": _ROLLER.replace({"coating.sam_fraction": 0.5}),
+    "three materials": _GEARS.replace({"coating.sam_fraction": 0.5, "coating.pairing": "independent"}),
     "gears": _GEARS.replace({"coating.sam_fraction": 0.5}),
     "both flanks": _GEARS.replace({"mesh.backlash": 4e-8}),
     "dry resistance": _GEARS.replace({"initial.gear_speed": 0.0, "load.torque": 1e-12, "mesh.damping": 1e-6}),

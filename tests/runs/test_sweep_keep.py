@@ -18,7 +18,7 @@ from sweeps import without_times
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 11})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 11, "contact.model": "asperity"})
 OVER = {"coating.sam_fraction": [1.0, 0.5], "drive.torque": [4e-18, 5e-18]}
-LEAST = {"status", "message", "wall_time", "verdict", "impacts", "stick_time", "stick_exits"}
+LEAST = {"status", "message", "wall_time", "verdict", "impacts", "flank_changes", "stick_time", "stick_exits"}
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def whole():
 
 
 def equal_where_kept(kept, whole):
-    for name in set(kept.variables) - {"verdict", "impacts", "wall_time", "scene"}:
+    for name in set(kept.variables) - {"verdict", "impacts", "flank_changes", "wall_time", "scene"}:
         assert kept[name].identical(whole[name]), name
     assert kept.verdict.values.ravel().tolist() == [each.verdict for each in outcomes(whole)]
     assert kept.impacts.values.ravel().tolist() == [each.impacts for each in outcomes(whole)]
@@ -64,7 +64,7 @@ def test_samples_and_events_by_their_names(whole):
 
 def test_every_group_together_is_everything(whole):
     ds = gd.sweep(LOW, OVER, keep=[*GROUPS, "reached", "skipped"])
-    assert set(whole.variables) | {"verdict", "impacts"} == set(ds.variables)
+    assert set(whole.variables) | {"verdict", "impacts", "flank_changes"} == set(ds.variables)
     equal_where_kept(ds, whole)
     assert ds.scene.identical(whole.scene)
 

@@ -313,4 +313,4 @@ def test_every_number_survives(tmp_path):
         assert list(back.samples) == list(run.samples)
         assert (back.statistics, back.status, back.message) == (statistics, "finished", "")
         assert back.reached == 0.1 * count
-        assert judged == ["", 0]
+        assert judged == [{}]

@@ -18,7 +18,7 @@ CONTRACT = {
     "static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
     "provenance",
-    "coating": "sam_fraction energy",
+    "coating": "sam_fraction energy pairing thickness pinion_fraction gear_fraction pinion_table gear_table",
     "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
     "law.parameters speed speed_gain",
     "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "

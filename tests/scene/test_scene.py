@@ -215,10 +215,11 @@ def test_coated_surface_differs_in_energy_alone(gears: Scene) -> None:
 def test_materials_are_the_bare_and_the_coated_part_of_the_flanks(gears: Scene, fraction: float) -> None:
     scene = gears.replace({"coating.sam_fraction": fraction})
     bare, coated = scene.materials()
-    assert MATERIAL_NAMES == ("bare", "coated")
+    assert MATERIAL_NAMES == ("bare", "coated", "mixed")
+    assert (bare.name, coated.name) == ("bare", "coated")
+    assert (bare.gap_offset, coated.gap_offset) == (0.0, 0.0)
     assert (bare.surface.energy, coated.surface.energy) == (1.5, 0.1)
     assert (bare.share, coated.share) == (1.0 - fraction, fraction)
-    assert [(surface, share) for surface, share in scene.materials()] == [tuple(bare), tuple(coated)]
 
 
 def test_defaults(gears: Scene) -> None:

@@ -64,7 +64,7 @@ class Keep:
         return self.holds("event_time")
 
     def thinned(self, solution: Solution) -> Solution:
-        """Return a run without the samples and the events that are not kept."""
+        """Return a run without the samples and the events that are not kept, and without its last state."""
         if self.names is None:
             return solution
         samples = {name: values for name, values in solution.samples.items() if self.holds(name)}
@@ -79,7 +79,8 @@ class Keep:
                 for name in ("time", "kind", "pair", "flank", "gap_rate")
             }
             events = replace(events, **none)
-        return replace(solution, time=time, samples=samples, events=events, reached=reached)
+        # the state at the end, of which a dataset of several runs has none, is most of what is left
+        return replace(solution, time=time, samples=samples, events=events, reached=reached, checkpoint=None)
 
 
 EVERYTHING = Keep()

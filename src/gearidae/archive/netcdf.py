@@ -20,13 +20,15 @@ from gearidae.archive.keep import kept_in
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
-from gearidae.archive.variables import EVENTS, VERDICT, columns
+from gearidae.archive.variables import EVENTS, columns
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
 __all__ = ["check_target", "open_archive", "save"]
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_JUDGED = ("verdict", "impacts")
+"""What archives of runs that kept parts only have had from the first."""
 _LAZY_ABOVE = 128 * 2**20
 """Archives larger than this [bytes in memory] are read piece by piece as they are used."""
 
@@ -219,7 +221,7 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     except SceneError as error:
         raise SceneError("archive", ds.encoding.get("source", ""), f"is damaged: {error}") from None
     some = tuple(name for name in sampled if keep.holds(name))
-    return (*(("time",) if some else ()), *some, *(EVENTS if keep.events else ()), "status", *VERDICT)
+    return (*(("time",) if some else ()), *some, *(EVENTS if keep.events else ()), "status", *_JUDGED)
 
 
 def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import gearidae
 from gearidae.contact.tip import tabor_parameter, tabor_regime
-from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -64,7 +63,7 @@ def provenance(scene: Scene, action: str, *, swept: tuple[str, ...] = ()) -> dic
 
 
 def surface_regimes(scene: Scene) -> dict[str, float | str]:
-    """Tabor parameter and adhesion regime of the bare and the coated surface.
+    """Tabor parameter and adhesion regime of every material of the interface.
 
     JKR asperities presume a Tabor parameter of about 5 or more; this is a note on how well the scene meets
     that.
@@ -77,10 +76,10 @@ def surface_regimes(scene: Scene) -> dict[str, float | str]:
     -------
     dict
         ``tabor_parameter_<surface>`` [1] and ``tabor_regime_<surface>`` (``jkr``, ``transition``, ``dmt``)
-        for the surfaces ``bare`` and ``coated``.
+        for the materials ``bare``, ``coated`` and, with independent sides, ``mixed``.
     """
     regimes: dict[str, float | str] = {}
-    for name, (surface, _) in zip(MATERIAL_NAMES, scene.materials(), strict=True):
+    for surface, _, _, name in scene.materials():
         parameter = tabor_parameter(surface)
         regimes[f"tabor_parameter_{name}"] = parameter
         regimes[f"tabor_regime_{name}"] = tabor_regime(parameter)

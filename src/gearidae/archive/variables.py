@@ -126,6 +126,7 @@ _OF_SWEPT_RUN = (
 _VERDICT = (
     Variable("verdict", (), "1", "outcome of the run in one word", np.str_),
     Variable("impacts", (), "1", "contacts made (onset events)", np.int64),
+    Variable("flank_changes", (), "1", "how often contact went over to the other flank", np.int64),
 )
 _ENERGY_BALANCE = (
     Variable("drive_work", (), "J", "work of the drive"),

@@ -28,7 +28,7 @@ BACK_FROM = 0.5
 """Pitches that a gear must be turned back by to be said to run back."""
 
 
-def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int]:
+def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int, int]:
     """Judge a run as the engine leaves it.
 
     Parameters
@@ -40,14 +40,16 @@ def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int]:
     Returns
     -------
     verdict : str
-    impacts : int
-        Contacts made (onset events).
+    impacts, flank_changes : int
+        Contacts made (onset events), and how often contact went over to the other flank.
     """
     kinds, found, status = solution.events.kind, solution.extremes, solution.status
-    impacts = int(np.count_nonzero(kinds == EventKind.ONSET))
+    impacts, changes = (
+        int(np.count_nonzero(kinds == kind)) for kind in (EventKind.ONSET, EventKind.FLANK_CHANGE)
+    )
     if scene.roller is not None:
-        return roller_verdict(found, status, impacts, in_touch([kinds])), impacts
-    return gear_verdict(found, status, scheduled=is_scheduled(scene.to_dict())), impacts
+        return roller_verdict(found, status, impacts, in_touch([kinds])), impacts, changes
+    return gear_verdict(found, status, scheduled=is_scheduled(scene.to_dict())), impacts, changes
 
 
 def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str:

@@ -120,8 +120,8 @@ def _contact(scene: Scene) -> Rows:
 
     yield "Contact", "", f"{scene.contact.model} model, {scene.contact.asperity} asperities"
     yield "contact modulus E*", f"{asperity_of(scene.surface).modulus * 1e-9:.5g} GPa", ""
-    yield "SAM fraction", f"{scene.coating.sam_fraction:g}", ""
-    for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
+    yield from _coating(scene)
+    for surface, _, _, name in scene.materials():
         tip = asperity_of(surface)
         yield f"{name}: pull-off load Pc", f"{tip.pull_off * 1e6:.4g} uN", "of one asperity"
         relative = tip.stretch_limit / scene.surface.roughness
@@ -129,6 +129,25 @@ def _contact(scene: Scene) -> Rows:
             f"{name}: stretch limit dc",
             f"{tip.stretch_limit * 1e9:.4g} nm",
             f"{relative:.3g} of the roughness",
+        )
+
+
+def _coating(scene: Scene) -> Rows:
+    coating = scene.coating
+    pinion, gear = coating.fractions
+    means = "means of tooth and place" if coating.by_place else ""
+    if coating.pairing == "patches":
+        yield "SAM fraction", f"{pinion:g}", means
+    else:
+        yield "SAM fractions", f"{pinion:g} of the pinion, {gear:g} of the gear", means or "independent sides"
+        shares = ", ".join(f"{100.0 * one.share:.3g} % {one.name}" for one in scene.materials())
+        yield "interface", shares, ""
+    if coating.thickness > 0.0:
+        recess = 2.0 * coating.thickness / scene.surface.roughness
+        yield (
+            "monolayer's thickness",
+            f"{coating.thickness * 1e9:.4g} nm",
+            f"bare on bare is {recess:.3g} roughnesses farther apart",
         )
 
 

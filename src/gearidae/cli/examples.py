@@ -23,6 +23,13 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "report": ("gearidae report mine.nc -o mine.html",),
     "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
     "threshold": ("gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",),
+    "ensemble": (
+        'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',
+        'gearidae ensemble mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.8)" --size 256 --of min_gear_speed',
+    ),
+    "operating-map": (
+        "gearidae operating-map mine.toml --over drive.torque=4e-18:5e-18:2e-19 coating.sam_fraction=1:0.4:-0.1",
+    ),
     "assess": (
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',

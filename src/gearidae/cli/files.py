@@ -17,6 +17,7 @@ from gearidae.cli.tables import show_account, show_outcomes, show_rows
 from gearidae.cli.validity_table import show_validity
 from gearidae.errors import SceneError
 from gearidae.runs.kept_validity import validity_of
+from gearidae.scene.coating import MATERIAL_NAMES
 from gearidae.scene.validity_row import contact_subject
 
 __all__ = ["describe", "write_case"]
@@ -113,7 +114,9 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
         yield name.replace("_", " "), str(attributes[name]), ""
     yield "wall time", f"{attributes['wall_time']:.3g} s", f"backend {attributes['backend']}"
     yield "method", str(attributes.get("method", "")), ""
-    for surface in ("bare", "coated"):
+    for surface in MATERIAL_NAMES:
+        if f"tabor_regime_{surface}" not in attributes:
+            continue
         regime = attributes[f"tabor_regime_{surface}"]
         yield f"Tabor parameter, {surface}", f"{attributes[f'tabor_parameter_{surface}']:.4g}", str(regime)
     yield "variables", "", ""

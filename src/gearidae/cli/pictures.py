@@ -119,6 +119,10 @@ def _open(archive: Path) -> tuple[xr.Dataset, str]:
     """Dataset of a file, and its default picture."""
     try:
         ds = gd.open_archive(archive)
+        if "ensemble" in ds.attrs:
+            return ds, "sobol_indices" if "total_order" in ds else "sticking_probability"
+        if "outcome" in ds:
+            return ds, "outcome_map"
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return ds, "overview" if sampled or not swept_dims(ds) else "outcome"
     except SceneError:

@@ -20,7 +20,7 @@ from gearidae.errors import GearidaeError, SceneError
 
 __all__ = ["app", "session"]
 
-_WRITERS = ("coating-map", "init", "plot", "report", "run", "sweep")
+_WRITERS = ("coating-map", "ensemble", "init", "operating-map", "plot", "report", "run", "sweep")
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
 log = logging.getLogger("gearidae")

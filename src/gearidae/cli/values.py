@@ -11,10 +11,10 @@ from typing import Any
 from gearidae.errors import SceneError
 from gearidae.scene.units import from_text
 
-__all__ = ["assignments", "default_output", "quantity", "spread", "sweep_values"]
+__all__ = ["assignments", "default_output", "quantity", "spread", "sweep_values", "texts"]
 
 _LONGEST_RANGE = 100_000
-_TAKES_PAIRS = ("--set", "--over", "--select", "--line")
+_TAKES_PAIRS = ("--set", "--over", "--vary", "--select", "--line")
 
 
 def spread(arguments: Sequence[str]) -> list[str]:
@@ -72,6 +72,34 @@ def assignments(
             raise SceneError(option, key, "is given twice")
         values[key] = _literal(text)
     return values
+
+
+def texts(pairs: Sequence[str], option: str, example: str) -> dict[str, str]:
+    """Read pairs whose values are texts, as they stand.
+
+    Parameters
+    ----------
+    pairs : sequence of str
+        ``key=text``.
+    option, example : str
+        What errors shall name.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    SceneError
+        If a pair has no ``=`` or a key stands twice.
+    """
+    found: dict[str, str] = {}
+    for pair in pairs:
+        key, text = _split(pair, option, example)
+        if key in found:
+            raise SceneError(option, key, "is given twice")
+        found[key] = text
+    return found
 
 
 def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:

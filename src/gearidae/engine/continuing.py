@@ -218,12 +218,17 @@ class _Units:
 
 
 def _materials(m: Model) -> list[tuple[float, ...]]:
-    """What of the materials a history depends on, in roughnesses and newtons."""
-    return [
+    """What of the materials contacts depend on, in roughnesses and newtons, and fractions by tooth and place."""
+    by_place = [
+        (float(own.teeth), *m.tables[own.values_at : own.values_at + own.teeth * own.places].tolist())
+        for own in m.scene.coverage
+    ]
+    return by_place + [
         (
             float(own.force_scale * m.scene.force_unit),
             float(own.stretch_limit),
             float(own.joining_energy),
+            float(own.gap_offset),
         )
         for own in m.scene.material
     ]

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 
 from gearidae.lazy import lazy_names
 from gearidae.plot.coating import coating_map, starting_torque
+from gearidae.plot.ensembles import sobol_indices, sticking_probability
 from gearidae.plot.files import write
 from gearidae.plot.gears import gap, gear_speed, transmission_error
 from gearidae.plot.outcome import outcome
+from gearidae.plot.outcome_map import outcome_map
 from gearidae.plot.overview import overview
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
@@ -31,12 +33,15 @@ __all__ = [
     "gear_speed",
     "impact_spectrum",
     "outcome",
+    "outcome_map",
     "overview",
     "power_spectrum",
     "roller_force",
     "roller_gap",
+    "sobol_indices",
     "spectrogram",
     "starting_torque",
+    "sticking_probability",
     "surface",
     "teeth",
     "transmission_error",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from gearidae.plot.style import NEGATIVE, POSITIVE
-from gearidae.scene import Scene
+from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.studies.tooth_states import ToothContact
 
 __all__ = ["COATING", "FLANKS", "SAMPLES", "close_up", "half_width", "joined_asperities", "rough_sample"]
@@ -39,7 +39,7 @@ def half_width(scene: Scene) -> float:
     return _WIDTH * math.sqrt(2.0 * pinion * gear / (pinion + gear) * scene.surface.roughness)
 
 
-def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """Draw a row of asperities for a pair of teeth, always the same for the same pair.
 
     Parameters
@@ -51,9 +51,9 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.bo
     Returns
     -------
     x, height : ndarray, shape (n,)
-        Places along the flank and heights over the mean plane [m].
-    coated : ndarray of bool, shape (n,)
-        Whether the monolayer covers it.
+        Places along the flank and heights over the mean plane [m], less the recess where a monolayer is lost.
+    material : ndarray of int, shape (n,)
+        Which of `gearidae.scene.MATERIAL_NAMES` each belongs to.
     """
     surface, reach = scene.surface, 1.05 * half_width(scene)
     # as many in a row as asperities stand side by side on average, no more than can be seen
@@ -61,7 +61,14 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.bo
     random = np.random.default_rng(pair % SAMPLES)
     x = (np.arange(count) + 0.5 + random.uniform(-0.3, 0.3, count)) * (2.0 * reach / count) - reach
     height = surface.roughness * random.standard_normal(count)
-    return x, height, random.uniform(size=count) < scene.coating.sam_fraction
+    # the coated first, so that what is covered stays so while the share falls
+    materials = {one.name: one for one in scene.materials()}
+    order = [materials[name] for name in ("coated", "mixed", "bare") if name in materials]
+    drawn = np.searchsorted(
+        np.cumsum([one.share for one in order[:-1]]), random.uniform(size=count), side="right"
+    )
+    number = np.array([MATERIAL_NAMES.index(one.name) for one in order])[drawn]
+    return x, height - np.array([one.gap_offset for one in order])[drawn], number
 
 
 def joined_asperities(scene: Scene, contact: ToothContact) -> float:
@@ -81,9 +88,9 @@ def joined_asperities(scene: Scene, contact: ToothContact) -> float:
     assert scene.gears is not None
     sigma = scene.surface.roughness
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
-    shares = {"coated": scene.coating.sam_fraction, "bare": 1.0 - scene.coating.sam_fraction}
+    materials = {one.name: one for one in scene.materials()}
     above = sum(
-        shares[part] * float(np.sum(ndtr(-(joined / sigma + s**2))))
+        materials[part].share * float(np.sum(ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))
         for part, joined in contact.joined.items()
     )
     area = scene.gears.face_width * math.sqrt(2.0 * contact.radius * sigma)
@@ -108,7 +115,7 @@ def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
     half, sigma, radius = half_width(scene), scene.surface.roughness, contact.radius
     x = np.linspace(-half, half, 801)
     upper = contact.gap + x**2 / (2.0 * radius)
-    places, heights, coated = rough_sample(scene, contact.pair)
+    places, heights, materials = rough_sample(scene, contact.pair)
     caps = heights[:, None] - (x - places[:, None]) ** 2 / (2.0 * scene.surface.asperity_radius)
     owner = np.argmax(caps, axis=0)
     rough = caps[owner, np.arange(len(x))]
@@ -119,11 +126,11 @@ def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
     ax.fill_between(x * 1e6, upper * 1e9, top * 1e9, color=FLANKS[0], linewidth=0.0)
     ax.plot(x * 1e6, upper * 1e9, color="0.2", linewidth=0.9)
     ax.plot(x * 1e6, lower * 1e9, color="0.2", linewidth=0.9)
-    ax.plot(x * 1e6, np.where(coated[owner], lower, np.nan) * 1e9, color=COATING, linewidth=2.2)
+    ax.plot(x * 1e6, np.where(materials[owner] > 0, lower, np.nan) * 1e9, color=COATING, linewidth=2.2)
     ax.plot(x * 1e6, np.where(pressed, upper, np.nan) * 1e9, color=POSITIVE, linewidth=3.5)
-    for place, height, covered in zip(places, heights, coated, strict=True):
+    for place, height, material in zip(places, heights, materials, strict=True):
         rise = place**2 / (2.0 * radius)
-        joined = contact.joined["coated" if covered else "bare"] + rise
+        joined = contact.joined[MATERIAL_NAMES[material]] + rise
         if abs(place) < half and joined < height < contact.gap + rise:
             ax.plot(
                 [place * 1e6] * 2, [height * 1e9, (contact.gap + rise) * 1e9], color=NEGATIVE, linewidth=3.0

@@ -306,10 +306,10 @@ def _force(one: ToothContact) -> str:
 
 
 def _states(one: ToothContact) -> list[str]:
-    """State of a pair in words, of its two materials where they differ."""
+    """State of a pair in words, of its materials where they differ."""
     if len(set(one.states.values())) == 1:
         return [STATE_WORDS[one.state]]
-    names = {"bare": "bare", "coated": "monolayer"}
+    names = {"bare": "bare", "coated": "monolayer", "mixed": "monolayer on bare"}
     return [f"{names[part]} {STATE_WORDS[state]}" for part, state in sorted(one.states.items())]
 
 

@@ -43,7 +43,7 @@
       if (Number.isNaN(run.numbers[start])) continue;
       const pair = { place_in_row: place };
       data.columns.pair.forEach((name, k) => { pair[name] = run.numbers[start + k]; });
-      pair.state = Math.max(...[pair.bare, pair.coated].filter((state) => !Number.isNaN(state)));
+      pair.state = Math.max(...[pair.bare, pair.coated, pair.mixed].filter((state) => !Number.isNaN(state)));
       found.push(pair);
     }
     return found;
@@ -208,7 +208,7 @@
     pen.lineWidth = 4;
     pen.beginPath();
     for (let k = 0; k < count; k++) {
-      const rise = row[k] ** 2 / (2 * pair.radius), joined = row[2 * count + k] > 0 ? pair.joined_coated : pair.joined_bare;
+      const rise = row[k] ** 2 / (2 * pair.radius), joined = [pair.joined_bare, pair.joined_coated, pair.joined_mixed][row[2 * count + k]];
       if (joined + rise < row[count + k] && row[count + k] < pair.gap + rise) {
         pen.moveTo(x(row[k]), y(row[count + k]));
         pen.lineTo(x(row[k]), y(pair.gap + rise));
@@ -230,7 +230,7 @@
     const words = ["Pair " + pair.number + ", " + (pair.flank === COAST ? "coast" : "drive") + " flank: gap " + quantity(pair.gap, "m")];
     if (!Number.isFinite(pair.force)) words.push("force not told by the record");
     else words.push(pair.force === 0 ? "no force" : (pair.force > 0 ? "pushes with " : "pulls with ") + quantity(Math.abs(pair.force), "N"));
-    const parts = [["bare", pair.bare], ["monolayer", pair.coated]].filter((part) => !Number.isNaN(part[1]));
+    const parts = [["bare", pair.bare], ["monolayer", pair.coated], ["monolayer on bare", pair.mixed]].filter((part) => !Number.isNaN(part[1]));
     const same = parts.every((part) => part[1] === parts[0][1]);
     words.push(same ? data.words[parts[0][1]] : parts.map(([name, state]) => name + " " + data.words[state]).join(", "));
     if (Number.isFinite(pair.count)) words.push("joined asperities " + (pair.count < 1e-3 ? pair.count.toExponential(1) : pair.count.toPrecision(2)));

@@ -16,7 +16,7 @@ from gearidae.plot.asperities import SAMPLES, half_width, joined_asperities, rou
 from gearidae.plot.style import runs_of
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
-from gearidae.scene import Scene
+from gearidae.scene import MATERIAL_NAMES, Scene
 
 if TYPE_CHECKING:
     from gearidae.studies.tooth_states import MeshState, ToothContact
@@ -36,8 +36,10 @@ PAIR = (
     "force",
     "joined_bare",
     "joined_coated",
+    "joined_mixed",
     "bare",
     "coated",
+    "mixed",
     "count",
 )
 """Numbers of a pair: number, `Flank`, place, radius, gap [m], force [N], joined heights [m], a `ContactState` each, and
@@ -114,8 +116,8 @@ def _row(scene: Scene, state: MeshState, places: int) -> list[float]:
 
 
 def _pair(scene: Scene, one: ToothContact) -> list[float]:
-    joined = [one.joined.get(part, math.nan) for part in ("bare", "coated")]
-    states = [float(one.states[part]) if part in one.states else math.nan for part in ("bare", "coated")]
+    joined = [one.joined.get(part, math.nan) for part in MATERIAL_NAMES]
+    states = [float(one.states[part]) if part in one.states else math.nan for part in MATERIAL_NAMES]
     numbers = [float(one.pair), float(one.flank), one.place, one.radius, one.gap, one.force]
     return [*numbers, *joined, *states, joined_asperities(scene, one)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -40,13 +40,14 @@ class Left:
         Without the parts that are not kept.
     verdict : str
         Its outcome in one word, if parts are not kept; empty if all are.
-    impacts : int
-        Contacts made, likewise.
+    impacts, flank_changes : int
+        Contacts made, and how often contact went over to the other flank, likewise.
     """
 
     solution: Solution
     verdict: str = ""
     impacts: int = 0
+    flank_changes: int = 0
 
 
 def solve_and_leave(
@@ -123,7 +124,8 @@ class Batch:
         for number, scene in enumerate(self._scenes):
             taken = former.take(scene)
             if taken is not None:
-                self._store(number, Left(*taken))
+                solution, judged = taken
+                self._store(number, Left(solution, **judged))
                 self._reached[number] = 1.0
         self._report(sum(self._reached), len(self._scenes))
 
@@ -197,12 +199,13 @@ class Batch:
     def _note(self, number: int, left: Left) -> None:
         if number not in self._done:
             if self._kept is not None and left.solution.status == "finished":
-                self._kept.keep(self._scenes[number], left.solution, left.verdict, left.impacts)
+                judged = {name: getattr(left, name) for name in VERDICT}
+                self._kept.keep(self._scenes[number], left.solution, judged)
             self._store(number, left)
 
     def _store(self, number: int, left: Left) -> None:
         slim = self._samples.take(number, left.solution)
-        self._done[number] = Left(slim, left.verdict, left.impacts)
+        self._done[number] = replace(left, solution=slim)
 
     def _outcome(self, number: int, result: Callable[[], Left]) -> Left:
         """Return a run's result; one that died with its worker (out of memory) must not take the others along."""

@@ -8,8 +8,8 @@ import os
 import re
 import secrets
 import warnings
-from collections.abc import Collection
-from dataclasses import asdict, fields
+from collections.abc import Collection, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ import numpy as np
 
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
+from gearidae.archive.variables import VERDICT
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["KeptRuns", "folder_beside"]
 
-_LAYOUT = 3
+_LAYOUT = 4
 """Version of the files' layout."""
 _OURS = re.compile(r"\.?[0-9a-f]{64}(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
 """Names of our files, finished or cut off while they were written."""
@@ -81,8 +82,8 @@ class KeptRuns:
         text = json.dumps({**self._circumstances, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def keep(self, scene: Scene, solution: Solution, verdict: str = "", impacts: int = 0) -> None:
-        """Write a finished run, or what it leaves behind and how it was judged.
+    def keep(self, scene: Scene, solution: Solution, judged: Mapping[str, str | int] | None = None) -> None:
+        """Write a finished run, or what it leaves behind and how it was judged, a value for each of `VERDICT`.
 
         A run that cannot be kept is no reason to stop; that is said in one warning for the sweep.
         """
@@ -91,7 +92,7 @@ class KeptRuns:
         try:
             self.folder.mkdir(exist_ok=True)
             try:
-                _write(part, key, solution, {"verdict": verdict, "impacts": impacts})
+                _write(part, key, solution, {name: (judged or {}).get(name) for name in VERDICT})
                 part.replace(self._path(key))
             finally:
                 part.unlink(missing_ok=True)
@@ -100,8 +101,8 @@ class KeptRuns:
                 warnings.warn(f"finished runs cannot be kept in {self.folder} ({error})", stacklevel=2)
             self._warned = True
 
-    def take(self, scene: Scene) -> tuple[Solution, str, int] | None:
-        """Read a run back, with its verdict and its impacts.
+    def take(self, scene: Scene) -> tuple[Solution, dict[str, Any]] | None:
+        """Read a run back, with how it was judged; that is empty if it was not.
 
         None, and a warning, if its file is damaged or not what its name says.
         """
@@ -157,8 +158,8 @@ def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> 
             "status": solution.status,
             "message": solution.message,
             "reached": solution.reached,
-            "balance": None if solution.balance is None else asdict(solution.balance),
-            "extremes": None if solution.extremes is None else asdict(solution.extremes),
+            "balance": None if solution.balance is None else _numbers(solution.balance),
+            "extremes": None if solution.extremes is None else _numbers(solution.extremes),
         },
         default=int,  # numpy's integers
     )
@@ -180,7 +181,12 @@ def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> 
         )
 
 
-def _read(path: Path, key: str) -> tuple[Solution, str, int]:
+def _numbers(record: EnergyBalance | Extremes) -> dict[str, float]:
+    """Fields of a record of numbers; `dataclasses.asdict` copies each of them deeply, which takes longer."""
+    return {field.name: getattr(record, field.name) for field in fields(record)}
+
+
+def _read(path: Path, key: str) -> tuple[Solution, dict[str, Any]]:
     """Rebuild what `_write` wrote; ValueError if the file is another's or damaged."""
     with netCDF4.Dataset(path, "r") as file:
         file.set_auto_maskandscale(False)
@@ -207,7 +213,9 @@ def _read(path: Path, key: str) -> tuple[Solution, str, int]:
         None if header["balance"] is None else EnergyBalance(**header["balance"]),
         None if header.get("extremes") is None else Extremes(**header["extremes"]),
     )
-    return solution, str(header["judged"]["verdict"]), int(header["judged"]["impacts"])
+    found = {name: header["judged"][name] for name in VERDICT}
+    kinds = {name: str if variable.dtype is np.str_ else int for name, variable in VERDICT.items()}
+    return solution, {name: kinds[name](value) for name, value in found.items() if value is not None}
 
 
 def _checksum(header: str, *tables: np.ndarray[Any, np.dtype[np.float64]]) -> str:

@@ -23,6 +23,7 @@ from gearidae.mesh.involute import curvature_radii
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
+    from gearidae.scene.coating import Material
     from gearidae.scene.surface import Surface
 
 __all__ = ["PairContact", "pair_contact"]
@@ -47,8 +48,8 @@ class PairContact:
 
     Attributes
     ----------
-    parts : tuple of (float, Surface)
-        Shares of the interface and their surfaces; shares add up to 1.
+    parts : tuple of Material
+        Materials of the interface that have a share; shares add up to 1.
     law : str
         Law of one asperity.
     radius : float
@@ -57,7 +58,7 @@ class PairContact:
         Face width L [m].
     """
 
-    parts: tuple[tuple[float, Surface], ...]
+    parts: tuple[Material, ...]
     law: str
     radius: float
     width: float
@@ -65,14 +66,15 @@ class PairContact:
     @property
     def surface(self) -> Surface:
         """Surface of the first part; heights and elastic constants are those of every part."""
-        return self.parts[0][1]
+        return self.parts[0].surface
 
     def force(self, gap: ArrayLike, stretch: ArrayLike = 0.0) -> Floats:
         """Force without bulk deflection [N] at gaps and stretches beyond joining [m], positive pushes apart."""
         total: Floats = np.zeros(np.broadcast_shapes(np.shape(gap), np.shape(stretch)))
-        for share, surface in self.parts:
+        for surface, share, offset, _ in self.parts:
             stretched = np.asarray(stretch) + law_of(self.law, surface).join * surface.roughness
-            total = total + share * line_force(gap, stretched, self.radius, self.width, surface, self.law)
+            own_gap = np.asarray(gap) + offset
+            total = total + share * line_force(own_gap, stretched, self.radius, self.width, surface, self.law)
         return total
 
     def resting_gap(self, load: float, error: float = 1e-12) -> float:
@@ -148,7 +150,7 @@ class PairContact:
     def largest_tension(self, gap: float) -> float:
         """Largest tension [N] that flanks carry when they part from a gap [m]; 0 if they never pull."""
         sigma = self.surface.roughness
-        stretch = max(asperity_of(surface).stretch_limit for _, surface in self.parts)
+        stretch = max(asperity_of(part.surface).stretch_limit for part in self.parts)
         opened = np.linspace(0.0, 3.0 * sigma + stretch, 41)
         forces = self.force(gap + opened, opened)
         k = int(np.argmin(forces))
@@ -175,7 +177,7 @@ def pair_contact(scene: Scene) -> PairContact:
     SceneError
         If the gears of the scene cannot mesh.
     """
-    parts = tuple((share, surface) for surface, share in scene.materials() if share > 0.0)
+    parts = tuple(part for part in scene.materials() if part.share > 0.0)
     if scene.roller is not None:
         return PairContact(parts, scene.contact.asperity, scene.roller.radius, scene.roller.width)
     if scene.gears is None:

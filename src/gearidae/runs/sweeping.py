@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["prepare_archive", "run_plan", "sweep"]
+__all__ = ["kept_beside", "prepare_archive", "run_plan", "sweep", "whole_archive"]
 
 
 def sweep(
@@ -123,7 +123,7 @@ def sweep(
         archive,
         plan.scenes,
         backend,
-        partial(_whole, plan=plan, backend=backend, keep=parts),
+        partial(whole_archive, plan=plan, backend=backend, keep=parts),
         keep=parts,
         overwrite=overwrite,
         resume=resume,
@@ -237,47 +237,103 @@ def prepare_archive(
     SceneError
         If the archive cannot be written, or is there and may not be replaced.
     """
+    kept = kept_beside(archive, scenes[0], backend, keep=keep, overwrite=overwrite, resume=resume)
+    if archive is None or kept is None or not resume:
+        return kept, None
+    target = check_target(archive, overwrite=True)
+    if kept.count():
+        kept.note_strangers(scenes)
+    elif target.exists():
+        return kept, whole(target)
+    return kept, None
+
+
+def kept_beside(
+    archive: str | os.PathLike[str] | None,
+    scene: Scene,
+    backend: str,
+    *,
+    keep: Keep = EVERYTHING,
+    overwrite: bool,
+    resume: bool,
+) -> KeptRuns | None:
+    """Find out where to keep finished runs.
+
+    Parameters
+    ----------
+    archive, backend, overwrite, resume
+        As for `sweep`.
+    scene : Scene
+        Any of them.
+    keep : Keep, optional
+        What each run leaves behind; by default everything.
+
+    Returns
+    -------
+    KeptRuns or None
+        None without an archive. Without `resume`, empty.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be written, or is there, or was cut off, and may not be replaced.
+    """
     if archive is None:
         if resume:
             raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
-        return None, None
+        return None
     target = check_target(archive, overwrite=True)
-    kept = KeptRuns(target, scenes[0], choose_backend(backend), keep)
-    count = kept.count()
-    if resume:
-        if count:
-            kept.note_strangers(scenes)
-        elif target.exists():
-            found = whole(target)
-            if found is not None or overwrite:
-                return kept, found
-    elif count and overwrite:
-        kept.remove()
-    elif count:
+    kept = KeptRuns(target, scene, choose_backend(backend), keep)
+    count = 0 if resume else kept.count()
+    if count and not overwrite:
         raise SceneError(
             "archive",
             archive,
             f"was cut off, {count} of its runs are in {kept.folder.name}: "
             "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)",
         )
-    else:
+    if count:
+        kept.remove()
+    elif not resume:
         check_target(archive, overwrite=overwrite)
-    return kept, None
+    return kept
 
 
-def _whole(target: Path, plan: SweepPlan, backend: str, keep: Keep) -> xr.Dataset | None:
-    """Return the archive of this very sweep, None if runs of it are missing; refuse any other file."""
+def whole_archive(
+    target: Path, plan: SweepPlan, backend: str, keep: Keep, more: Mapping[str, str] | None = None
+) -> xr.Dataset | None:
+    """Return the archive of this very sweep, None if runs of it are missing; refuse any other file.
+
+    Parameters
+    ----------
+    target : Path
+        That is there.
+    plan : SweepPlan
+    backend : str
+        As for `sweep`.
+    keep : Keep
+    more : mapping of str to str, optional
+        Further attributes that it must have.
+
+    Returns
+    -------
+    Dataset or None
+
+    Raises
+    ------
+    SceneError
+        If it is of another sweep, or cannot be read.
+    """
     try:
         ds = open_archive(target)
     except SceneError as error:
         raise SceneError("archive", target, f"exists and cannot be resumed: it {error.allowed}") from None
     asked = "" if keep.names is None else json.dumps(keep.asked)
-    expected = provenance(plan.base, "") | {"swept": plan.swept, "zipped": plan.zipped, "keep": asked}
-    differing = [
-        name
-        for name in ("scene", "swept", "zipped", "keep", "source")
-        if ds.attrs.get(name, "") != expected[name]
-    ]
+    expected = {
+        name: str(value) for name, value in provenance(plan.base, "").items() if name in ("scene", "source")
+    }
+    expected |= {"swept": plan.swept, "zipped": plan.zipped, "keep": asked, **(more or {})}
+    differing = [name for name, value in expected.items() if ds.attrs.get(name, "") != value]
     if differing or ds.attrs["backend"] not in ("", choose_backend(backend)):
         ds.close()
         raise SceneError(

@@ -164,7 +164,10 @@ def _asperities(rest: _Rest) -> ValidityRow:
     name, quantity = "expected_asperities", "expected asperities in contact"
     if math.isnan(rest.gap):
         return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, ENOUGH_ASPERITIES, "1")
-    count = float(expected_asperities(rest.gap, contact.radius, contact.width, contact.surface))
+    count = sum(
+        share * float(expected_asperities(rest.gap + offset, contact.radius, contact.width, surface))
+        for surface, share, offset, _ in contact.parts
+    )
     relative = rest.gap / contact.surface.roughness
     enough = count >= ENOUGH_ASPERITIES
     verdict = (
@@ -199,7 +202,7 @@ def _density(contact: PairContact) -> ValidityRow:
 
 
 def _merging(scene: Scene) -> Iterator[ValidityRow]:
-    for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
+    for surface, _, _, name in scene.materials():
         radius, half = zero_load_radius(surface), half_spacing(surface)
         holds = radius <= half
         verdict = (
@@ -223,7 +226,7 @@ def _merging(scene: Scene) -> Iterator[ValidityRow]:
 
 def _tabor(scene: Scene) -> Iterator[ValidityRow]:
     law = scene.contact.asperity
-    for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
+    for surface, _, _, name in scene.materials():
         high, low = (tabor_parameter(surface, eps) for eps in _SPACINGS)
         limit, bound, holds, verdict = _tabor_verdict(law, low, high)
         # the end of the range that is compared: the small one where the law asks for large parameters

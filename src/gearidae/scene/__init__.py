@@ -1,6 +1,7 @@
 """What a user describes: a frozen, validated scene, its presets and its case files."""
 
 from gearidae.scene.case import load_case
+from gearidae.scene.coating import MATERIAL_NAMES, Coating, Material
 from gearidae.scene.dump import dump_case, dump_keys
 from gearidae.scene.gears import Gears, Mesh, StaticErrorHarmonic
 from gearidae.scene.keys import KeyInfo
@@ -9,7 +10,7 @@ from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.scene import Scene, describe_key, describe_keys
 from gearidae.scene.shown import differences, nearest_preset
-from gearidae.scene.surface import MATERIAL_NAMES, Coating, Contact, Material, Surface
+from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.torque import Drive, Harmonic, Load
 
 __all__ = [

@@ -11,6 +11,7 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from gearidae.scene.group import Group
+from gearidae.scene.knots import Knots
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.scene import Scene
 
@@ -79,8 +80,10 @@ def _table(group: Group) -> Iterator[str]:
         if isinstance(value, tuple):
             if value and isinstance(value[0], float):
                 entries.append((f"{name} = {_plain(value)}", field.description))
-            elif value and not isinstance(value[0], Group):
+            elif isinstance(value, Knots) and value:
                 entries.append((f"{name} = {_knots(value)}", field.description))
+            elif value and not isinstance(value[0], Group):
+                entries.append((f"{name} = {_rows(value)}", field.description))
             continue
         if value is None:
             continue
@@ -108,6 +111,11 @@ def _knots(knots: tuple[tuple[float, float], ...]) -> str:
     return (
         text if interpolation == "linear" else f"{{ interpolation = {_text(interpolation)}, knots = {text} }}"
     )
+
+
+def _rows(rows: tuple[tuple[float, ...], ...]) -> str:
+    """Write a table of numbers, one row in a line."""
+    return "[\n" + "".join(f"    {_plain(row)},\n" for row in rows) + "]"
 
 
 def _inline(group: Group) -> str:

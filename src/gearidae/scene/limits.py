@@ -9,11 +9,19 @@ from typing import TYPE_CHECKING, Final
 from gearidae.contact.asperities import law_of
 from gearidae.contact.ranges import GAP_LOW, STRETCH_HIGH
 from gearidae.errors import SceneError
+from gearidae.scene.coating import THICKEST
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
-__all__ = ["MOST_PAIRS", "check_gaps", "check_reach", "check_stretch", "pairs_within_reach"]
+__all__ = [
+    "MOST_PAIRS",
+    "check_gaps",
+    "check_reach",
+    "check_stretch",
+    "check_thickness",
+    "pairs_within_reach",
+]
 
 MOST_PAIRS: Final = 32
 """Tooth pairs of one flank whose history the engine keeps at a time."""
@@ -29,15 +37,33 @@ def check_stretch(scene: Scene) -> None:
     SceneError
         Naming ``surface.roughness``.
     """
-    for surface, share in scene.materials():
+    for material in scene.materials():
+        surface = material.surface
         law = law_of(scene.contact.asperity, surface)
         limit = law.detach - law.join
-        if share > 0.0 and not limit <= STRETCH_HIGH:
+        if material.share > 0.0 and not limit <= STRETCH_HIGH:
             raise SceneError(
                 "surface.roughness",
                 surface.roughness,
                 f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
             )
+
+
+def check_thickness(scene: Scene) -> None:
+    """Refuse a monolayer so thick that bare places lie beyond the reach of the asperities.
+
+    Raises
+    ------
+    SceneError
+        Naming ``coating.thickness``.
+    """
+    most = THICKEST * scene.surface.roughness
+    if scene.coating.thickness > most:
+        raise SceneError(
+            "coating.thickness",
+            scene.coating.thickness,
+            f"must be at most {THICKEST:g} roughnesses, {most:.3g} m",
+        )
 
 
 def pairs_within_reach(scene: Scene, cutoff: float) -> float:

@@ -9,19 +9,28 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
+from gearidae.scene.coating import Coating, Material, materials_of
+from gearidae.scene.coating_table import check_tables
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
-from gearidae.scene.limits import check_gaps, check_reach, check_stretch
+from gearidae.scene.limits import check_gaps, check_reach, check_stretch, check_thickness
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
 from gearidae.scene.showing import as_html, as_line
-from gearidae.scene.surface import Coating, Contact, Material, Surface
+from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.torque import Drive, Load
 
 __all__ = ["Scene", "describe_key", "describe_keys"]
 
 _GEAR_TABLES = ("gears", "mesh", "drive", "load", "initial")
+_NOTHING_IF_EMPTY = (
+    ("drive", "schedule"),
+    ("load", "schedule"),
+    ("run", "checkpoints"),
+    ("coating", "pinion_table"),
+    ("coating", "gear_table"),
+)
 _DEEPEST_OVERLAP = 8.0  # rms roughnesses that the mean planes may overlap at the start
 
 
@@ -89,6 +98,8 @@ class Scene(Group):
         """Check what no table can check alone."""
         given = [table for table in _GEAR_TABLES if getattr(self, table) is not None]
         check_stretch(self)
+        check_thickness(self)
+        check_tables(self)
         if self.roller is not None:
             if given:
                 raise SceneError(
@@ -160,17 +171,16 @@ class Scene(Group):
         """The surface where the monolayer covers it: the same, with the coating's energy."""
         return self.surface.model_copy(update={"energy": self.coating.energy})
 
-    def materials(self) -> tuple[Material, Material]:
-        """List the materials of the flanks and the share of each.
+    def materials(self) -> tuple[Material, ...]:
+        """List the materials that share the interface of two flanks, see `gearidae.scene.coating`.
 
         Returns
         -------
         tuple of Material
-            Pairs of surface and share [1], named by `gearidae.scene.MATERIAL_NAMES`: bare, coated. The shares add up
-            to 1; a material that the flanks do not have has the share 0.
+            Surface, share [1], gap offset [m] and name of each: bare, coated, and with independent sides mixed. The
+            shares add up to 1; a material that the flanks do not have has the share 0.
         """
-        fraction = self.coating.sam_fraction
-        return Material(self.surface, 1.0 - fraction), Material(self.coated_surface, fraction)
+        return materials_of(self.coating, self.surface)
 
     def replace(self, changes: Mapping[str, Any]) -> Self:
         """Return a scene with some keys changed, checked anew.
@@ -212,7 +222,7 @@ class Scene(Group):
             ``Scene.from_dict`` makes an equal scene of it, to the last bit.
         """
         data: dict[str, Any] = self.model_dump(mode="json", exclude_none=True)
-        for table, key in (("drive", "schedule"), ("load", "schedule"), ("run", "checkpoints")):
+        for table, key in _NOTHING_IF_EMPTY:
             if table in data and not data[table][key]:
                 del data[table][key]
         return data

@@ -41,7 +41,7 @@ def _line(scene: Scene) -> str:
     else:
         assert roller is not None
         what = f"roller of {with_prefix(roller.radius, 'm')}"
-    parts = [what, f"SAM {100.0 * scene.coating.sam_fraction:.4g} %", with_prefix(scene.run.duration, "s")]
+    parts = [what, f"SAM {_covered(scene)} %", with_prefix(scene.run.duration, "s")]
     name = nearest_preset(scene)
     if name:
         found = differences(scene, name)
@@ -52,6 +52,13 @@ def _line(scene: Scene) -> str:
         more = [f"{len(found) - _NAMED} more"] if len(found) > _NAMED else []
         parts.append(f"as {name}" + (f" but {', '.join([*listed, *more])}" if found else ""))
     return f"<Scene {scene.name!r}: {', '.join(parts)}>"
+
+
+def _covered(scene: Scene) -> str:
+    """Covered share in percent, of both sides where they are covered independently."""
+    coating = scene.coating
+    shares = coating.fractions if coating.pairing == "independent" else coating.fractions[:1]
+    return " and ".join(f"{100.0 * share:.4g}" for share in shares)
 
 
 @as_html.register
@@ -171,7 +178,7 @@ def value_text(key: str, value: object) -> str:
         In SI.
     """
     if isinstance(value, (list, tuple)):
-        return _knots(value)
+        return _list(key, value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return str(value)
     unit = describe_key(key).unit
@@ -184,7 +191,9 @@ def value_text(key: str, value: object) -> str:
     return f"{value:.6g} {unit}"
 
 
-def _knots(value: list[Any] | tuple[Any, ...]) -> str:
+def _list(key: str, value: list[Any] | tuple[Any, ...]) -> str:
+    if value and isinstance(value[0], (list, tuple)) and key.endswith("_table"):
+        return f"{len(value)} rows of {len(value[0])}"
     if value and isinstance(value[0], (list, tuple)):
         first, last = value[0][0], value[-1][0]
         return f"{len(value)} knots from {with_prefix(first, 's')} to {with_prefix(last, 's')}"

@@ -1,8 +1,8 @@
-"""The rough flanks, their coating, and the laws chosen for their contact."""
+"""The rough flanks, and the laws chosen for their contact."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -12,7 +12,7 @@ from gearidae.scene.group import Group
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Quantity
 
-__all__ = ["MATERIAL_NAMES", "Coating", "Contact", "Material", "Surface"]
+__all__ = ["Contact", "Energy", "Surface"]
 
 _LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
@@ -51,26 +51,6 @@ class Surface(Group):
         default="",
         description="where roughness, density and radius of the asperities come from; not computed with",
     )
-
-
-MATERIAL_NAMES = ("bare", "coated")
-"""Names of a scene's materials, in the order of `Scene.materials`."""
-
-
-class Material(NamedTuple):
-    """A surface and the share of the flanks that it makes up [1]."""
-
-    surface: Surface
-    share: float
-
-
-class Coating(Group):
-    """The self-assembled monolayer and how much of it is left; it changes the surface energy alone."""
-
-    sam_fraction: Annotated[float, Quantity(unit="1", at_least=0, at_most=1)] = Field(
-        description="share of the flank that the monolayer still covers, f"
-    )
-    energy: Energy = Field(default=0.1, description="surface energy where the monolayer covers the flank")
 
 
 class Contact(Group):

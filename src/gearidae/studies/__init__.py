@@ -16,44 +16,62 @@ if TYPE_CHECKING:
     from gearidae.runs.plausibility import doubts
     from gearidae.runs.run_time import run_time
     from gearidae.runs.validity import validity
+    from gearidae.studies.calibrate import calibrate
     from gearidae.studies.coating_map import coating_map, open_map
+    from gearidae.studies.ensemble import ensemble
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
+    from gearidae.studies.observations import Observation
+    from gearidae.studies.operating_map import operating_map
+    from gearidae.studies.predict import predict
     from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
+    from gearidae.studies.sticking_probability import sticking_probability
     from gearidae.studies.sticking_threshold import sticking_threshold
     from gearidae.studies.tooth_contacts import tooth_contacts
 
 __all__ = [
+    "Observation",
+    "calibrate",
     "coating_map",
     "contact_resonance",
     "doubts",
     "effective_mass",
+    "ensemble",
     "natural_frequency",
     "open_map",
+    "operating_map",
+    "predict",
     "resting_gap",
     "run_time",
     "sensitivity",
     "starting_torque",
     "static_starting_torque",
     "steady_speed",
+    "sticking_probability",
     "sticking_threshold",
     "tooth_contacts",
     "validity",
 ]
 
 _HOME = {
+    "Observation": "observations",
+    "calibrate": "calibrate",
     "coating_map": "coating_map",
     "contact_resonance": "equilibrium",
     "doubts": "gearidae.runs.plausibility",
     "effective_mass": "gearidae.runs.estimates",
+    "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
     "open_map": "coating_map",
+    "operating_map": "operating_map",
+    "predict": "predict",
     "resting_gap": "gearidae.runs.estimates",
     "run_time": "gearidae.runs.run_time",
     "sensitivity": "sensitivity",
     "starting_torque": "starting_torque",
     "static_starting_torque": "starting_torque",
     "steady_speed": "gearidae.runs.estimates",
+    "sticking_probability": "sticking_probability",
     "sticking_threshold": "sticking_threshold",
     "tooth_contacts": "tooth_contacts",
     "validity": "gearidae.runs.validity",

@@ -22,6 +22,7 @@ from gearidae.analysis.map_model import require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names, save
 from gearidae.archive.provenance import provenance
+from gearidae.archive.stack import held
 from gearidae.errors import Interrupted, SceneError
 from gearidae.scene import describe_key
 
@@ -126,8 +127,8 @@ def coating_map(
     check_executor(executor)
     plans = _plans(scene, fractions, keys, backend)
     scenes = [one for plan in plans for one in plan.scenes]
-    held = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
-    expected = _attributes(scene, (_FRACTION, *keys), {}), {_FRACTION: fractions, **held}, width
+    numbers = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
+    expected = _attributes(scene, (_FRACTION, *keys), {}), {_FRACTION: fractions, **numbers}, width
     kept, whole = prepare_archive(
         archive, scenes, backend, partial(_whole, expected), overwrite=overwrite, resume=resume
     )
@@ -143,7 +144,7 @@ def coating_map(
             where = "" if kept is None else f"the finished runs are in {kept.folder}; go on with --resume"
             raise Interrupted(where, runs)
         lines.append(_line(runs, width))
-    chart = _assembled(lines, held).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
+    chart = _assembled(lines, numbers).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
     if archive is not None and kept is not None:
         save(chart, archive, overwrite=overwrite or resume)
         kept.remove(scenes)
@@ -285,10 +286,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
 
 def _number(scene: Scene, key: str, value: Any) -> Any:
     """A swept value in SI units, as the scene holds it."""
-    held: Any = scene.replace({key: value}).to_dict()
-    for part in key.split("."):
-        held = held[int(part)] if isinstance(held, list) else held[part]
-    return held
+    return held(scene.replace({key: value}), key)
 
 
 def _assembled(lines: list[xr.Dataset], keys: Mapping[str, list[Any]]) -> xr.Dataset:

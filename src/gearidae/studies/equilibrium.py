@@ -28,7 +28,6 @@ from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.runs.estimates import resting_gap
-from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -49,11 +48,12 @@ PairLaw = Callable[..., float]
 
 
 class MaterialLaw(NamedTuple):
-    """Force law of one part of the flanks, see `material_laws`."""
+    """Force law of one material of the flanks, see `material_laws`."""
 
     scale: float
     limit: float
     table: NDArray[np.float64]
+    offset: float
 
 
 _DEEPEST, _WIDEST = -30.0, GAP_HIGH - 0.1
@@ -157,15 +157,16 @@ def pair_law(scene: Scene) -> PairLaw:
     def law(gap: float, joined: float, radius: float, opened: float = -math.inf) -> float:
         at, low, high = gap / roughness, joined / roughness, opened / roughness
         total = 0.0
-        for scale, limit, table in parts.values():
-            total += scale * law_value(table, at, min(max(low, high - limit), at))[0]
+        for scale, limit, table, offset in parts.values():
+            height = min(max(low, high - limit), at)
+            total += scale * law_value(table, at + offset, height + offset)[0]
         return math.sqrt(2.0 * radius * roughness) * float(total)
 
     return law
 
 
 def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
-    """Force laws of the bare and of the coated part of a scene's teeth, as far as there are such parts.
+    """Force laws of the materials of a scene's teeth, as far as they have a share.
 
     Parameters
     ----------
@@ -175,19 +176,20 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
     Returns
     -------
     dict
-        By ``bare`` and ``coated``: force of unit value and unit ``sqrt(2 R sigma)`` [N/m] times the part's share, its
-        stretch limit over the roughness, and its table (see `gearidae.contact.kernels.law`).
+        By ``bare``, ``coated`` and ``mixed``: force of unit value and unit ``sqrt(2 R sigma)`` [N/m] times the
+        material's share, its stretch limit over the roughness, its table (see `gearidae.contact.kernels.law`), and its
+        gap offset over the roughness.
     """
     assert scene.gears is not None
     roughness, width = scene.surface.roughness, scene.gears.face_width
     laws = {}
-    for name, (surface, share) in zip(MATERIAL_NAMES, scene.materials(), strict=True):
+    for surface, share, offset, name in scene.materials():
         if share > 0.0:
             asperity = asperity_of(surface)
             hertz = 4.0 / 3.0 * asperity.modulus * math.sqrt(surface.asperity_radius)
             scale = share * force_scale(roughness, hertz, surface.asperity_density, width)
             law = law_of(scene.contact.asperity, surface)
-            laws[name] = MaterialLaw(scale, law.detach - law.join, law_table(law))
+            laws[name] = MaterialLaw(scale, law.detach - law.join, law_table(law), offset / roughness)
     return laws
 
 

@@ -12,22 +12,21 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from gearidae.archive import check_target, save
+from gearidae.archive import save
 from gearidae.archive.provenance import provenance
 from gearidae.archive.verdict import is_scheduled
-from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import steady_speed
 from gearidae.runs.executors import check_executor, check_jobs, own_executor
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import prepare, runs_in_threads
+from gearidae.runs.sweeping import kept_beside
 from gearidae.scene.keys import find_key
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
@@ -114,7 +113,7 @@ def sticking_threshold(
     check_executor(executor)
     workers = check_jobs(jobs)
     base = base.replace({"run.duration": _window(base, exits)})
-    kept = _kept_runs(archive, base, backend, overwrite=overwrite, resume=resume)
+    kept = kept_beside(archive, base, backend, overwrite=overwrite, resume=resume)
     threads = runs_in_threads(backend)
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
@@ -301,25 +300,3 @@ def _window(scene: Scene, exits: int) -> float:
         allowed = "must turn the gear, or initial.gear_speed be positive"
         raise SceneError("drive.torque", scene.drive.torque if scene.drive else 0.0, allowed)
     return _PATIENCE * (exits + 1) * 2.0 * math.pi / (scene.gears.gear_teeth * speed)
-
-
-def _kept_runs(
-    archive: str | os.PathLike[str] | None, scene: Scene, backend: str, *, overwrite: bool, resume: bool
-) -> KeptRuns | None:
-    """Where finished runs are kept."""
-    if archive is None:
-        if resume:
-            raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
-        return None
-    kept = KeptRuns(
-        check_target(Path(archive), overwrite=overwrite or resume), scene, choose_backend(backend)
-    )
-    if kept.count() and overwrite:
-        kept.remove()
-    elif kept.count() and not resume:
-        allowed = (
-            f"is of a search that was cut off, {kept.count()} of its runs are in {kept.folder.name}: "
-            "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)"
-        )
-        raise SceneError("archive", archive, allowed)
-    return kept

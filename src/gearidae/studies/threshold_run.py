@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from gearidae.archive.stack import held
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.running import solve, unsolved
 
@@ -91,9 +92,7 @@ def value_of(scene: Scene, key: str) -> float:
     SceneError
         If it is no number.
     """
-    value: object = scene.to_dict()
-    for part in key.split("."):
-        value = value.get(part) if isinstance(value, dict) else None
+    value = held(scene, key)
     if not isinstance(value, int | float) or isinstance(value, bool):
         raise SceneError("over", key, "must be the key of a number")
     return float(value)

@@ -24,6 +24,8 @@ from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import Flank
 from gearidae.scene import Scene
+from gearidae.scene.coating import interface_shares
+from gearidae.scene.coating_table import fraction_at, met_teeth
 from gearidae.studies.equilibrium import MaterialLaw, material_laws
 from gearidae.studies.tooth_record import ToothRecord, joined_heights
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
@@ -243,7 +245,7 @@ def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Intege
                 for name, law in laws.items()
             }
             radius = curvature_radii(geometry, place)[2]
-            force = _force(scene, laws, gap, joined, radius)
+            force = _force(scene, laws, gap, joined, radius, _share_ratios(scene, flank, pair, place))
             force[gap >= limits.cutoff] = 0.0
             yield _Followed(pair, flank, order[counts], place, radius, gap, joined, force)
 
@@ -253,15 +255,40 @@ def _stretch_limit(law: MaterialLaw, scene: Scene) -> float:
     return float(law.table[H_STRETCH]) * scene.surface.roughness
 
 
+def _share_ratios(scene: Scene, flank: Flank, pair: int, place: Floats) -> dict[str, Floats]:
+    """Shares of the materials of a pair over their means; ones where they do not change with tooth and place."""
+    coating = scene.coating
+    means = {one.name: one.share for one in scene.materials() if one.share > 0.0}
+    if not coating.by_place:
+        return {name: np.ones_like(place) for name in means}
+    teeth = met_teeth(pair, coast=flank == Flank.COAST)
+    along = place / scene.geometry.path_length
+    fractions = [fraction_at(table, tooth, along) for table, tooth in zip(coating.tables, teeth, strict=True)]
+    shares = interface_shares(coating.pairing, *fractions)
+    return {name: shares[name] / mean for name, mean in means.items()}
+
+
 def _force(
-    scene: Scene, laws: dict[str, MaterialLaw], gap: Floats, joined: dict[str, Floats], radius: Floats
+    scene: Scene,
+    laws: dict[str, MaterialLaw],
+    gap: Floats,
+    joined: dict[str, Floats],
+    radius: Floats,
+    ratios: dict[str, Floats],
 ) -> Floats:
-    """Force of a pair without deflection of the bodies [N]."""
+    """Force of a pair without deflection of the bodies [N]; its materials' shares are `ratios` times their means."""
     sigma = scene.surface.roughness
     total = np.zeros_like(gap)
     for name, law in laws.items():
-        total += law.scale * np.array(
-            [law_value(law.table, g, z)[0] for g, z in zip(gap / sigma, joined[name] / sigma, strict=True)]
+        total += (
+            law.scale
+            * ratios[name]
+            * np.array(
+                [
+                    law_value(law.table, g + law.offset, z + law.offset)[0]
+                    for g, z in zip(gap / sigma, joined[name] / sigma, strict=True)
+                ]
+            )
         )
     return np.sqrt(2.0 * radius * sigma) * total
 

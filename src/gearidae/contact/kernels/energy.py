@@ -42,6 +42,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.asperities import AsperityLaw
 from gearidae.contact.kernels.densities import kernel_at_knots
 from gearidae.contact.kernels.evaluate import integrated_work, stretched_value
+from gearidae.contact.kernels.knots import loading_derivatives
 from gearidae.contact.kernels.law import law_table, stretch_followed
 from gearidae.contact.kernels.layout import (
     DEGREE,
@@ -64,7 +65,7 @@ from gearidae.contact.kernels.layout import (
 )
 from gearidae.contact.kernels.pieces import hermite_matrix, hermite_pieces
 
-__all__ = ["energy_table", "joining_energy", "number_table", "stretched_energy"]
+__all__ = ["energy_table", "joining_energy", "loading_pieces", "number_table", "stretched_energy"]
 
 _GAUSS: Final = 16
 
@@ -111,6 +112,34 @@ def energy_table(law: AsperityLaw, kernel: Kernel = "line") -> Floats:
             _store_partial(force, end, table)
     table.setflags(write=False)
     return table
+
+
+@lru_cache(maxsize=32)
+def loading_pieces(law: AsperityLaw, kernel: Kernel = "line", offset: float = 0.0) -> tuple[Floats, Floats]:
+    """Tabulate the loading branch of a material whose gap is wider by an offset, and its potential.
+
+    Parameters
+    ----------
+    law, kernel
+        As for `gearidae.contact.kernels.law.law_table`.
+    offset : float, optional
+        By how much the material's gap is wider than that which the pieces are read at, in roughnesses, 0 or more.
+
+    Returns
+    -------
+    loading, potential : ndarray, shape (8 * N_LOADING,)
+        Pieces of q(G + offset, 0) and of A(G + offset) on the knots of G, without a header; without an offset those of
+        the tables to the last bit. Read-only, shared between callers.
+    """
+    if offset == 0.0:
+        part = slice(HEADER, HEADER + 8 * N_LOADING)
+        return law_table(law, kernel)[part], energy_table(law, kernel)[part]
+    knots = GAP_LOW + np.arange(N_LOADING + 1) / KNOTS_PER_SIGMA
+    pieces = hermite_pieces(knots, loading_derivatives(knots + offset, law, kernel))
+    loading, potential = pieces.ravel(), _potential(pieces, GAP_LOW).ravel()
+    for part_of_both in (loading, potential):
+        part_of_both.setflags(write=False)
+    return loading, potential
 
 
 @lru_cache(maxsize=8)

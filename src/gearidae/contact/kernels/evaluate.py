@@ -29,6 +29,7 @@ from gearidae.contact.kernels.layout import (
 )
 
 __all__ = [
+    "blended_value",
     "coefficients",
     "integrated_value",
     "integrated_work",
@@ -44,6 +45,7 @@ Eight: TypeAlias = tuple[float, float, float, float, float, float, float, float]
 # Indices are unsigned where it counts: a signed one makes numba test for Python's negative indices at every access.
 _AT: Final = tuple(np.uintp(i) for i in range(8))
 _A1, _A2, _A3, _A4, _A5, _A6, _A7 = _AT[1:]
+_THREES: Final = tuple(np.uintp(3 * i) for i in range(8))
 
 
 @compiled
@@ -93,6 +95,53 @@ def loading_value(table: Floats, offset: int, gap: float) -> tuple[float, float]
     if gap >= GAP_HIGH:
         return 0.0, 0.0
     return _septic(table, offset, gap, GAP_LOW, N_LOADING)
+
+
+@compiled(inline=True)
+def _blended(table: Floats, k: np.uintp, a: float, b: float, c: float) -> float:
+    """Sum of a coefficient of three branches, which lie side by side."""
+    return a * table[k] + b * table[k + _A1] + c * table[k + _A2]
+
+
+@compiled
+def blended_value(
+    table: Floats, offset: int, shares: tuple[float, float, float], gap: float
+) -> tuple[float, float]:
+    """Sum of three loading branches by their shares, and its slope: one polynomial of the sums of the coefficients.
+
+    Parameters
+    ----------
+    table : ndarray
+        Where the branches lie, in the layout of loading branches, the three numbers of each coefficient side by side.
+    offset : int
+        Where they begin.
+    shares : tuple of three float
+        By what each is multiplied.
+    gap : float
+        G, gap over roughness [1].
+    """
+    if gap >= GAP_HIGH:
+        return 0.0, 0.0
+    position = (gap - GAP_LOW) * KNOTS_PER_SIGMA
+    j = min(max(int(position), 0), N_LOADING - 1)
+    k, u = np.uintp(offset + 24 * j), position - j
+    a, b, c = shares
+    sums = (
+        _blended(table, k, a, b, c),
+        _blended(table, k + _THREES[1], a, b, c),
+        _blended(table, k + _THREES[2], a, b, c),
+        _blended(table, k + _THREES[3], a, b, c),
+        _blended(table, k + _THREES[4], a, b, c),
+        _blended(table, k + _THREES[5], a, b, c),
+        _blended(table, k + _THREES[6], a, b, c),
+        _blended(table, k + _THREES[7], a, b, c),
+    )
+    f, d = value_and_slope(sums, u)
+    d *= KNOTS_PER_SIGMA
+    if gap > 0.0:
+        decay = math.exp(-0.5 * gap * gap)
+        return f * decay, (d - gap * f) * decay
+    return f, d
 
 
 @compiled(inline=True)

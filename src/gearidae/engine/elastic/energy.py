@@ -63,15 +63,16 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
     for material in range(MATERIALS):
         if m.scene.material[material].stretch_limit == 0.0:
             continue
-        table = m.tables[m.scene.material[material].energy_at :]
-        scale = m.scene.material[material].force_scale
+        own = m.scene.material[material]
+        table = m.tables[own.energy_at :]
+        scale, offset = own.force_scale, own.gap_offset
         heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
-        farthest = farthest_joined(heights[0])
+        farthest = farthest_joined(heights[0], offset)
         for i in range(gaps.size):
             if heights[i] > farthest:
                 break
-            stored = stretched_energy(table, adhered_energy[i], gaps[i], heights[i])[0]
-            energy += scale * finer[i] * stored
+            stored = stretched_energy(table, adhered_energy[i], gaps[i] + offset, heights[i] + offset)
+            energy += scale * finer[i] * stored[0]
     return energy
 
 
@@ -89,7 +90,8 @@ def nodes_joining_loss(m: Model, k: int, y: Floats, gap: float) -> float:
         heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
         for i in range(gaps.size):
             if gaps[i] < heights[i]:
-                more = joining * loading_value(m.tables, number, gaps[i])[0] + adhered_energy[i]
+                above = loading_value(m.tables, number, gaps[i] + own.gap_offset)[0]
+                more = joining * above + adhered_energy[i]
                 loss += scale * finer[i] * more
     return loss
 

@@ -156,7 +156,9 @@ def node_grid(
 
 def _stretch(scene: Scene) -> float:
     """How far asperities stretch at most, in roughnesses."""
-    return max(law_of(scene.contact.asperity, s).detach for s, share in scene.materials() if share > 0.0)
+    return max(
+        law_of(scene.contact.asperity, one.surface).detach for one in scene.materials() if one.share > 0.0
+    )
 
 
 def deepest_gap(scene: Scene, bounds: ContactBounds) -> float:
@@ -185,8 +187,8 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
         change = math.inf
         for _ in range(_TRIES):
             pressure, slope = np.zeros(n), np.zeros(n)
-            for table, scale in surfaces:
-                q = _loading(table, gap + profile + deflection)
+            for table, scale, offset in surfaces:
+                q = _loading(table, gap + offset + profile + deflection)
                 pressure += scale * q[0]
                 slope += scale * q[1]
             matrix = np.eye(n) - middle * slope
@@ -212,8 +214,11 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
 
 def _static(
     scene: Scene, bounds: ContactBounds, deepest: float
-) -> tuple[NodeGrid, Floats, list[tuple[Floats, float]]]:
-    """Nodes of the widest contact in newtons, its influence coefficients, and its surfaces' laws with their scales."""
+) -> tuple[NodeGrid, Floats, list[tuple[Floats, float, float]]]:
+    """Nodes of the widest contact in newtons, its influence coefficients, and laws of its materials.
+
+    Each law comes with its scale and the material's gap offset in roughnesses.
+    """
     sigma = scene.surface.roughness
     grid = node_grid(scene, bounds, 1.0, deepest, NODES)
     n = grid.nodes
@@ -222,13 +227,13 @@ def _static(
     kappa = np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
     unit = bounds.width * math.sqrt(2.0 * bounds.radius * sigma)
     surfaces = []
-    for surface, share in scene.materials():
+    for surface, share, offset, _ in scene.materials():
         if share > 0.0:
             tip = asperity_of(surface)
             # a copy: numba compiles everything a second time for arrays that are read-only
             table = loading_table(law_of(scene.contact.asperity, surface), "plane").copy()
             scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
-            surfaces.append((table, scale))
+            surfaces.append((table, scale, offset / sigma))
     return grid, kappa, surfaces
 
 
@@ -257,8 +262,10 @@ def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     step = 0.125
     gaps = np.arange(GAP_HIGH, -4.0, -step)
     pressure = np.zeros((gaps.size, grid.nodes))
-    for table, scale in surfaces:
-        pressure += scale * _loading(table, np.add.outer(gaps, profile).ravel())[0].reshape(pressure.shape)
+    for table, scale, offset in surfaces:
+        pressure += scale * _loading(table, np.add.outer(gaps + offset, profile).ravel())[0].reshape(
+            pressure.shape
+        )
     force = bounds.longest * (pressure @ weights)
     work = np.cumsum(0.5 * (force + np.concatenate([[0.0], force[:-1]])) * step * scene.surface.roughness)
     deflected = np.flatnonzero(np.abs(pressure @ kappa[0]) > RIGID_DEFLECTION)

@@ -69,9 +69,9 @@ _NOTHING = 6.5  # standard deviations: beyond, heights have 1e-9 of the density 
 
 
 @compiled
-def farthest_joined(middle: float) -> float:
-    """Joined height beyond which nothing counts beside the middle's."""
-    return math.hypot(max(middle, 0.0), _NOTHING)
+def farthest_joined(middle: float, offset: float) -> float:
+    """Joined height beyond which nothing counts beside the middle's, of a material with a gap offset."""
+    return math.hypot(max(middle + offset, 0.0), _NOTHING) - offset
 
 
 @compiled
@@ -151,13 +151,13 @@ def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: floa
         for i in range(points):
             turning[i] = gaps[i] + turning[i] * back
     for material in range(MATERIALS):
-        limit = m.scene.material[material].stretch_limit
+        own = m.scene.material[material]
+        limit, scale, offset = own.stretch_limit, own.force_scale, own.gap_offset
         if limit == 0.0:
             continue
-        table = m.tables[m.scene.material[material].table_at :]
-        scale = m.scene.material[material].force_scale
+        table = m.tables[own.table_at :]
         heights = row(m, k, JOINED + material)
-        farthest = farthest_joined(heights[0])
+        farthest = farthest_joined(heights[0], offset)
         for i in range(points):
             joined = heights[i]
             if joined > farthest:
@@ -165,11 +165,11 @@ def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: floa
             if turned:
                 joined = joined_height(joined, turning[i], limit)
             if gaps[i] > joined:
-                q, dq = stretched_value(table, gaps[i], joined)
+                q, dq = stretched_value(table, gaps[i] + offset, joined + offset)
                 added[i] += scale * q
                 stiff[i] += scale * dq
             elif opening:
-                stiff[i] += scale * stretched_value(table, gaps[i] + _BEGUN, gaps[i])[1]
+                stiff[i] += scale * stretched_value(table, gaps[i] + offset + _BEGUN, gaps[i] + offset)[1]
     add_to_nodes(m, added, row(m, k, PRESSURE))
 
 

@@ -15,8 +15,11 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import nodes_joining_loss
 from gearidae.engine.energy.contacts import joining_loss
+from gearidae.engine.energy.coverage import losses_by_material
+from gearidae.engine.energy.lengths import length_and_rates, material_lengths
 from gearidae.engine.energy.quadrature import integral
-from gearidae.engine.energy.radius import length_and_rates, pairs_on_path
+from gearidae.engine.energy.radius import pairs_on_path
+from gearidae.engine.model.coverage import WHOLE, place_inside, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import contact_length, history_of, pair_gap
 
@@ -36,9 +39,14 @@ def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float)
     if m.scene.nodes > 0:
         m.state.energy.adhesion_loss += length * nodes_joining_loss(m, k, y, gap)
         return
-    loss = joining_loss(m, k, gap)
+    shares = WHOLE
+    if m.scene.by_place != 0:
+        shares = shares_of(m, coast, pair, place_inside(m, coast, pair, y[PHASE]))
+    loss = joining_loss(m, k, gap, shares)
     m.state.energy.adhesion_loss += length * loss
-    if m.scene.kind == GEARS:
+    if m.scene.by_place != 0:
+        _book_materials_before(m, coast, pair, k, y, gap)
+    elif m.scene.kind == GEARS:
         _book_before(m, coast, pair, loss, length)
 
 
@@ -58,6 +66,23 @@ def _book_before(m: Model, coast: int, pair: int, loss: float, length: float) ->
     q.radius_power -= loss * rate
     q.radius_power_rate -= loss * bend
     q.length_work += loss * (length - was)
+
+
+@compiled
+def _book_materials_before(m: Model, coast: int, pair: int, k: int, y: Floats, gap: float) -> None:
+    """Do the same for each material of a pair whose shares change along the path."""
+    first, last = pairs_on_path(m, coast)
+    if m.state.near[coast] == 0 or not first <= pair <= last:
+        return
+    q = m.work.quadrature
+    before = q.gear_travel * m.scene.phase_rate
+    was, rates, bends = material_lengths(m, coast, pair, before, q.gear_speed, q.gear_acceleration)
+    now = material_lengths(m, coast, pair, y[PHASE], 0.0, 0.0)[0]
+    losses = losses_by_material(m, k, gap)[0]
+    for material in range(MATERIALS):
+        q.radius_power -= losses[material] * rates[material]
+        q.radius_power_rate -= losses[material] * bends[material]
+        q.length_work += losses[material] * (now[material] - was[material])
 
 
 @compiled(inline=True)
@@ -103,13 +128,35 @@ def _follow_flank(m: Model, coast: int, h: float, y: Floats, w_rate: float) -> N
         own = m.state.history[k]
         if own.pair != pair or own.direction >= 0.0:
             continue
-        loss, loss_slope = _loss(m, k, y, gap)
         power = rate = 0.0
+        if m.scene.by_place != 0:
+            power, rate = _material_lags(m, coast, pair, k, gap, y, w_rate)
+            own.lag += integral(h, own.lag_power, power, own.lag_rate, rate)
+            own.lag_power, own.lag_rate = power, rate
+            continue
+        loss, loss_slope = _loss(m, k, y, gap)
         if loss != 0.0:
             _, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
             power, rate = loss * stretch, loss * bend - loss_slope * sign * y[V] * stretch
         own.lag += integral(h, own.lag_power, power, own.lag_rate, rate)
         own.lag_power, own.lag_rate = power, rate
+
+
+@compiled
+def _material_lags(
+    m: Model, coast: int, pair: int, k: int, gap: float, y: Floats, w_rate: float
+) -> tuple[float, float]:
+    """Rate of the lag of a pair whose shares change along the path, and the rate of that."""
+    power = rate = 0.0
+    losses, slopes = losses_by_material(m, k, gap)
+    if losses[0] == 0.0 and losses[1] == 0.0 and losses[2] == 0.0:
+        return 0.0, 0.0
+    _, stretches, bends = material_lengths(m, coast, pair, y[PHASE], y[W], w_rate)
+    closing = (1.0 - 2.0 * coast) * y[V]
+    for material in range(MATERIALS):
+        power += losses[material] * stretches[material]
+        rate += losses[material] * bends[material] - slopes[material] * closing * stretches[material]
+    return power, rate
 
 
 @compiled
@@ -122,7 +169,7 @@ def _loss(m: Model, k: int, y: Floats, gap: float) -> tuple[float, float]:
     for material in range(MATERIALS):
         own = m.scene.material[material]
         if own.stretch_limit > 0.0 and (m.scene.nodes > 0 or gap < m.state.history[k].joined[material]):
-            number, slope = loading_value(m.tables, own.number_at, gap)
+            number, slope = loading_value(m.tables, own.number_at, gap + own.gap_offset)
             joining = own.joining_energy * own.force_scale
             lost += joining * number
             loss += joining * number + own.force_scale * m.state.history[k].adhered_energy[material]

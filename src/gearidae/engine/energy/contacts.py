@@ -6,6 +6,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_stored
+from gearidae.engine.model.coverage import Shares, potential_of, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     all_pairs,
@@ -20,27 +21,27 @@ __all__ = ["joined_energy", "joining_loss", "stored_energy"]
 
 
 @compiled
-def joined_energy(m: Model, k: int, gap: float) -> tuple[float, float]:
+def joined_energy(m: Model, k: int, gap: float, shares: Shares) -> tuple[float, float]:
     """Energy of a pair's stretched asperities beyond the loading branch, per length, and its slope in the gap."""
     energy = slope = 0.0
     for material in range(MATERIALS):
-        limit = m.scene.material[material].stretch_limit
-        if limit == 0.0:
+        own = m.scene.material[material]
+        limit, scale, offset = own.stretch_limit, own.force_scale * shares[material], own.gap_offset
+        if limit == 0.0 or scale == 0.0:
             continue
-        scale = m.scene.material[material].force_scale
         stretch = gap - m.state.history[k].joined[material]
         if stretch <= 0.0:
             energy += scale * m.state.history[k].adhered_energy[material]
             continue
-        table = m.tables[m.scene.material[material].energy_at :]
-        joined = m.state.history[k].joined[material]
+        table = m.tables[own.energy_at :]
+        joined = m.state.history[k].joined[material] + offset
         if stretch < limit and m.scene.branch_length > 0 and branch_length(table) > 0:
             branch = m.rows[energy_branch(m, k, material) :]
             if branch[B_PIECES] == 0.0:
                 set_branch(table, joined, branch)
             e, de = branch_value(branch, stretch)
         else:
-            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap, joined)
+            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap + offset, joined)
         energy += scale * e
         slope += scale * de
     return energy, slope
@@ -67,7 +68,7 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
         k = history_of(m, coast, pair)
-        gap, rate, length = y[U], y[V], 1.0
+        gap, rate, length, inside = y[U], y[V], 1.0, 0.0
         if m.scene.kind == GEARS:
             gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
             length = contact_length(m, inside)
@@ -77,19 +78,21 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
             stored += length * nodes_stored(m, k, m.state.time, y, gap, rate, length)
             pending += length * nodes_joining_loss(m, k, y, gap)
             continue
-        energy, _ = joined_energy(m, k, gap)
-        stored += length * (loading_value(m.tables, m.scene.potential_at, gap)[0] + energy)
-        pending += length * joining_loss(m, k, gap)
+        shares = shares_of(m, coast, pair, inside)
+        energy, _ = joined_energy(m, k, gap, shares)
+        stored += length * (potential_of(m, gap, shares) + energy)
+        pending += length * joining_loss(m, k, gap, shares)
     return stored, pending
 
 
 @compiled
-def joining_loss(m: Model, k: int, gap: float) -> float:
+def joining_loss(m: Model, k: int, gap: float, shares: Shares) -> float:
     """Adhesion loss per length of the asperities that came into contact since the last turning point."""
     loss, h = 0.0, m.state.history[k]
     for material in range(MATERIALS):
         own = m.scene.material[material]
         if own.stretch_limit > 0.0 and gap < h.joined[material]:
-            number = loading_value(m.tables, own.number_at, gap)[0]
-            loss += own.force_scale * (own.joining_energy * number + h.adhered_energy[material])
+            number = loading_value(m.tables, own.number_at, gap + own.gap_offset)[0]
+            scale = own.force_scale * shares[material]
+            loss += scale * (own.joining_energy * number + h.adhered_energy[material])
     return loss

@@ -12,10 +12,13 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import nodes_length_force
 from gearidae.engine.energy.contacts import joined_energy
+from gearidae.engine.energy.coverage import coverage_power
+from gearidae.engine.energy.lengths import length_and_rates
+from gearidae.engine.model.coverage import WHOLE
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import history_of
 
-__all__ = ["length_and_rates", "pairs_on_path", "radius_power", "sample_radius_power"]
+__all__ = ["pairs_on_path", "radius_power", "sample_radius_power"]
 
 
 @compiled
@@ -46,11 +49,16 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
             k = history_of(m, coast, pair)
             if m.state.history[k].pair != pair:
                 continue
+            if m.scene.by_place != 0:
+                own_power, own_rate = coverage_power(m, k, coast, pair, gap, y, w_rate)
+                power += own_power
+                rate += own_rate
+                continue
             length, length_rate, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
             if elastic:
                 pull, change = nodes_length_force(m, k, t, y, gap, -sign * y[V], length)
             else:
-                pull, slope = joined_energy(m, k, gap)
+                pull, slope = joined_energy(m, k, gap, WHOLE)
                 pull += potential
                 change = -(slope + push) * sign * y[V]
             power += pull * length_rate
@@ -67,19 +75,3 @@ def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
     between = 0.5 * (m.state.mark_low + m.state.mark_high)
     lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
-
-
-@compiled
-def length_and_rates(
-    m: Model, coast: int, pair: int, phase: float, w: float, w_rate: float
-) -> tuple[float, float, float]:
-    """Contact length of a pair on the path of contact, its rate and the rate of that."""
-    sign = m.scene.phase_rate * (1.0 - 2.0 * coast)
-    curvature = m.scene.sum_curvature
-    # l^2 = r - c r^2 with r the pinion's radius of curvature
-    radius = m.scene.start_radius + (m.scene.coast_phase + pair - phase if coast else phase - pair)
-    length = math.sqrt(radius - radius * radius * curvature)
-    half = 0.5 - radius * curvature
-    along = sign * w
-    rate = half * along / length
-    return length, rate, (half * sign * w_rate - curvature * along * along - rate * rate) / length

@@ -18,7 +18,7 @@ from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard
 from gearidae.engine.events.pair_events import handle_pair, newly_stretched, pair_guard
 from gearidae.engine.events.run_stop import stop_guard
-from gearidae.engine.model.state import COAST, DRIVE, GEARS, ROLLER, Floats, Model
+from gearidae.engine.model.state import COAST, DRIVE, GEARS, MATERIALS, ROLLER, Floats, Model
 from gearidae.engine.model.tooth_pairs import (
     gap_and_rate,
     history_of,
@@ -143,6 +143,7 @@ def balance_can_wait(m: Model, t: float, y: Floats) -> bool:
         k = history_of(m, coast, pair)
         if m.state.history[k].pair == pair:
             gap, _ = gap_and_rate(m, coast, pair, y)
-            if newly_stretched(m, k, 0, gap) or newly_stretched(m, k, 1, gap):
-                return False
+            for material in range(MATERIALS):
+                if newly_stretched(m, k, material, gap):
+                    return False
     return True

@@ -22,6 +22,7 @@ from gearidae.engine.model.state import (
     DRIVE,
     GEARS,
     LOAD,
+    MATERIALS,
     ROLLER,
     SCENE,
     SCHEDULES,
@@ -38,7 +39,7 @@ from gearidae.engine.model.torques.schedule import (
 )
 from gearidae.mesh.involute import Geometry
 from gearidae.records import sampled_columns
-from gearidae.scene import Scene
+from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.limits import check_reach, pairs_within_reach
 
 __all__ = ["Begin", "make_problem"]
@@ -237,7 +238,11 @@ def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
     errors = scene.mesh.static_error
     numbers = [x for h in errors for x in (h.order, h.amplitude / float(s.length_unit), h.phase)]
     s.error_count, s.error_at = len(errors), tables.add(numbers)
-    order = max((h.order for h in errors), default=0)
+    order: float = max((h.order for h in errors), default=0)
+    # two places of a table are half a period
+    places = max(len(table[0]) for table in scene.coating.tables)
+    if places > 1:
+        order = max(order, 0.5 * places / float(s.contact_ratio) * float(s.pinion_teeth))
     s.mesh_omega = 2.0 * math.pi * max(1.0, order / float(s.pinion_teeth))
 
 
@@ -250,7 +255,7 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.states = len(scale) + nodes * histories
     s.scale_at = tables.add(_scale(nodes, histories, scale))
     rows = Tables()
-    s.branches_at = rows.add(np.zeros(4 * int(s.branch_length) * histories))
+    s.branches_at = rows.add(np.zeros(2 * MATERIALS * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
     return blank_model(s, tables.whole(), rows.size)
@@ -284,12 +289,9 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
 
 def _skipped(m: Model, scene: Scene) -> dict[str, int]:
     """What the contact of this scene does not need."""
-    fraction = scene.coating.sam_fraction
-    bare, coated = m.scene.material
-    return {
-        "bare_surface": int(fraction == 1.0),
-        "coated_surface": int(fraction == 0.0),
-        "bare_hysteresis": int(bare.stretch_limit == 0.0),
-        "coated_hysteresis": int(coated.stretch_limit == 0.0),
-        "elastic_deflection": int(m.scene.nodes == 0),
-    }
+    skipped = {"elastic_deflection": int(m.scene.nodes == 0)}
+    shares = {one.name: one.share for one in scene.materials()}
+    for own, name in zip(m.scene.material, MATERIAL_NAMES, strict=True):
+        skipped[f"{name}_surface"] = int(shares.get(name, 0.0) == 0.0)
+        skipped[f"{name}_hysteresis"] = int(own.stretch_limit == 0.0)
+    return skipped

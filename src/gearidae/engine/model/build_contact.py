@@ -8,7 +8,7 @@ import numpy as np
 
 from gearidae.contact.asperities import law_of
 from gearidae.contact.asperities.base import AsperityLaw
-from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table
+from gearidae.contact.kernels.energy import energy_table, joining_energy, loading_pieces, number_table
 from gearidae.contact.kernels.law import (
     GAP_LOW,
     H_STRETCH,
@@ -24,9 +24,9 @@ from gearidae.contact.kernels.law import (
 from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
-from gearidae.engine.model.state import Record
+from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.model.tables import Tables
-from gearidae.scene import Scene
+from gearidae.scene import Material, Scene
 
 __all__ = ["Nodes", "add_contact", "add_nodes", "choose_model"]
 
@@ -91,12 +91,15 @@ def add_contact(
     widest : float
         Largest contact length.
     """
+    _add_coverage(s, tables, scene)
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
+    blended = np.zeros((loading.size, MATERIALS))
     longest = 0
-    for material, (surface, share) in enumerate(scene.materials()):
+    for material, (surface, share, offset, _) in enumerate(_parts(scene)):
         own, tip = s.material[material], asperity_of(surface)
+        own.gap_offset = offset / surface.roughness
         law = law_of(scene.contact.asperity, surface)
         check_reach(law, surface.roughness)
         table = law_table(law, kernel) if share > 0.0 else np.zeros(HEADER)
@@ -109,13 +112,36 @@ def add_contact(
         own.number_at = tables.add(number_table(kernel, law.join))
         longest = max(longest, branch_length(table))
         if share > 0.0:
-            loading += force * table[HEADER : HEADER + loading.size]
-            potential += force * energy[HEADER : HEADER + potential.size]
+            push, stored = loading_pieces(law, kernel, float(own.gap_offset))
+            loading += force * push
+            potential += force * stored
+            own.potential_at = tables.add(force * stored) if s.by_place != 0 else 0
+            blended[:, material] = force * push
             for floor, gap in reach.items():
-                reach[floor] = max(gap, _outermost(law, kernel, floor / (force * widest)))
+                widest_gap = _outermost(law, kernel, floor / (force * widest))
+                reach[floor] = max(gap, widest_gap - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
+    s.blended_at = tables.add(blended.ravel()) if s.by_place != 0 else 0
     s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
     s.branch_length = 0 if s.nodes > 0 else longest
+
+
+def _parts(scene: Scene) -> tuple[Material, ...]:
+    """Materials with the shares that their force scales hold: one each where shares change with tooth and place."""
+    if not scene.coating.by_place:
+        return scene.materials()
+    return tuple(material._replace(share=1.0) for material in scene.materials())
+
+
+def _add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
+    """Lay out the fractions by tooth and place, if there are any."""
+    if not scene.coating.by_place:
+        return
+    s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
+    for own, table in zip(s.coverage, scene.coating.tables, strict=True):
+        own.teeth, own.places = len(table), len(table[0])
+        own.values_at = tables.add(np.array(table).ravel())
+        own.inverse_teeth, own.place_scale = 1.0 / len(table), len(table[0]) / float(s.contact_ratio)
 
 
 def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:

@@ -262,7 +262,7 @@ def _check_adhered(m: Model, h: Record) -> None:
         own = m.scene.material[material]
         number = 0.0
         if own.stretch_limit > 0.0:
-            number = loading_value(m.tables, own.number_at, h.joined[material])[0]
+            number = loading_value(m.tables, own.number_at, h.joined[material] + own.gap_offset)[0]
         expected, found = -float(own.joining_energy) * number, float(h.adhered_energy[material])
         if m.scene.nodes > 0:
             fits = -_LOSSES_HIGH * own.joining_energy <= found <= 0.0

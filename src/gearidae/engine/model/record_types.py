@@ -7,6 +7,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.scene.coating import MATERIAL_NAMES
 from gearidae.scene.limits import MOST_PAIRS
 
 __all__ = [
@@ -52,8 +53,8 @@ SPEED: Final = 2
 SCHEDULES: Final = 3
 """The speed that a drive holds among the schedules, beside both torques; and how many there are."""
 
-MATERIALS: Final = 2
-"""Materials that share the surface: bare first, then coated."""
+MATERIALS: Final = len(MATERIAL_NAMES)
+"""Materials that may share the interface: bare first, then coated, then mixed."""
 
 SLOTS_HIGH: Final = MOST_PAIRS
 """Tooth pairs per flank whose history can be kept, a power of two."""

@@ -17,6 +17,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.calls import node_force, node_residual
 from gearidae.engine.elastic.nodes import mark_out_of_reach
+from gearidae.engine.model.coverage import WHOLE, shares_of
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
@@ -44,7 +45,7 @@ def roller_force(m: Model, t: float, y: Floats) -> tuple[float, float]:
     known = m.state.history[0].pair == 0
     if elastic:
         return node_force(m, 0, known, t, y, height, speed, 1.0)
-    return pair_force(m, 0, known, t, height, speed, 0.0)
+    return pair_force(m, 0, known, t, height, speed, 0.0, WHOLE)
 
 
 @compiled(inline=True)
@@ -76,7 +77,8 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
         if elastic:
             load, stiffness = node_force(m, k, known, t, y, gap, rate, contact_length(m, inside))
         else:
-            load, stiffness = pair_force(m, k, known, t, gap, rate, inside)
+            shares = shares_of(m, coast, pair, inside)
+            load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
         load *= sign
         # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair
         # backwards along its path

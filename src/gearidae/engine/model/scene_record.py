@@ -13,6 +13,7 @@ from gearidae.engine.model.record_types import (
 )
 
 __all__ = [
+    "COVERAGE",
     "MATERIAL",
     "SCENE",
     "SCHEDULE",
@@ -21,12 +22,22 @@ __all__ = [
 
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # per sqrt(radius / pitch), with the material's share of the surface
+    ("gap_offset", REAL),  # by which its gap is wider than that of the pair, over sigma
+    ("potential_at", INT),  # by tooth and place: the potential of its loading branch over the pair's gap
     ("stretch_limit", REAL),  # over sigma; 0 where there is no hysteresis worth following
     ("joining_energy", REAL),  # energy lost by an asperity at contact onset, in the unit of `force_scale`
     ("table_at", INT),  # where its force law and its stored energy begin among the tables,
     ("energy_at", INT),
     ("number_at", INT),  # and the number of its asperities above a height
     ("table_count", INT),  # numbers in each
+)
+
+COVERAGE: Final = record_type(  # of one side's flanks
+    ("teeth", INT),  # rows, one after the other: of each tooth, or one for all
+    ("places", INT),  # fractions in each, at equal parts of the path of contact
+    ("values_at", INT),
+    ("inverse_teeth", REAL),
+    ("place_scale", REAL),  # places in a pitch
 )
 
 TORQUE: Final = record_type(
@@ -86,6 +97,10 @@ SCENE: Final = record_type(
     ("contact_gap", REAL),  # gap of contact onset and separation
     ("lowest_gap", REAL),  # the model holds above this gap of a pair
     ("material", MATERIAL, (MATERIALS,)),
+    ("by_place", INT),  # 1 where shares change with tooth and place and are not in the force scales
+    ("blended_at", INT),  # their loading branches over the pair's gap, in forces, side by side
+    ("patches", INT),  # 1 where the pinion's fractions are those of the interface
+    ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
     ("loading_at", INT),  # loading branch of all materials together, in forces
     ("potential_at", INT),  # potential of that branch
     ("slots", INT),  # histories per flank in use, a power of two, and of all flanks

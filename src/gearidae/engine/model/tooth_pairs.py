@@ -4,6 +4,9 @@ A pair is known by its number i. On the drive flank it stands ``phase - i`` pitc
 coast flank, mirrored about the pitch point and half a pitch later, ``coast_phase + i - phase``. A roller is pair 0 of
 the drive flank. All functions take the records of `gearidae.engine.model.state` and the state's numbers, and are
 compiled.
+
+Gaps and joined heights are those of the pair. A material whose gap is wider by an offset has both wider by it where its
+tables are read, and nowhere else.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from gearidae.contact.kernels.law import (
     set_branch,
     stretched_value,
 )
+from gearidae.engine.model.coverage import Shares, loading_of
 from gearidae.engine.model.state import (
     COAST,
     DRIVE,
@@ -188,13 +192,14 @@ def in_flight(m: Model) -> bool:
 
 @compiled(inline=True)
 def pair_force(
-    m: Model, k: int, known: bool, t: float, gap: float, rate: float, inside: float
+    m: Model, k: int, known: bool, t: float, gap: float, rate: float, inside: float, shares: Shares
 ) -> tuple[float, float]:
     """Force of one pair and its slope in the gap, scaled, with the pair's own history, the k-th.
 
-    Within a step that has turned the pair round, the history first goes through the turning point.
+    `shares` are those of the materials there, from `gearidae.engine.model.coverage.shares_of`. Within a step that has
+    turned the pair round, the history first goes through the turning point.
     """
-    force, slope = loading_value(m.tables, m.scene.loading_at, gap)
+    force, slope = loading_of(m, gap, shares)
     if known:
         h = m.state.history[k]
         turned = h.direction * rate < 0.0
@@ -202,7 +207,8 @@ def pair_force(
         if turned:
             turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate)
         for material in range(MATERIALS):
-            limit = m.scene.material[material].stretch_limit
+            own = m.scene.material[material]
+            limit = own.stretch_limit
             if limit == 0.0:
                 continue
             joined = h.joined[material]
@@ -216,9 +222,11 @@ def pair_force(
             if stretch < limit and not turned and kept:
                 q, dq = branch_value(m.rows[first:], stretch)
             else:
-                q, dq = stretched_value(m.tables[m.scene.material[material].table_at :], gap, joined)
-            force += m.scene.material[material].force_scale * q
-            slope += m.scene.material[material].force_scale * dq
+                offset = own.gap_offset
+                q, dq = stretched_value(m.tables[own.table_at :], gap + offset, joined + offset)
+            scale = own.force_scale * shares[material]
+            force += scale * q
+            slope += scale * dq
     if m.scene.kind == ROLLER:
         return force, slope
     length = contact_length(m, inside)
@@ -230,7 +238,8 @@ def set_joined(m: Model, k: int, material: int, joined: float) -> None:
     """Store the joined height of a turning point, and work out the branch that starts from it."""
     h, own = m.state.history[k], m.scene.material[material]
     h.joined[material] = joined
-    h.adhered_energy[material] = -own.joining_energy * loading_value(m.tables, own.number_at, joined)[0]
+    number = loading_value(m.tables, own.number_at, joined + own.gap_offset)[0]
+    h.adhered_energy[material] = -own.joining_energy * number
     set_branches(m, k, material)
 
 
@@ -241,9 +250,11 @@ def set_branches(m: Model, k: int, material: int) -> None:
     A law that is integrated when asked for keeps no branches, nor does an elastic contact. That of the stored energy
     waits until the energy balance asks for it.
     """
-    table = m.tables[m.scene.material[material].table_at :]
+    own = m.scene.material[material]
+    table = m.tables[own.table_at :]
     if m.scene.branch_length > 0 and branch_length(table) > 0:
-        set_branch(table, m.state.history[k].joined[material], m.rows[force_branch(m, k, material) :])
+        joined = m.state.history[k].joined[material] + own.gap_offset
+        set_branch(table, joined, m.rows[force_branch(m, k, material) :])
         m.rows[energy_branch(m, k, material) + B_PIECES] = 0.0
 
 

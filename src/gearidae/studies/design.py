@@ -1,0 +1,144 @@
+r"""Designs of experiments: points of the unit cube, and values of the keys there.
+
+A plain design draws every member on its own. The design for Sobol' indices (Saltelli et al. 2010,
+doi:10.1016/j.cpc.2009.09.018) draws two independent matrices A and B of N rows, and for each key i a matrix
+:math:`AB_i`, which is A with the column of that key taken from B: N (d + 2) members in all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from gearidae.errors import SceneError
+from gearidae.studies.distributions import Distribution
+
+__all__ = ["DESIGNS", "Design", "check_design", "pick_freeze_design", "plain_design"]
+
+Floats = NDArray[np.float64]
+
+DESIGNS = ("sobol", "random")
+_MOST_DIMENSIONS = 21_201
+"""Of Sobol' sequences whose direction numbers scipy has."""
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """The members of an ensemble.
+
+    Attributes
+    ----------
+    values : ndarray, shape (members, keys)
+        In SI units.
+    matrix : ndarray of str, shape (members,)
+        ``A``, ``B``, or ``AB`` with the number of the key that is taken from B; empty in a plain design.
+    row : ndarray of int64, shape (members,)
+        Row of the matrix.
+    """
+
+    values: Floats
+    matrix: NDArray[np.str_]
+    row: NDArray[np.int64]
+
+    @property
+    def drawn(self) -> NDArray[np.bool_]:
+        """Whether a member was drawn on its own, and is not a mixture of two others."""
+        return np.array([not name.startswith("AB") for name in self.matrix.tolist()])
+
+
+def check_design(size: int, design: str, seed: int, *, indices: bool) -> None:
+    """Refuse designs that cannot be made.
+
+    Parameters
+    ----------
+    size : int
+        Number of rows.
+    design : str
+    seed : int
+    indices : bool
+        Whether Sobol' indices are wanted.
+
+    Raises
+    ------
+    SceneError
+    """
+    if isinstance(size, bool) or not isinstance(size, int | np.integer) or size < 1:
+        raise SceneError("size", size, "must be a whole number, 1 or more")
+    if indices and (size < 2 or size & (size - 1)):
+        raise SceneError("size", size, "must be a power of 2 for Sobol' indices, such as 256 or 1024")
+    if design not in DESIGNS:
+        raise SceneError("design", design, f"must be one of {', '.join(DESIGNS)}")
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise SceneError("seed", seed, "must be a whole number, 0 or more")
+
+
+def plain_design(distributions: Sequence[Distribution], size: int, design: str, seed: int) -> Design:
+    """Draw every member on its own.
+
+    Parameters
+    ----------
+    distributions : sequence of Distribution
+    size : int
+        Number of members.
+    design : {"sobol", "random"}
+        Scrambled Sobol' points (doi:10.1016/0041-5553(67)90144-9), or pseudo-random ones.
+    seed : int
+
+    Returns
+    -------
+    Design
+    """
+    points = _points(len(distributions), size, design, seed)
+    return Design(_values(distributions, points), np.full(size, ""), np.arange(size, dtype=np.int64))
+
+
+def pick_freeze_design(distributions: Sequence[Distribution], size: int, design: str, seed: int) -> Design:
+    """Draw the matrices that Sobol' indices are estimated from.
+
+    Parameters
+    ----------
+    distributions : sequence of Distribution
+    size : int
+        Rows N of each matrix, a power of 2.
+    design, seed
+        As for `plain_design`. Sobol' points are of twice as many dimensions as there are keys, so that A and B are
+        independent.
+
+    Returns
+    -------
+    Design
+        Of N (d + 2) members: A, B, then each AB.
+    """
+    count = len(distributions)
+    points = _points(2 * count, size, design, seed)
+    one, other = (_values(distributions, part) for part in np.split(points, 2, axis=1))
+    blocks, names = [one, other], ["A", "B"]
+    for key in range(count):
+        mixed = one.copy()
+        mixed[:, key] = other[:, key]
+        blocks.append(mixed)
+        names.append(f"AB{key}")
+    return Design(np.concatenate(blocks), np.repeat(names, size), np.tile(np.arange(size), len(blocks)))
+
+
+def _points(dimensions: int, size: int, design: str, seed: int) -> Floats:
+    """Points of the unit cube, shape (size, dimensions)."""
+    generator = np.random.default_rng(seed)
+    if design == "random":
+        return generator.random((size, dimensions))
+    if dimensions > _MOST_DIMENSIONS:
+        raise SceneError(
+            "vary", f"{dimensions} columns", f"must be at most {_MOST_DIMENSIONS} for Sobol' points"
+        )
+    # the first of the next power of two: the same points, whatever the number
+    sequence = qmc.Sobol(dimensions, seed=generator)
+    return np.asarray(sequence.random_base2((size - 1).bit_length())[:size], dtype=np.float64)
+
+
+def _values(distributions: Sequence[Distribution], points: Floats) -> Floats:
+    columns = [each.quantiles(points[:, number]) for number, each in enumerate(distributions)]
+    return np.stack(columns, axis=1)

@@ -1,0 +1,234 @@
+"""Distributions of keys: frozen ones of scipy.stats, or texts with units such as ``normal(450 nm, 50 nm)``."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.errors import SceneError
+from gearidae.scene.group import did_you_mean, shorten
+from gearidae.scene.keys import find_key
+from gearidae.scene.units import from_text
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["KINDS", "Distribution", "read_distributions"]
+
+Floats = NDArray[np.float64]
+
+_CALL: Final = re.compile(r"\s*(\w+)\s*\((.*)\)\s*", re.DOTALL)
+_FIXED: Final = ("run.duration", "run.samples")
+_EDGE: Final = 2.0**-53
+"""Probabilities stay this far within 0 and 1: of an unbounded distribution those have no finite value."""
+
+
+class _Kind(NamedTuple):
+    """A distribution that can be written as a text."""
+
+    arguments: tuple[str, ...]
+    pure: tuple[int, ...]
+    """Places of arguments that are pure numbers, not of the key's unit."""
+    sound: Callable[..., bool]
+    rule: str
+    frozen: Callable[..., Any]
+
+
+def _stats() -> Any:
+    from scipy import stats
+
+    return stats
+
+
+KINDS: Final[Mapping[str, _Kind]] = {
+    "normal": _Kind(
+        ("mean", "standard deviation"),
+        (),
+        lambda mean, deviation: deviation > 0.0,
+        "a standard deviation above 0",
+        lambda mean, deviation: _stats().norm(mean, deviation),
+    ),
+    "truncnormal": _Kind(
+        ("mean", "standard deviation", "lowest", "highest"),
+        (),
+        lambda mean, deviation, low, high: deviation > 0.0 and low < high,
+        "a standard deviation above 0 and lowest below highest",
+        lambda mean, deviation, low, high: _stats().truncnorm(
+            (low - mean) / deviation, (high - mean) / deviation, mean, deviation
+        ),
+    ),
+    "uniform": _Kind(
+        ("lowest", "highest"),
+        (),
+        lambda low, high: low < high,
+        "lowest below highest",
+        lambda low, high: _stats().uniform(low, high - low),
+    ),
+    "lognormal": _Kind(
+        ("median", "geometric standard deviation"),
+        (1,),
+        lambda median, factor: median > 0.0 and factor > 1.0,
+        "a median above 0 and a geometric standard deviation above 1, a pure number",
+        lambda median, factor: _stats().lognorm(math.log(factor), scale=median),
+    ),
+}
+"""Names of texts. 68 % of a lognormal lie between the median divided by, and times, its geometric deviation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Distribution:
+    """What the values of one key are drawn from.
+
+    Attributes
+    ----------
+    key : str
+        Dotted key of the scene.
+    text : str
+        The distribution in words.
+    frozen : object
+        Its quantiles are ``frozen.ppf(probability)``, in SI units.
+    """
+
+    key: str
+    text: str
+    frozen: Any
+
+    def quantiles(self, probability: Floats) -> Floats:
+        """Values [SI] below which a share of the distribution lies.
+
+        Parameters
+        ----------
+        probability : ndarray, shape (n,)
+            Between 0 and 1.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+
+        Raises
+        ------
+        SceneError
+            If they are no finite numbers.
+        """
+        inside = np.clip(probability, _EDGE, 1.0 - _EDGE)
+        values = np.asarray(self.frozen.ppf(inside), dtype=np.float64)
+        if values.shape != probability.shape or not np.isfinite(values).all():
+            raise SceneError(self.key, self.text, "must be a distribution of finite numbers, one at a time")
+        return values
+
+    def log_density(self, values: Floats) -> Floats:
+        """Logarithm of the density [1/SI]; -inf outside its support.
+
+        Parameters
+        ----------
+        values : ndarray
+
+        Returns
+        -------
+        ndarray
+
+        Raises
+        ------
+        SceneError
+            If the distribution has no density.
+        """
+        if not callable(getattr(self.frozen, "logpdf", None)):
+            raise SceneError(self.key, self.text, "must have a density: a continuous distribution")
+        return np.asarray(self.frozen.logpdf(values), dtype=np.float64)
+
+
+def read_distributions(scene: Scene, vary: Mapping[str, Any]) -> tuple[Distribution, ...]:
+    """Read the distributions of some keys.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose keys they are.
+    vary : mapping of str to object
+        Dotted key to a frozen distribution of scipy.stats in SI units (anything with a method ``ppf``), or a text, see
+        `KINDS`.
+
+    Returns
+    -------
+    tuple of Distribution
+
+    Raises
+    ------
+    SceneError
+        If a key is none of a number, or what is given is no distribution.
+    """
+    if not isinstance(vary, Mapping) or not vary:
+        allowed = 'must be a table of keys and distributions, {"surface.energy": "lognormal(1.5 J/m^2, 1.2)"}'
+        raise SceneError("vary", shorten(vary), allowed)
+    return tuple(_read(scene, key, given) for key, given in vary.items())
+
+
+def _read(scene: Scene, key: str, given: Any) -> Distribution:
+    info = find_key(type(scene), key, given)
+    if not info.unit:
+        raise SceneError(key, shorten(given), "is no key of a number: a distribution needs one")
+    if key in _FIXED:
+        raise SceneError(key, shorten(given), "cannot be drawn: all runs take the same time")
+    if isinstance(given, str):
+        return Distribution(key, " ".join(given.split()), _of_text(key, given, info.unit))
+    if not callable(getattr(given, "ppf", None)):
+        allowed = f"must be a frozen distribution of scipy.stats, or a text: {_known()}"
+        raise SceneError(key, shorten(given), allowed)
+    return Distribution(key, _described(given), given)
+
+
+def _of_text(key: str, text: str, unit: str) -> Any:
+    """Make the frozen distribution that a text names."""
+    match = _CALL.fullmatch(text) if len(text) <= 200 else None
+    if match is None:
+        raise SceneError(key, shorten(text), f"must be one of {_known()}")
+    name, inside = match[1].lower(), match[2]
+    if name not in KINDS:
+        meant = did_you_mean(name, KINDS)
+        raise SceneError(key, shorten(text), f"must be one of {_known()}{'; ' if meant else ''}{meant}")
+    kind = KINDS[name]
+    parts = [part.strip() for part in inside.split(",")]
+    form = _form(name)
+    if len(parts) != len(kind.arguments):
+        raise SceneError(
+            key, shorten(text), f"must be {form}: {len(kind.arguments)} values, not {len(parts)}"
+        )
+    numbers = []
+    for place, part in enumerate(parts):
+        try:
+            numbers.append(_number(part, "1" if place in kind.pure else unit))
+        except ValueError as error:
+            raise SceneError(key, shorten(text), f"{kind.arguments[place]} {error}") from None
+    if not all(map(math.isfinite, numbers)) or not kind.sound(*numbers):
+        raise SceneError(key, shorten(text), f"must be {form} with {kind.rule}")
+    return kind.frozen(*numbers)
+
+
+def _number(text: str, unit: str) -> float:
+    """Read a number in SI or one with a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return from_text(text, unit)
+
+
+def _form(name: str) -> str:
+    return f"{name}({', '.join(KINDS[name].arguments)})"
+
+
+def _known() -> str:
+    return ", ".join(map(_form, KINDS))
+
+
+def _described(frozen: Any) -> str:
+    """Write a frozen distribution with its parameters."""
+    family = getattr(getattr(frozen, "dist", frozen), "name", type(frozen).__name__)
+    given = [f"{value:g}" for value in getattr(frozen, "args", ())]
+    given += [f"{name}={value:g}" for name, value in getattr(frozen, "kwds", {}).items()]
+    return f"{family}({', '.join(given)})"

@@ -1,0 +1,112 @@
+"""The runs of an ensemble: their scenes, and their results along one dimension ``member``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, sticking, verdict_codes
+from gearidae.errors import SceneError
+from gearidae.runs.sweep_plan import SweepPlan
+from gearidae.scene import Scene
+
+if TYPE_CHECKING:
+    from gearidae.studies.distributions import Distribution
+
+__all__ = ["along_members", "member_plan"]
+
+STICKS = {
+    "long_name": "whether the gear sticks",
+    "units": "1",
+    "comment": "1 of the verdicts sticks and runs back, 0 of the others, NaN if unfinished",
+}
+
+
+def member_plan(
+    base: Scene, values: Mapping[str, NDArray[np.float64]], drawn_from: Mapping[str, str]
+) -> SweepPlan:
+    """Make the scenes of all members, before anything is run.
+
+    Parameters
+    ----------
+    base : Scene
+        What the runs have in common.
+    values : mapping of str to ndarray, shape (members,)
+        Of each key, in SI units.
+    drawn_from : mapping of str to str
+        The keys' distributions, for messages.
+
+    Returns
+    -------
+    SweepPlan
+        With one dimension, along which the keys are walked together.
+
+    Raises
+    ------
+    SceneError
+        If values are not allowed: distributions are not cut off on their own, as the result would be that of others.
+    """
+    columns = {key: column.tolist() for key, column in values.items()}
+    scenes: list[Scene] = []
+    refused: list[SceneError] = []
+    for row in zip(*columns.values(), strict=True):
+        try:
+            scenes.append(_member(base, dict(zip(columns, row, strict=True))))
+        except SceneError as error:
+            refused.append(error)
+    if refused:
+        raise _refusal(refused, len(scenes) + len(refused), drawn_from)
+    return SweepPlan(base, (columns,), scenes)
+
+
+def _member(base: Scene, changes: Mapping[str, float]) -> Scene:
+    """Change some keys; tables that stay as they are are shared, so that a scene takes a few kilobytes."""
+    scene = base.replace(changes)
+    changed = {key.partition(".")[0] for key in changes}
+    shared = {name: getattr(base, name) for name in type(base).model_fields if name not in changed}
+    return scene.model_copy(update=shared)
+
+
+def _refusal(refused: Sequence[SceneError], count: int, drawn_from: Mapping[str, str]) -> SceneError:
+    """Say which distribution leaves the range of its key, and what to do about it."""
+    first = refused[0]
+    source = drawn_from.get(first.key)
+    drawn = f"drawn from {source}" if source else f"where {', '.join(drawn_from)} are drawn"
+    allowed = (
+        f"{first.allowed} ({drawn}; {len(refused)} of {count} members are refused: "
+        "cut the distribution off, as truncnormal(mean, standard deviation, lowest, highest) does)"
+    )
+    return SceneError(first.key, first.value, allowed)
+
+
+def along_members(ds: xr.Dataset, keys: Sequence[str]) -> xr.Dataset:
+    """Put runs that were walked together along the dimension ``member``, with their verdicts as numbers.
+
+    Parameters
+    ----------
+    ds : Dataset
+        Of a plan by `member_plan`.
+    keys : sequence of str
+
+    Returns
+    -------
+    Dataset
+        With the coordinates ``member`` (from 0) and one for each key, ``verdict_code`` and ``sticks``.
+    """
+    (dim,) = map(str, ds["status"].dims)
+    ds = ds.drop_indexes(dim).rename_dims({dim: "member"})
+    numbers = np.arange(ds.sizes["member"], dtype=np.int64)
+    codes = verdict_codes(ds["verdict"].values)
+    about: dict[str, Any] = {"long_name": "number of the member", "units": "1"}
+    return ds.assign_coords(member=("member", numbers, about)).assign(
+        verdict_code=("member", codes, CODE_ATTRIBUTES), sticks=("member", sticking(codes), STICKS)
+    )
+
+
+def names_of(distributions: Sequence[Distribution]) -> dict[str, str]:
+    """Distributions in words, by their keys."""
+    return {each.key: each.text for each in distributions}

@@ -1,0 +1,135 @@
+"""What was observed of real gears, and how probable it is for what a model predicts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.errors import SceneError
+from gearidae.scene.group import did_you_mean, shorten
+from gearidae.scene.units import from_text
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["RING", "STICKS", "Observation"]
+
+Floats = NDArray[np.float64]
+Model = Callable[["Scene"], float]
+
+STICKS: Final = "sticks"
+RING: Final = "ring_frequency"
+_MISJUDGED: Final = 0.02
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Observation:
+    """One observation of a pair of gears.
+
+    Attributes
+    ----------
+    of : str or callable
+        ``sticks``; ``ring_frequency``, that of the first impact response; another figure that the solver keeps of a
+        run, such as ``min_gear_speed``; or a function that takes a scene and returns a number, in place of a run.
+    value : bool, float or str
+        Whether the gear stuck, or what was measured, in SI units; a frequency also with its unit.
+    uncertainty : float or str, optional
+        Standard uncertainty of what was measured, that of the model included. Not of ``sticks``.
+    conditions : mapping of str to object, optional
+        Keys of the scene under which it was made.
+    misjudged : float, optional
+        Of ``sticks``: how probable it is that a gear does other than the model says, above 0 and up to 0.5.
+
+    Raises
+    ------
+    SceneError
+        On construction, if something is not allowed.
+    """
+
+    of: str | Model = STICKS
+    value: bool | float | str
+    uncertainty: float | str | None = None
+    conditions: Mapping[str, Any] = field(default_factory=dict)
+    misjudged: float = _MISJUDGED
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.conditions, Mapping):
+            raise SceneError("conditions", shorten(self.conditions), "must be a table of keys and values")
+        if not isinstance(self.of, str) and not callable(self.of):
+            raise SceneError("of", shorten(self.of), "must be the name of a figure, or a function of a scene")
+        if self.of == STICKS:
+            if not isinstance(self.value, bool | np.bool_):
+                raise SceneError(
+                    "value", shorten(self.value), "must be True or False: whether the gear stuck"
+                )
+            if not 0.0 < self.misjudged <= 0.5:
+                raise SceneError("misjudged", self.misjudged, "must be above 0 and at most 0.5")
+            return
+        object.__setattr__(self, "value", self._number("value", self.value))
+        object.__setattr__(self, "uncertainty", self._number("uncertainty", self.uncertainty))
+        if not self.spread > 0.0:
+            raise SceneError("uncertainty", self.spread, "must be above 0")
+
+    def _number(self, name: str, given: Any) -> float:
+        """Read a number in SI; of a frequency also one with a unit."""
+        if isinstance(given, str) and self.of == RING:
+            try:
+                return from_text(given, "Hz")
+            except ValueError as error:
+                raise SceneError(name, shorten(given), str(error)) from None
+        if (
+            isinstance(given, bool)
+            or not isinstance(given, int | float | np.number)
+            or not math.isfinite(given)
+        ):
+            raise SceneError(name, shorten(given), "must be a finite number in SI units")
+        return float(given)
+
+    @property
+    def spread(self) -> float:
+        """Standard uncertainty [SI]; NaN of ``sticks``."""
+        return math.nan if self.of == STICKS else float(self.uncertainty or 0.0)
+
+    @property
+    def figure(self) -> str:
+        """Name of what was observed."""
+        return self.of if isinstance(self.of, str) else getattr(self.of, "__name__", "function")
+
+    def check(self, known: tuple[str, ...]) -> None:
+        """Refuse a figure that runs do not have.
+
+        Raises
+        ------
+        SceneError
+        """
+        if isinstance(self.of, str) and self.of not in (*known, STICKS, RING):
+            meant = did_you_mean(self.of, known) or f"known are {STICKS}, {RING}, {', '.join(known)}"
+            raise SceneError("of", shorten(self.of), f"is no figure of a run; {meant}")
+
+    def log_likelihood(self, predicted: Floats) -> Floats:
+        r"""Logarithm of the probability (density) of the observation.
+
+        Parameters
+        ----------
+        predicted : ndarray
+            By the model [SI]: 1 or 0 of ``sticks``; NaN where it has none.
+
+        Returns
+        -------
+        ndarray
+            Of ``sticks``, :math:`\ln(1 - m)` where the model agrees and :math:`\ln m` where it does not, with m
+            `misjudged`, and ln 1/2 where the run was not finished, which says nothing. Of a number, that of a normal
+            distribution about the prediction; -inf without a prediction, such as of a contact that does not ring.
+        """
+        if self.of == STICKS:
+            share = np.where(predicted == float(self.value), 1.0 - self.misjudged, self.misjudged)
+            return np.asarray(np.log(np.where(np.isnan(predicted), 0.5, share)))
+        with np.errstate(over="ignore"):  # impossible, which it may be
+            squares = ((predicted - float(self.value)) / self.spread) ** 2
+        found = -0.5 * squares - math.log(self.spread * math.sqrt(2.0 * math.pi))
+        return np.where(np.isnan(found), -math.inf, found)

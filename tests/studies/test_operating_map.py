@@ -1,0 +1,110 @@
+"""Operating maps: each place says what the run there does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearidae as gd
+from gearidae.analysis.verdict import outcomes
+from gearidae.analysis.verdict_codes import Outcome
+from gearidae.cli import main
+from gearidae.errors import Interrupted
+from gearidae.records import EventKind
+from sweeps import without_times
+
+RATTLING = gd.preset("teodorescu2009_low_speed").replace(
+    {"run.duration": 0.06, "drive.harmonic": {"amplitude": 0.0, "frequency": "1 kHz"}}
+)
+OVER = {"drive.harmonic.amplitude": [0.0, 1e-16, 2e-16], "coating.sam_fraction": [0.9, 1.0]}
+
+
+@pytest.fixture(scope="module")
+def chart():
+    return gd.studies.operating_map(RATTLING, OVER)
+
+
+def test_a_stronger_harmonic_makes_the_teeth_cross_and_then_stick(chart):
+    """A run with its events says the same: changes of flank, and the verdict."""
+    assert chart.outcome.dims == ("amplitude", "sam_fraction")
+    expected = [Outcome.TURNS, Outcome.CROSSES_BACKLASH, Outcome.STICKS]
+    assert chart.outcome.sel(sam_fraction=1.0).values.tolist() == expected
+    for amplitude in OVER["drive.harmonic.amplitude"]:
+        run = gd.simulate(RATTLING.replace({"drive.harmonic.amplitude": amplitude}))
+        (outcome,) = outcomes(run)
+        place = chart.sel(amplitude=amplitude, sam_fraction=1.0)
+        assert int(place.flank_changes) == int((run.event_kind == EventKind.FLANK_CHANGE).sum())
+        assert place.verdict.item() == outcome.verdict
+        assert place.gearidae.scene.drive.harmonic[0].amplitude == amplitude
+
+
+def test_cut_off_and_resumed_it_ends_alike(chart, tmp_path):
+    target = tmp_path / "map.nc"
+
+    def cut_off(done, total):
+        if done >= 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as interrupted:
+        gd.studies.operating_map(RATTLING, OVER, progress=cut_off, jobs=1, archive=target)
+    assert (interrupted.value.dataset.outcome == Outcome.UNFINISHED).sum() >= 3
+    whole = gd.studies.operating_map(RATTLING, OVER, archive=target, resume=True)
+    xr.testing.assert_identical(without_times(whole), without_times(chart))
+    xr.testing.assert_identical(without_times(gd.open_archive(target)), without_times(chart))
+    # a sweep that kept the same is no operating map
+    gd.sweep(RATTLING, OVER, keep="extremes", archive=tmp_path / "sweep.nc")
+    with pytest.raises(gd.SceneError, match="of another sweep"):
+        gd.studies.operating_map(RATTLING, OVER, archive=tmp_path / "sweep.nc", resume=True)
+
+
+@pytest.mark.parametrize("over", [{}, {"drive.torque": [1e-18]}, OVER | {"drive.torque": [1e-18]}, None, 3])
+def test_it_takes_two_keys(over):
+    with pytest.raises(gd.SceneError) as refused:
+        gd.studies.operating_map(RATTLING, over)
+    assert refused.value.key == "over"
+
+
+def test_it_takes_gears():
+    with pytest.raises(gd.SceneError, match="with gears"):
+        gd.studies.operating_map(gd.preset("roller_slow"), {"roller.speed": [0.01], "roller.height": [1e-8]})
+
+
+def test_the_picture_has_a_cell_for_each_run(chart):
+    ax = gd.plot.outcome_map(chart)
+    (cells,) = ax.collections
+    assert np.array_equal(cells.get_array().reshape(3, 2), chart.outcome.values)
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert words == ["turns", "crosses the backlash", "sticks"]
+    assert ax.get_xlabel() == "SAM (%)"
+    stuck = (chart.outcome == Outcome.STICKS) & (chart.flank_changes > 0)
+    assert len(ax.get_lines()[0].get_xdata()) == int(stuck.sum()) > 0
+    ax.figure.canvas.draw()
+    with pytest.raises(gd.SceneError, match="operating map"):
+        gd.plot.outcome_map(chart.drop_vars("outcome"))
+
+
+def test_keys_that_are_words_and_falling_values_are_drawn(chart):
+    laws = gd.studies.operating_map(
+        RATTLING.replace({"run.duration": 1e-3}),
+        {"contact.asperity": ["jkr", "dmt"], "coating.sam_fraction": [1.0, 0.9]},
+    )
+    ax = gd.plot.outcome_map(laws)
+    assert [text.get_text() for text in ax.get_yticklabels()] == ["jkr", "dmt"]
+    ax.figure.canvas.draw()
+    turned = gd.plot.outcome_map(chart.isel(amplitude=slice(None, None, -1)))
+    assert np.array_equal(turned.collections[0].get_array().reshape(3, 2), chart.outcome.values)
+
+
+def test_the_command(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    command = [
+        *("operating-map", "teodorescu2009_low_speed", "--set", "run.duration=2 ms"),
+        *("--over", "drive.torque=4e-18,4.5e-18", "coating.sam_fraction=1,0.9,0.8"),
+    ]
+    assert main(command) == 0
+    told = capsys.readouterr().out
+    assert "..." in told
+    assert "turns: 6" in told
+    assert main(["plot", "teodorescu2009_low_speed_operating_map.nc", "-o", "map.png"]) == 0
+    assert (tmp_path / "map.png").exists()
