@@ -24,7 +24,7 @@ from gearidae.archive.variables import (
     Variable,
 )
 from gearidae.cli.session import app
-from gearidae.engine.model import state
+from gearidae.engine.model import checkpoint_record
 from gearidae.records import EventKind, Flank
 from gearidae.scene import describe_keys
 
@@ -115,8 +115,8 @@ def command_tables() -> str:
 
 
 def state_tables() -> str:
-    """List what a checkpoint carries, from the declarations in `gearidae.engine.model.state` and their comments."""
-    source = inspect.getsource(state)
+    """List what a checkpoint carries, from the declarations in `gearidae.engine.model` and their comments."""
+    source = inspect.getsource(checkpoint_record)
     tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     comments = {one.start[0]: one.string.removeprefix("# ") for one in tokens if one.type == tokenize.COMMENT}
     records = {}

@@ -164,4 +164,8 @@ def test_generated_tables_are_complete(monkeypatch):
     for option in ("--over", "--jobs", "--map", "--quiet", "--log"):
         assert f"`{option}`" in program
     assert "--no-" not in program
+    kept = generate.state_tables()
+    for record in ("STATE", "HISTORY", "ENERGY", "PROGRESS"):
+        assert f"## `{record}`" in kept
+    assert "`state.energy.drive_work`" in kept
     sys.modules.pop("generate", None)

@@ -306,4 +306,32 @@ MUTANTS = (
         "question = Question(STORED, k,",
         ("engine/test_elastic.py",),
     ),
+    Mutant(
+        "curvature of a measured surface averaged as if it had one direction",
+        "surfaces/statistics.py",
+        "m4 = 0.375 * float(",
+        "m4 = 0.5 * float(",
+        ("surfaces/test_measured.py",),
+    ),
+    Mutant(
+        "summits of a measured surface left at the points of the grid",
+        "surfaces/summits.py",
+        ".astype(np.float64) + _to_the_top(field, rows, columns)",
+        ".astype(np.float64)",
+        ("surfaces/test_measured.py",),
+    ),
+    Mutant(
+        "what was filled in the holes of a measured surface counted as measured",
+        "surfaces/statistics.py",
+        "            inside &= far[np.ix_(*places)]",
+        "            pass",
+        ("surfaces/test_measured.py",),
+    ),
+    Mutant(
+        "bands of a spectrum that add up their lines in place of the mean",
+        "plot/bands.py",
+        "means = np.add.reduceat(density[crowded], first) / count",
+        "means = np.add.reduceat(density[crowded], first)",
+        ("plot/test_spectra_and_maps.py",),
+    ),
 )

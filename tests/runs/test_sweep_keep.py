@@ -158,7 +158,9 @@ def test_command_line(tmp_path, monkeypatch, capsys):
     assert main(["info", "kept.nc"]) == 0
     out = capsys.readouterr().out
     assert "no samples" in out
-    assert main(["plot", "kept.nc"]) == 2
+    assert main(["plot", "kept.nc"]) == 0  # the outcomes, where there are no samples
+    assert main(["plot", "kept.nc", "--picture", "gear_speed", "-o", "speed.png"]) == 2
+    assert "no samples of it" in capsys.readouterr().err
     assert main(["report", "kept.nc"]) == 2
     assert "have not been kept" in capsys.readouterr().err
 

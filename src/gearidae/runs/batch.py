@@ -169,13 +169,18 @@ class Batch:
                     future = executor.submit(solve_and_leave, self._scenes[number], self._backend, self._keep)
                 futures[future] = number
             for future in as_completed(list(futures)):
-                number = futures.pop(future)  # which holds the run's samples
+                number = futures[future]
                 self._finish(number, self._outcome(number, future.result))
+                del futures[
+                    future
+                ]  # which holds the run's samples; after it was stored, which Ctrl-C may prevent
         except BaseException:
             self._cancelled.set()
             for future, number in futures.items():
                 if not future.cancel() and future.done() and future.exception() is None:
-                    self._note(number, future.result())
+                    left = future.result()
+                    if left.solution.status != "interrupted":
+                        self._note(number, left)
             raise
 
     def _solve_here(self, number: int) -> Left:

@@ -1,0 +1,132 @@
+"""The commands that run a study: many runs that answer one question. `gearidae.cli.app` has the others."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from gearidae.cli import completing
+from gearidae.cli.app import Case, Dask, Output, Overwrite, Settings, app
+
+__all__ = ["coating_map", "ensemble", "operating_map", "threshold"]
+
+
+@app.command(name="coating-map")
+def coating_map(
+    case: Case,
+    *,
+    over: Annotated[
+        list[str] | None,
+        Parameter(
+            help="SAM fractions, coating.sam_fraction=1:0.5:-0.01, and other keys for several lines; repeatable.",
+            consume_multiple=False,
+            completer=completing.keys,
+        ),
+    ] = None,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    resume: Annotated[
+        bool, Parameter(help="Resume an interrupted map; its finished runs are reused.")
+    ] = False,
+    dask: Dask = None,
+    overwrite: Overwrite = False,
+) -> int:
+    """Map the frequency of the impact response against the SAM fraction.
+
+    Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
+    """
+    from gearidae.cli.coating import map_case
+
+    return map_case(
+        str(case), over or [], output, settings or [], jobs, dask, resume=resume, overwrite=overwrite
+    )
+
+
+@app.command
+def threshold(
+    case: Case,
+    *,
+    over: Annotated[
+        str,
+        Parameter(help="Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7."),
+    ],
+    exits: Annotated[int, Parameter(help="Mesh exits to wait for.")] = 100,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    overwrite: Overwrite = False,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished search in the output file.")] = False,
+) -> int:
+    """Search where the gear begins to stick, against the number of mesh exits waited for."""
+    from gearidae.cli.threshold import search_threshold
+
+    given = settings or []
+    return search_threshold(str(case), over, exits, output, given, jobs, overwrite=overwrite, resume=resume)
+
+
+@app.command(name="operating-map")
+def operating_map(
+    case: Case,
+    *,
+    over: Annotated[
+        list[str],
+        Parameter(
+            help="Two keys and their values, drive.torque=4e-18:5e-18:1e-19 coating.sam_fraction=1:0.4:-0.1.",
+            consume_multiple=False,
+            completer=completing.keys,
+        ),
+    ],
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    dask: Dask = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished map in the output file.")] = False,
+    overwrite: Overwrite = False,
+) -> int:
+    """Map over two keys where the gear turns, where it sticks, and where its teeth cross the backlash.
+
+    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+    """
+    from gearidae.cli.operating_map import map_outcomes
+
+    given = settings or []
+    return map_outcomes(str(case), over, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+
+
+@app.command
+def ensemble(
+    case: Case,
+    *,
+    vary: Annotated[
+        list[str],
+        Parameter(
+            help="Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
+            "uniform(lowest, highest), lognormal(median, geometric deviation); repeatable.",
+            consume_multiple=False,
+            completer=completing.keys,
+        ),
+    ],
+    size: Annotated[int, Parameter(help="Number of members; with --of, of rows, a power of 2.")],
+    of: Annotated[
+        str | None, Parameter(help="Figure whose Sobol indices are wanted: sticks, min_gear_speed and so on.")
+    ] = None,
+    design: Annotated[str, Parameter(help="sobol or random.")] = "sobol",
+    seed: Annotated[int, Parameter(help="Seed of the design.")] = 0,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    dask: Dask = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished ensemble in the output file.")] = False,
+    overwrite: Overwrite = False,
+) -> int:
+    """Run a scene with keys drawn from distributions: how often it sticks, and what that depends on.
+
+    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+    """
+    from gearidae.cli.ensemble import run_ensemble
+
+    drawn = {"size": size, "design": design, "seed": seed, "of": of}
+    given = settings or []
+    return run_ensemble(str(case), vary, drawn, output, given, jobs, dask, resume=resume, overwrite=overwrite)
