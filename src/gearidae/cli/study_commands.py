@@ -9,7 +9,7 @@ from cyclopts import Parameter
 from gearidae.cli import completing
 from gearidae.cli.app import Case, Dask, Output, Overwrite, Settings, app
 
-__all__ = ["coating_map", "ensemble", "operating_map", "threshold"]
+__all__ = ["coating_map", "ensemble", "life", "operating_map", "threshold"]
 
 
 @app.command(name="coating-map")
@@ -130,3 +130,46 @@ def ensemble(
     drawn = {"size": size, "design": design, "seed": seed, "of": of}
     given = settings or []
     return run_ensemble(str(case), vary, drawn, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+
+
+@app.command
+def life(
+    case: Case,
+    *,
+    law: Annotated[str, Parameter(help="Loss law: contacts, adhesion_work or sliding_work.")],
+    parameter: Annotated[
+        list[str],
+        Parameter(help="Parameter of the law, such as energy='2 J/m^2'; repeatable.", consume_multiple=False),
+    ],
+    arrhenius: Annotated[
+        list[str] | None,
+        Parameter(
+            help="Factor of Arrhenius: activation_energy, activation_volume and temperature; repeatable.",
+            consume_multiple=False,
+        ),
+    ] = None,
+    passages: Annotated[float, Parameter(help="Passages of each tooth of the pinion at most.")] = 1e12,
+    fraction: Annotated[float, Parameter(help="Mean coverage at which the life ends.")] = 0.0,
+    resolved: Annotated[
+        str, Parameter(help="Coverage: uniform, by place, or by tooth and place.")
+    ] = "uniform",
+    tolerance: Annotated[float, Parameter(help="Relative tolerance of each jump.")] = 3e-3,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    overwrite: Overwrite = False,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished life in the output file.")] = False,
+) -> int:
+    """Follow the coverage over the passages of the teeth until the gear sticks."""
+    from gearidae.cli.life import follow_life
+
+    options = {
+        "passages": passages,
+        "fraction": fraction,
+        "resolved": resolved,
+        "tolerance": tolerance,
+        "jobs": jobs,
+        "overwrite": overwrite,
+        "resume": resume,
+    }
+    return follow_life(str(case), law, parameter, arrhenius or [], options, output, settings or [])

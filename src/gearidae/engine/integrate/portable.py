@@ -72,7 +72,9 @@ def run(
     driver, progress = m.work.driver, m.state.progress
     driver.time = 0.0 if resume is None else problem.restore(resume, y)
     solver = _Solver(problem, m, y)
-    if total > 0 and progress.next_sample == 0:  # the state there, whatever rounding has made of the sample's time
+    if (
+        total > 0 and progress.next_sample == 0
+    ):  # the state there, whatever rounding has made of the sample's time
         observe_at(solver.located.place, float(driver.time), y, out.rows[0])
         driver.rows = progress.next_sample = 1
     solver.start(y)
