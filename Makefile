@@ -22,13 +22,14 @@ run: $(VENV)/installed
 	    -o out/low_speed.nc --overwrite
 	$(BIN)/gearidae plot out/low_speed.nc -o out/low_speed.png --overwrite
 
-# Two processes: each compiles the solver once, and files stay whole, whose runs are shared by their tests.
+# Two processes: each compiles the solver once, and files stay whole, whose runs are shared by their tests. In their own
+# order, so that the long ones of the engine do not come last, with one process idle.
 test: lint
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 # Both drivers, scenes, archives, pictures and the command line. The warning is one that numpy itself switches off.
 test-lowest: $(LOWEST)/installed
-	$(LOWEST)/bin/python -m pytest -q -n 2 --dist loadfile -W "ignore:numpy.ndarray size changed:RuntimeWarning" \
+	$(LOWEST)/bin/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -W "ignore:numpy.ndarray size changed:RuntimeWarning" \
 	    tests/engine/test_backends.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
 	    tests/archive/test_lock.py tests/analysis/test_measured.py \
 	    tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py

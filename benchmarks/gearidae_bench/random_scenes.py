@@ -19,6 +19,9 @@ SCENES_PER_SURFACE = 4
 ELASTIC_EVERY, ELASTIC_AT = 5, 3
 """One scene of this many has elastic bodies."""
 
+RADIUS_FORCE_EVERY = 3
+"""In one pair of gears of this many a force pays for the changing radius of curvature."""
+
 _ROLLERS = 0.15
 _SILICON = 2330.0  # [kg/m^3], of which the random gears are solid discs
 _TRIES = 1000
@@ -30,7 +33,8 @@ def random_scene(seed: int, number: int) -> Scene:
     Roughness 1..30 nm, tip radius 20 nm..5 um, 1e12..1e15 asperities per square metre, surface energy 0..3 J/m^2,
     modulus 50..400 GPa, SAM fraction 0..1, torque over twelve decades or none, 12..120 teeth, backlash 0..1 um, speed
     up to 1e4 rad/s either way, tolerance 1e-3..1e-10; special values (nothing, all, a start exactly on a guard) more
-    often than chance would have them. Every fifth scene has elastic bodies, of 2..400 GPa.
+    often than chance would have them. Every fifth scene has elastic bodies, of 2..400 GPa; in every third pair of gears
+    a force pays for the changing radius.
 
     Parameters
     ----------
@@ -61,7 +65,8 @@ def random_scene(seed: int, number: int) -> Scene:
     }
     rolls = rng.random() < _ROLLERS
     scene = Scene.from_dict(data | {"roller": _roller(rng, surface)}) if rolls else _gears(rng, data)
-    return scene.replace({"run.duration": _duration(scene, _log(rng, 10.0, 1000.0))})
+    force = {} if rolls else {"mesh.radius_force": number % RADIUS_FORCE_EVERY == 0}
+    return scene.replace({"run.duration": _duration(scene, _log(rng, 10.0, 1000.0)), **force})
 
 
 def _duration(scene: Scene, units: float) -> float:

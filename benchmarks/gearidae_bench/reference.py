@@ -109,7 +109,9 @@ class Reference:
 
 
 _YOUNGER: Final[dict[str, dict[str, Any]]] = {
-    "run": {"method": "auto", "stop": "time"},
+    "run": {"method": "auto", "stop": "time", "exposures": 0},
+    "mesh": {"radius_force": False},
+    "surface": {"provenance": ""},
     "drive": {"speed_gain": 0.0},
     "load": {"viscous": 0.0},
     "coating": {"pairing": "patches", "thickness": 0.0},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from itertools import pairwise
 
 import numpy as np
@@ -67,7 +66,7 @@ def test_extremes_are_those_of_a_million_samples(scene):
 def test_nothing_depends_on_the_samples_nor_mesh_exits_on_the_driver(backend):
     scene = LOW.replace({"run.duration": 0.05})
     runs = [engine.solve(scene, samples=samples, backend=backend) for samples in (2, 501)]
-    assert asdict(runs[0].extremes) == pytest.approx(asdict(runs[1].extremes), rel=0, abs=0, nan_ok=True)
+    assert repr(runs[0].extremes) == repr(runs[1].extremes)  # to the last bit, NaN too
     events = runs[1].events
     exits = (events.kind == EventKind.MESH_EXIT) & (events.flank == Flank.DRIVE)
     assert runs[0].extremes.mesh_exits == exits.sum() > 0
@@ -95,7 +94,7 @@ def test_a_resumed_run_keeps_the_same_extremes():
         backend="native",
         begin=engine.Start(checkpoint=start.checkpoint, time=start.time),
     )
-    assert asdict(again.extremes) == pytest.approx(asdict(ended.extremes), rel=0, abs=0, nan_ok=True)
+    assert repr(again.extremes) == repr(ended.extremes)  # to the last bit, NaN too
 
 
 def test_elastic_flanks_stay_apart_where_rigid_ones_would_not():

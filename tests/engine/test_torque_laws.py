@@ -120,7 +120,7 @@ def test_a_law_does_what_the_same_harmonic_does(shaft):
     assert named.balance.drive_work == pytest.approx(own.balance.drive_work, rel=1e-5, abs=0)
     assert named.balance.dry_loss == pytest.approx(own.balance.dry_loss, rel=1e-5, abs=0)
     assert np.count_nonzero(named.events.kind == EventKind.TURNING_POINT) > 3
-    assert_balanced(named, scene)
+    assert_balanced(named.balance, scene)
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])

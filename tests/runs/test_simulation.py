@@ -48,7 +48,14 @@ def test_roller_run():
 def test_settings_of_the_call_end_up_in_the_scene():
     ds = gd.simulate(LOW, rtol=1e-5, t_end=1e-3, samples=51)
     run = json.loads(ds.attrs["scene"])["run"]
-    assert run == {"duration": 1e-3, "samples": 51, "rtol": 1e-5, "method": "auto", "stop": "time"}
+    assert run == {
+        "duration": 1e-3,
+        "samples": 51,
+        "rtol": 1e-5,
+        "method": "auto",
+        "stop": "time",
+        "exposures": 0,
+    }
     assert (ds.attrs["rtol"], ds.attrs["t_end"]) == (1e-5, 1e-3)
     assert (ds.sizes["time"], ds.time[-1]) == (51, 1e-3)
     same = gd.simulate(LOW.replace({"run.rtol": 1e-5, "run.duration": 1e-3, "run.samples": 51}))

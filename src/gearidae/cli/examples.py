@@ -30,6 +30,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "operating-map": (
         "gearidae operating-map mine.toml --over drive.torque=4e-18:5e-18:2e-19 coating.sam_fraction=1:0.4:-0.1",
     ),
+    "life": (
+        'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
+        'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',
+    ),
     "assess": (
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',

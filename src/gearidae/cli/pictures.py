@@ -126,8 +126,9 @@ def _open(archive: Path) -> tuple[xr.Dataset, str]:
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return ds, "overview" if sampled or not swept_dims(ds) else "outcome"
     except SceneError:
-        try:
-            return gd.analysis.open_map(archive), "coating_map"
-        except SceneError:
-            pass
+        for read, usual in ((gd.analysis.open_map, "coating_map"), (gd.studies.open_life, "life")):
+            try:
+                return read(archive), usual
+            except SceneError:
+                pass
         raise

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from gearidae.studies.ensemble import ensemble
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.life import life
+    from gearidae.studies.life_file import open_life
     from gearidae.studies.observations import Observation
     from gearidae.studies.operating_map import operating_map
     from gearidae.studies.predict import predict
@@ -40,6 +41,7 @@ __all__ = [
     "ensemble",
     "life",
     "natural_frequency",
+    "open_life",
     "open_map",
     "operating_map",
     "predict",
@@ -65,6 +67,7 @@ _HOME = {
     "life": "life",
     "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
+    "open_life": "life_file",
     "open_map": "coating_map",
     "operating_map": "operating_map",
     "predict": "predict",

@@ -25,6 +25,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.stack import held
 from gearidae.errors import Interrupted, SceneError
 from gearidae.scene import describe_key
+from gearidae.studies.product_file import read_product
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -37,8 +38,6 @@ _FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
 _FRACTION = "coating.sam_fraction"
 _TORQUE = "drive.torque"
 _PARTS_OF_TORQUE = (0.7, 0.85, 1.0, 1.15, 1.3)
-_HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
-"""How netCDF files begin, those of version 4 and the older ones."""
 _SPEED = {
     "units": "rad s-1",
     "long_name": "median speed of the gear",
@@ -205,25 +204,7 @@ def open_map(path: str | os.PathLike[str]) -> xr.Dataset:
     SceneError
         If the file cannot be read or is no coating map.
     """
-    source = Path(path)
-    if not source.is_file():
-        raise SceneError("map", path, "there is no such file")
-    try:
-        with source.open("rb") as file:
-            head = file.read(8)
-    except OSError as error:
-        raise SceneError("map", path, f"cannot be read ({error.strerror})") from error
-    if not head.startswith(_HEADERS):
-        raise SceneError("map", path, "is no coating map but another kind of file; make one with coating-map")
-    try:
-        with xr.open_dataset(source, decode_times=False) as opened:
-            chart = opened.load()
-    except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
-        raise SceneError("map", path, f"is damaged ({type(error).__name__})") from error
-    try:
-        return require_map(chart)
-    except SceneError as error:
-        raise SceneError("map", path, error.allowed) from None
+    return read_product(path, "map", "coating map", "coating-map", require_map)
 
 
 def _fractions(given: ArrayLike | None) -> list[float]:

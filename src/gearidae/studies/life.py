@@ -22,6 +22,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive import save
+from gearidae.archive.verdict import is_scheduled
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor
@@ -310,7 +311,7 @@ def _check(
     """Refuse what is not allowed; return the mesh cycles of a window that count."""
     if scene.gears is None or scene.drive is None or scene.load is None:
         raise SceneError("scene", scene.name, "must be a scene with gears")
-    if scene.drive.schedule or scene.load.schedule:
+    if is_scheduled(scene.to_dict()):
         raise SceneError("drive.schedule", "a schedule", "must not be there: the windows of a life are alike")
     if not isinstance(law, LossLaw):
         raise SceneError("law", type(law).__name__, "must be a loss law, see gearidae.wear.loss_law")
