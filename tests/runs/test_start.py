@@ -71,6 +71,22 @@ def test_a_run_cut_in_two_is_the_uninterrupted_one_to_the_last_bit(case, model, 
     assert second.attrs["t_end"] == 2 * half
 
 
+@pytest.mark.parametrize("backend", DRIVERS)
+def test_a_knot_at_the_cut_is_an_event_of_the_second_part(backend):
+    half = 2.0**-7
+    knots = [(0.0, 0.0), (half, 1e-18), (1.5 * half, -1e-18)]
+    scene = LOW.replace({"run.duration": half, "run.samples": SAMPLES, "drive.schedule": knots})
+    first = gd.simulate(scene, backend=backend)
+    second = gd.simulate(scene, backend=backend, start=first)
+    both = {"run.duration": 2 * half, "run.samples": 2 * SAMPLES - 1, "run.checkpoints": [half]}
+    whole = gd.simulate(scene.replace(both), backend=backend)
+    assert_continued(first, second, whole)
+    assert (second.event_kind[0], second.event_time[0]) == (
+        EventKind.SCHEDULE_KNOT,
+        whole.event_time[first.sizes["event"]],
+    )
+
+
 def test_a_joined_chain_is_the_uninterrupted_run():
     half = LOW.run.duration
     first = gd.simulate(LOW)

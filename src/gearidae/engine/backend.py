@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.changeover import change_over, deepen
-from gearidae.engine.continuing import Origin, checkpoint_of_start, problem_from
+from gearidae.engine.continuing import Origin, checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.integrate.driver import Block, Ending
 from gearidae.engine.model.problem import Problem
@@ -198,10 +198,13 @@ def follow(
         ready_driver(name, problem)
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
-        resume = begin.checkpoint
+        resume, at_start = begin.checkpoint, np.empty((0, 5))
         if resume is None and begin.origin is not None:
             resume = checkpoint_of_start(scene, begin.origin)
+            at_start = knots_at_start(problem)
         for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
+            if len(at_start):
+                block.events, at_start = np.concatenate([at_start, block.events]), np.empty((0, 5))
             take(block, statistics, begin.wall_time + time.perf_counter() - started)
             reached = block.time
             balance, extremes = block.balance or balance, block.extremes or extremes

@@ -43,9 +43,18 @@ from gearidae.engine.model.state import (
 from gearidae.engine.model.tooth_pairs import set_joined
 from gearidae.engine.model.torques.schedule import segment_ends
 from gearidae.errors import SceneError
+from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
 
-__all__ = ["MAY_DIFFER", "Origin", "checkpoint_of_start", "end_of", "problem_from", "refuse_other_bodies"]
+__all__ = [
+    "MAY_DIFFER",
+    "Origin",
+    "checkpoint_of_start",
+    "end_of",
+    "knots_at_start",
+    "problem_from",
+    "refuse_other_bodies",
+]
 
 MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
 """Tables in which a run may differ from the one it goes on from; its own ``initial`` then says nothing."""
@@ -152,6 +161,21 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)
+
+
+def knots_at_start(problem: Problem) -> Floats:
+    """Return the event of a schedule that has a knot where a continued run begins; the run before ended just there.
+
+    Returns
+    -------
+    ndarray, shape (0 or 1, 5)
+        Time [s], kind, pair, flank, gap rate [m/s].
+    """
+    s, tables = problem.model.scene, problem.model.tables
+    if not any((segment_ends(own, tables) == s.start).any() for own in s.schedule):
+        return np.empty((0, 5))
+    time = float(s.start * s.time_unit)
+    return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0]])
 
 
 def _restored(scene: Scene, words: Floats, start: float) -> tuple[Problem, Floats]:
