@@ -17,6 +17,8 @@ import numpy as np
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import GeometryError, mesh_geometry
 from gearidae.scene import Coating, Gears, Initial, Mesh, Roller, Run, Scene, Surface
+from gearidae.scene.coating import THICKEST
+from gearidae.scene.coating_table import MOST_PLACES
 from gearidae.scene.group import Group
 from gearidae.scene.quantity import Count, Quantity
 
@@ -201,7 +203,41 @@ def _tables(draw: _Draw, rolls: bool) -> dict[str, Any]:
     for shaft in ("drive", "load"):
         if shaft in moved:
             moved[shaft] |= _variations(draw, moved[shaft]["torque"], duration, unit)
-    return tables | moved
+    tables |= moved
+    _add_coating(draw, tables)
+    if not rolls:
+        _add_gear_keys(draw, tables)
+    return tables
+
+
+def _add_coating(draw: _Draw, tables: dict[str, Any]) -> None:
+    """Draw asperities whose forces have a range, and coatings with two sides, a thickness and worn places."""
+    coating, surface = tables["coating"], tables["surface"]
+    if draw.often(0.2):
+        tables["contact"]["asperity"] = "maugis"
+        surface["interaction_range"] = draw.value(Surface, "interaction_range", 0.165e-9)
+    if draw.often(0.3):
+        coating["thickness"] = min(draw.value(Coating, "thickness", 2.5e-9), THICKEST * surface["roughness"])
+    if draw.often(0.3):
+        coating["pairing"] = "independent"
+        coating["pinion_fraction"], coating["gear_fraction"] = draw.rng.choice([0.0, 0.3, 1.0], 2).tolist()
+    if "gears" in tables and draw.often(0.15):
+        coating.pop("pinion_fraction", None)
+        tables["contact"]["model"] = "asperity"
+        teeth = tables["gears"]["pinion_teeth"] if draw.often(0.5) else 1
+        places = int(draw.rng.choice([1, 2, 7, MOST_PLACES]))
+        coating["pinion_table"] = draw.rng.choice([0.0, 0.5, 1.0], (teeth, places)).tolist()
+
+
+def _add_gear_keys(draw: _Draw, tables: dict[str, Any]) -> None:
+    """Draw the force of the changing radius, exposures, viscous drag and a drive that holds a speed."""
+    tables["mesh"]["radius_force"] = draw.often(0.5)
+    if draw.often(0.2):
+        tables["run"]["exposures"] = int(draw.value(Run, "exposures", 8.0))
+    if draw.often(0.2):
+        tables["load"]["viscous"] = draw.between(1e-30, 1e-9)
+    if draw.often(0.2):
+        tables["drive"] |= {"speed": draw.between(1e-3, 1e5), "speed_gain": draw.between(1e-24, 1e-9)}
 
 
 def _samples(draw: _Draw, duration: float) -> int | str:
