@@ -12,7 +12,7 @@ VENV   ?= .venv
 LOWEST ?= .venv-lowest
 BIN    := $(VENV)/bin
 
-.PHONY: run test test-lowest lint types docs bench stress clean
+.PHONY: run test test-lowest lint warm types docs bench stress clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/installed
@@ -24,8 +24,15 @@ run: $(VENV)/installed
 
 # Two processes: each compiles the solver once, and files stay whole, whose runs are shared by their tests. In their own
 # order, so that the long ones of the engine do not come last, with one process idle.
-test: lint
+test: $(VENV)/installed-dev
+	$(MAKE) --jobs 2 lint warm
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
+
+# Compile beforehand what both processes of the tests need, while the linters run.
+warm: $(VENV)/installed-dev
+	$(BIN)/python -c 'import gearidae as gd; \
+	    [gd.simulate(gd.preset(name).replace({"contact.model": model}), t_end=1e-6, samples=3, backend=driver) \
+	     for name in ("teodorescu2009", "roller_slow") for model in ("asperity", "elastic") for driver in ("native", "sksundae")]'
 
 # Both drivers, scenes, archives, pictures and the command line. The warning is one that numpy itself switches off.
 test-lowest: $(LOWEST)/installed

@@ -1,5 +1,6 @@
 """Compiled code is kept on disk, found again, and never stale."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -20,25 +21,37 @@ NOTHING = MappingProxyType({})
 
 
 def run(folder, model, code=RUN, more=NOTHING):
+    """Run a program with its compiled code in a folder, None for that of this process."""
     own = {
         "PYTHONPATH": str(Path(compiled.__file__).parents[1])
     }  # the package that is tested, wherever it lies
+    if folder is None:
+        own = dict(os.environ) | own
+    else:
+        own |= {"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)}
     return subprocess.run(
         [sys.executable, "-c", code.format(model=model)],
-        env={"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)} | own | more,
+        env=own | more,
         capture_output=True,
         text=True,
         check=True,
     )
 
 
+WITHOUT = MappingProxyType({compiled.PLAIN: "1"})
+MODELS = ("asperity", "elastic")
+
+
 @pytest.fixture(scope="module")
 def first_runs(tmp_path_factory):
-    """A folder in which a process after the other has compiled what it needs, with what each left there and said."""
+    """A folder in which processes without numba's undocumented options have compiled what they need.
+
+    With what each left there and said. One compilation serves all tests here.
+    """
     folder = tmp_path_factory.mktemp("cache")
     runs = {}
-    for model in ("asperity", "elastic"):
-        told = run(folder, model)
+    for model in MODELS:
+        told = run(folder, model, more=WITHOUT)
         runs[model] = told, {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")}
     return folder, runs
 
@@ -47,7 +60,7 @@ def first_runs(tmp_path_factory):
 def test_what_is_compiled_is_said(first_runs):
     """What elastic contacts need is compiled with the first of them, and not before."""
     _, runs = first_runs
-    for model, message in {"asperity": "the solver", "elastic": "elastic contacts"}.items():
+    for model, message in zip(MODELS, ("the solver", "elastic contacts"), strict=True):
         told, kept = runs[model]
         assert told.stderr.count("compiling") == told.stderr.count("functions compiled in") >= 1
         assert f"compiling {message} for this machine" in told.stderr
@@ -55,13 +68,17 @@ def test_what_is_compiled_is_said(first_runs):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("model", ["asperity", "elastic"])
+@pytest.mark.parametrize("model", MODELS)
 def test_the_second_process_compiles_nothing(first_runs, model):
+    """With and without numba's undocumented options, to the same last bit."""
     folder, runs = first_runs
-    again = run(folder, model)
+    again = run(folder, model, more=WITHOUT)
     assert again.stderr == ""
     assert again.stdout == runs[model][0].stdout
     assert {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")} == runs["elastic"][1]
+    usual, once_more = run(None, model), run(None, model)
+    assert once_more.stderr == ""
+    assert once_more.stdout == usual.stdout == again.stdout
 
 
 def test_the_folder_is_named_after_everything_that_goes_in(monkeypatch, tmp_path):
