@@ -12,7 +12,7 @@ VENV   ?= .venv
 LOWEST ?= .venv-lowest
 BIN    := $(VENV)/bin
 
-.PHONY: run test test-lowest lint warm types docs bench stress clean
+.PHONY: run test test-by-hand test-lowest lint warm types docs bench stress clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/installed
@@ -27,6 +27,10 @@ run: $(VENV)/installed
 test: $(VENV)/installed-dev
 	$(MAKE) --jobs 2 lint warm
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
+
+# What takes minutes and changes hardly ever: before a release, and after a change of how functions are compiled.
+test-by-hand: $(VENV)/installed-dev
+	$(BIN)/python -m pytest -q -m by_hand
 
 # Compile beforehand what both processes of the tests need, while the linters run.
 warm: $(VENV)/installed-dev

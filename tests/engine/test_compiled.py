@@ -38,20 +38,16 @@ def run(folder, model, code=RUN, more=NOTHING):
     )
 
 
-WITHOUT = MappingProxyType({compiled.PLAIN: "1"})
 MODELS = ("asperity", "elastic")
 
 
 @pytest.fixture(scope="module")
 def first_runs(tmp_path_factory):
-    """A folder in which processes without numba's undocumented options have compiled what they need.
-
-    With what each left there and said. One compilation serves all tests here.
-    """
+    """A folder in which a process after the other has compiled what it needs, with what each left there and said."""
     folder = tmp_path_factory.mktemp("cache")
     runs = {}
     for model in MODELS:
-        told = run(folder, model, more=WITHOUT)
+        told = run(folder, model)
         runs[model] = told, {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")}
     return folder, runs
 
@@ -70,15 +66,11 @@ def test_what_is_compiled_is_said(first_runs):
 @pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 def test_the_second_process_compiles_nothing(first_runs, model):
-    """With and without numba's undocumented options, to the same last bit."""
     folder, runs = first_runs
-    again = run(folder, model, more=WITHOUT)
+    again = run(folder, model)
     assert again.stderr == ""
     assert again.stdout == runs[model][0].stdout
     assert {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")} == runs["elastic"][1]
-    usual, once_more = run(None, model), run(None, model)
-    assert once_more.stderr == ""
-    assert once_more.stdout == usual.stdout == again.stdout
 
 
 def test_the_folder_is_named_after_everything_that_goes_in(monkeypatch, tmp_path):
@@ -190,13 +182,11 @@ print([r.status for r in runs], len(runs[0].events), runs[0].samples["gear_speed
 """
 
 
-@pytest.mark.slow
-def test_both_drivers_do_without_numbas_undocumented_options(tmp_path, first_runs):
-    """Slower, and equal to the last bit."""
+@pytest.mark.by_hand
+def test_both_drivers_do_without_numbas_undocumented_options(tmp_path):
+    """Slower, and equal to the last bit; to compile without the options takes three minutes."""
     plain = run(tmp_path, "", ALL, {compiled.PLAIN: "1"})
-    usual = run(
-        first_runs[0], "", ALL.replace("assert numba_options() == frozenset()", "assert numba_options()")
-    )
+    usual = run(None, "", ALL.replace("assert numba_options() == frozenset()", "assert numba_options()"))
     assert "finished" in plain.stdout
     assert plain.stdout == usual.stdout
 
