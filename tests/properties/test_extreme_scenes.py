@@ -47,6 +47,7 @@ def test_elastic_contacts_are_attacked_too(law, backend):
     assert outcome.status in ("finished", "budget"), outcome.message
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_drawing_a_scene_is_reported():
     """Thousands of tries with 20,000 knots each are not to count as a hang."""
     tries = []
@@ -54,11 +55,13 @@ def test_drawing_a_scene_is_reported():
     assert tries
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_the_same_numbers_give_the_same_scene():
     assert extreme_scene(3, 17) == extreme_scene(3, 17)
     assert extreme_scene(3, 17) != extreme_scene(3, 18)
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # overflow on the way to a refusal of the scene
 def test_the_generator_reaches_what_it_is_for():
     """Both drivers, both kinds of scene, all laws and models, wide tolerances, jumps, many knots, corners."""
     drawn = [extreme_scene(2, number) for number in range(250)]
@@ -67,7 +70,7 @@ def test_the_generator_reaches_what_it_is_for():
     knots = [scene.drive.schedule for scene in gears]
     apart = [np.diff([time for time, _ in some]) / some[-1][0] for some in knots if len(some) > 1]
     assert {one.backend for one in drawn} == {"native", "sksundae"}
-    assert {scene.contact.asperity for scene in scenes} == {"jkr", "dmt", "hertz"}
+    assert {scene.contact.asperity for scene in scenes} == {"jkr", "dmt", "hertz", "maugis"}
     assert {scene.contact.model for scene in scenes} == {"auto", "asperity", "elastic"}
     assert 15 < len(scenes) - len(gears) < 60
     assert min(scene.run.rtol for scene in scenes) == 1e-12

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["GAP_HIGH", "GAP_LOW", "STRETCH_HIGH"]
+__all__ = ["GAP_HIGH", "GAP_LOW", "JOIN_HIGH", "STRETCH_HIGH"]
 
 GAP_LOW: Final = -40.0
 """Deepest tabulated gap, in roughnesses; the last piece is continued below it."""
@@ -16,3 +16,6 @@ GAP_HIGH: Final = 13.0
 
 STRETCH_HIGH: Final = 128.0
 """Largest stretch limit a law is made for, in roughnesses."""
+
+JOIN_HIGH: Final = 1.0
+"""Largest distance of joining, in roughnesses, for which the tables keep their stated error."""

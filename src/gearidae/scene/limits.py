@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Final
 
 from gearidae.contact.asperities import law_of
-from gearidae.contact.ranges import GAP_LOW, STRETCH_HIGH
+from gearidae.contact.ranges import GAP_LOW, JOIN_HIGH, STRETCH_HIGH
 from gearidae.errors import SceneError
 from gearidae.scene.coating import THICKEST
 
@@ -30,7 +30,7 @@ WIDEST_BACKLASH: Final = 1e9
 
 
 def check_stretch(scene: Scene) -> None:
-    """Refuse asperities that stretch farther than the force law is tabulated.
+    """Refuse asperities that stretch farther, or join from farther, than the force law is tabulated.
 
     Raises
     ------
@@ -46,6 +46,12 @@ def check_stretch(scene: Scene) -> None:
                 "surface.roughness",
                 surface.roughness,
                 f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
+            )
+        if material.share > 0.0 and not law.join <= JOIN_HIGH:
+            raise SceneError(
+                "surface.roughness",
+                surface.roughness,
+                f"asperities join over {law.join:.3g} roughnesses, beyond the model's {JOIN_HIGH:g}",
             )
 
 

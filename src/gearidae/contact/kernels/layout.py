@@ -12,7 +12,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.contact.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
+from gearidae.contact.ranges import GAP_HIGH, GAP_LOW, JOIN_HIGH, STRETCH_HIGH
 
 __all__ = [
     "ASPERITY_PIECES",
@@ -41,9 +41,6 @@ __all__ = [
 Floats: TypeAlias = NDArray[np.float64]
 Kernel: TypeAlias = Literal["line", "plane"]
 """Force on a parabolic gap, or pressure between planes: loads are integrated against psi or the normal density."""
-
-JOIN_HIGH: Final = 1.0
-"""Largest distance of joining, in roughnesses, for which the tables keep their stated error."""
 
 KNOTS_PER_SIGMA: Final = 8
 DEGREE: Final = 7  # of all pieces
