@@ -22,10 +22,11 @@ from gearidae.contact.asperities import (
 )
 from gearidae.contact.elastic import elastic_grid, elastic_line_curve
 from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table, stretched_energy
-from gearidae.contact.kernels.law import HEADER, check_reach, law_table, law_value, loading_value
+from gearidae.contact.kernels.law import HEADER, law_table, law_value, loading_value
 from gearidae.contact.kernels.layout import H_MODE, MODE_INTEGRATED, MODE_TABLE
 from gearidae.contact.line import line_force
 from gearidae.contact.psi import psi
+from gearidae.contact.ranges import check_reach
 from gearidae.contact.rough import adhesion_loss_per_asperity, rough_pressure
 from gearidae.contact.tip import asperity_of
 from gearidae.engine import solve

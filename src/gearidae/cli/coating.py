@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import nullcontext
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -79,7 +78,7 @@ def map_case(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    with nullcontext() if dask is None else dask_executor(dask) as executor:
+    with dask_executor(dask) as executor:
         chart = gd.analysis.coating_map(
             scene,
             fractions,

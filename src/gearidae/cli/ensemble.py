@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -74,12 +74,12 @@ def run_ensemble(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    with ExitStack() as stack:
+    with executor_for(distributions, drawn["size"], workers, dask) as executor:
         ds = gd.studies.ensemble(
             scene,
             distributions,
             **drawn,
-            executor=stack.enter_context(executor_for(distributions, drawn["size"], workers, dask)),
+            executor=executor,
             jobs=workers,
             progress=not is_quiet(),
             archive=target,
@@ -120,14 +120,12 @@ def executor_for(
     Executor or None
     """
     own_tables = any(key.startswith("surface.") or key == "coating.energy" for key in keys)
-    if dask is not None:
-        with dask_executor(dask) as executor:
-            yield executor
-    elif own_tables and members >= _WORTH_PROCESSES:
-        with own_executor(workers, members, releases_gil=False) as processes:
-            yield processes
+    if dask is None and own_tables and members >= _WORTH_PROCESSES:
+        chosen = own_executor(workers, members, releases_gil=False)
     else:
-        yield None
+        chosen = dask_executor(dask)
+    with chosen as executor:
+        yield executor
 
 
 def _rows(ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:

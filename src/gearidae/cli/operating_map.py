@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -68,11 +67,11 @@ def map_outcomes(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    with ExitStack() as stack:
+    with dask_executor(dask) as executor:
         chart = gd.studies.operating_map(
             scene,
             values,
-            executor=None if dask is None else stack.enter_context(dask_executor(dask)),
+            executor=executor,
             jobs=workers,
             progress=not is_quiet(),
             archive=target,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from contextlib import ExitStack
 from pathlib import Path
 
 import gearidae as gd
@@ -127,14 +126,13 @@ def sweep_case(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    with ExitStack() as stack:
-        # a warning of a sweep, such as a damaged run, is a message to the user: print it without a line of code
-        stack.enter_context(warnings.catch_warnings(action="always", category=UserWarning))
+    # a warning of a sweep, such as a damaged run, is a message to the user: print it without a line of code
+    with warnings.catch_warnings(action="always", category=UserWarning), dask_executor(dask) as executor:
         warnings.showwarning = lambda message, *_: complain(str(message))
         ds = gd.sweep(
             scene,
             values,
-            None if dask is None else stack.enter_context(dask_executor(dask)),
+            executor,
             rtol=rtol,
             progress=not is_quiet(),
             archive=target,

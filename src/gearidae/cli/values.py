@@ -65,13 +65,7 @@ def assignments(
     SceneError
         If a pair has no ``=`` or a key stands twice.
     """
-    values: dict[str, Any] = {}
-    for pair in pairs:
-        key, text = _split(pair, option, example)
-        if key in values:
-            raise SceneError(option, key, "is given twice")
-        values[key] = _literal(text)
-    return values
+    return {key: _literal(text) for key, text in texts(pairs, option, example).items()}
 
 
 def texts(pairs: Sequence[str], option: str, example: str) -> dict[str, str]:
@@ -121,19 +115,8 @@ def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
     SceneError
         If a pair cannot be read or a key stands twice.
     """
-    values: dict[str, list[Any]] = {}
-    for pair in pairs:
-        key, text = _split(pair, "--over", "coating.sam_fraction=1:0.4:-0.05")
-        if key in values:
-            raise SceneError("--over", key, "is given twice")
-        if ":" in text:
-            values[key] = _range(key, text)
-        elif text.startswith("["):
-            listed = _literal(text)
-            values[key] = listed if isinstance(listed, list) else [listed]
-        else:
-            values[key] = [_literal(part.strip()) for part in text.split(",")]
-    return values
+    given = texts(pairs, "--over", "coating.sam_fraction=1:0.4:-0.05")
+    return {key: _listed(key, text) for key, text in given.items()}
 
 
 def quantity(option: str, text: str, unit: str) -> float:
@@ -178,6 +161,16 @@ def _split(pair: str, option: str, example: str) -> tuple[str, str]:
     if not equals or not key or not text:
         raise SceneError(option, pair, f"must read key=value, such as {example}")
     return key, text
+
+
+def _listed(key: str, text: str) -> list[Any]:
+    """Values of one key."""
+    if ":" in text:
+        return _range(key, text)
+    if text.startswith("["):
+        listed = _literal(text)
+        return listed if isinstance(listed, list) else [listed]
+    return [_literal(part.strip()) for part in text.split(",")]
 
 
 def _literal(text: str) -> Any:

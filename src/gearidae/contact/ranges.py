@@ -1,4 +1,4 @@
-"""Ranges in gap and stretch of the tabulated force law.
+"""Ranges in gap and stretch of the tabulated force law, and the check that asperities stay within.
 
 They stand apart from the code that compiles the law, so that a scene can be checked without it.
 """
@@ -7,7 +7,10 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["GAP_HIGH", "GAP_LOW", "JOIN_HIGH", "STRETCH_HIGH"]
+from gearidae.contact.asperities import AsperityLaw
+from gearidae.errors import SceneError
+
+__all__ = ["GAP_HIGH", "GAP_LOW", "JOIN_HIGH", "STRETCH_HIGH", "check_reach"]
 
 GAP_LOW: Final = -40.0
 """Deepest tabulated gap, in roughnesses; the last piece is continued below it."""
@@ -19,3 +22,27 @@ STRETCH_HIGH: Final = 128.0
 
 JOIN_HIGH: Final = 1.0
 """Largest distance of joining, in roughnesses, for which the tables keep their stated error."""
+
+
+def check_reach(law: AsperityLaw, roughness: float) -> None:
+    """Refuse a surface whose asperities reach farther than tables are made for.
+
+    Parameters
+    ----------
+    law : AsperityLaw
+        In units of the roughness.
+    roughness : float
+        What the message names [m].
+
+    Raises
+    ------
+    SceneError
+        If asperities join beyond `JOIN_HIGH` or detach beyond `STRETCH_HIGH` roughnesses.
+    """
+    for what, reach, limit in (("stretch", law.detach, STRETCH_HIGH), ("join over", law.join, JOIN_HIGH)):
+        if not reach <= limit:  # also of a law that gives none
+            raise SceneError(
+                "surface.roughness",
+                roughness,
+                f"asperities {what} {reach:.3g} roughnesses, beyond the model's {limit:g}",
+            )

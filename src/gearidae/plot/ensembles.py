@@ -7,14 +7,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from gearidae.errors import SceneError
-from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, scale_for, tidy
+from gearidae.plot.parameter_axis import parameter_axis
+from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, tidy
 from gearidae.studies.sticking_probability import drawn_keys
 from gearidae.studies.sticking_probability import sticking_probability as probability_of
 
 __all__ = ["sobol_indices", "sticking_probability"]
 
 _COVERAGE = "coating.sam_fraction"
-_SCALED = ("m", "s", "Pa", "Hz", "N", "N m")
 
 
 def sticking_probability(
@@ -46,18 +46,21 @@ def sticking_probability(
     over = over or (_COVERAGE if _COVERAGE in names else next(iter(names)))
     found = probability_of(ds, over, bins=bins)
     name = names[over]
-    unit = str(found[name].attrs.get("units", "1"))
-    scale = scale_for(float(np.abs(found["highest"]).max()), unit) if unit in _SCALED else None
-    factor = 100.0 if over == _COVERAGE else scale.factor if scale else 1.0
-    shown = "%" if over == _COVERAGE else scale.unit if scale else unit
-    at = found[name].values * factor
+    along = parameter_axis(found[name])
     ax = new_axes(ax, height=3.8)
     ax.fill_between(
-        at, found["low"], found["high"], color=POSITIVE, alpha=0.25, linewidth=0, label="95 % band"
+        along.places, found["low"], found["high"], color=POSITIVE, alpha=0.25, linewidth=0, label="95 % band"
     )
-    ax.plot(at, found["probability"], color=POSITIVE, marker=".", linewidth=1.4, label="members that stick")
+    ax.plot(
+        along.places,
+        found["probability"],
+        color=POSITIVE,
+        marker=".",
+        linewidth=1.4,
+        label="members that stick",
+    )
     ax.set_ylim(-0.02, 1.02)
-    ax.set_xlabel("SAM (%)" if over == _COVERAGE else over + ("" if shown == "1" else f" ({shown})"))
+    ax.set_xlabel(along.label)
     ax.set_ylabel("probability of sticking")
     tidy(ax)
     ax.legend(frameon=False, fontsize="small")

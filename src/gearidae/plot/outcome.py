@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.select import swept_dims
 from gearidae.errors import SceneError
+from gearidae.plot.parameter_axis import ParameterAxis, parameter_axis
 from gearidae.plot.style import new_axes, scale_for, scaled, tidy
 
 __all__ = ["outcome"]
@@ -79,7 +80,7 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         )
     judged = outcomes(ds)
     ax = new_axes(ax, height=3.4 if len(dims) == 1 else 4.2)
-    axes = [_parameter(ds[dim]) for dim in dims]
+    axes = [parameter_axis(ds[dim]) for dim in dims]
     if len(dims) == 1:
         _bars(ax, axes[0], judged)
     else:
@@ -87,42 +88,11 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@dataclass(frozen=True, slots=True)
-class _Parameter:
-    """A swept key as an axis: places of its values in increasing order.
-
-    Attributes
-    ----------
-    places : ndarray, shape (n,)
-        Where the values lie, in the unit of the label, in the dataset's order.
-    label : str
-        Name and unit.
-    words : tuple of str
-        Names of the places where the values are no numbers; else empty.
-    """
-
-    places: NDArray[np.float64]
-    label: str
-    words: tuple[str, ...] = ()
-
-
-def _parameter(coordinate: xr.DataArray) -> _Parameter:
-    values = coordinate.values
-    name = str(coordinate.name)
-    if not np.issubdtype(values.dtype, np.number):
-        return _Parameter(np.arange(len(values), dtype=np.float64), name, tuple(map(str, values.tolist())))
-    if name == "sam_fraction":
-        return _Parameter(100.0 * values, "SAM (%)")
-    scale = scaled(float(np.abs(values).max()), str(coordinate.attrs.get("units", "1")))
-    unit = "" if scale.unit == "1" else f" ({scale.unit})"
-    return _Parameter(values * scale.factor, f"{name.replace('_', ' ')}{unit}")
-
-
 def _look(verdict: str) -> _Look:
     return _LOOKS.get(verdict, _UNKNOWN)
 
 
-def _bars(ax: Axes, along: _Parameter, judged: Sequence[GearOutcome | RollerOutcome]) -> None:
+def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerOutcome]) -> None:
     """One bar a run, over one parameter."""
     lows, highs, unit, words = _extents(judged)
     largest = float(np.nanmax(np.abs([*lows, *highs, 0.0])))
@@ -169,7 +139,7 @@ def _extents(
     return lows, highs, "rad/s", "lowest to highest gear speed"
 
 
-def _fields(ax: Axes, down: _Parameter, across: _Parameter, verdicts: NDArray[np.object_]) -> None:
+def _fields(ax: Axes, down: ParameterAxis, across: ParameterAxis, verdicts: NDArray[np.object_]) -> None:
     """One field a run, all of a size however the values are spaced: each run is to be seen."""
     grid = verdicts.reshape(len(down.places), len(across.places))
     rows, columns = np.argsort(down.places, kind="stable"), np.argsort(across.places, kind="stable")
@@ -197,7 +167,7 @@ def _square(row: int, column: int) -> list[tuple[float, float]]:
     return [(column + x, row + y) for x, y in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))]
 
 
-def _label_fields(ax: Axes, which: str, along: _Parameter, order: NDArray[np.intp]) -> None:
+def _label_fields(ax: Axes, which: str, along: ParameterAxis, order: NDArray[np.intp]) -> None:
     """Name the values below their fields, as many as there is room for."""
     step = -(-len(order) // _MOST_NAMES)
     places = np.arange(0, len(order), step)

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from gearidae.analysis.verdict_codes import Outcome
 from gearidae.errors import SceneError
-from gearidae.plot.style import new_axes, scale_for
+from gearidae.plot.parameter_axis import parameter_axis
+from gearidae.plot.style import new_axes
 
 __all__ = ["outcome_map"]
 
@@ -23,7 +24,6 @@ _LOOKS = {
     Outcome.CROSSES_BACKLASH: ("#E69F00", "crosses the backlash"),
     Outcome.STICKS: ("#D55E00", "sticks"),
 }
-_SCALED = ("m", "s", "Pa", "Hz", "N", "N m")
 
 
 def outcome_map(chart: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -55,26 +55,23 @@ def outcome_map(chart: xr.Dataset, ax: Axes | None = None) -> Axes:
     codes = list(_LOOKS)
     norm = BoundaryNorm(np.arange(codes[0] - 0.5, codes[-1] + 1.0), len(codes))
     colours = ListedColormap([colour for colour, _ in _LOOKS.values()])
-    across, across_label = _axis(horizontal)
-    along, along_label = _axis(vertical)
+    across, along = parameter_axis(horizontal), parameter_axis(vertical)
     ax.pcolormesh(
-        _edges(across),
-        _edges(along),
+        _edges(across.places),
+        _edges(along.places),
         chart["outcome"].values,
         cmap=colours,
         norm=norm,
         edgecolor="w",
         linewidth=0.4,
     )
-    _mark_crossings(ax, chart, across, along)
-    for values, coordinate, set_ticks in (
-        (across, horizontal, ax.set_xticks),
-        (along, vertical, ax.set_yticks),
-    ):
-        if coordinate.dtype.kind not in "fiu":
-            set_ticks(values, [str(word) for word in coordinate.values])
-    ax.set_xlabel(across_label)
-    ax.set_ylabel(along_label)
+    _mark_crossings(ax, chart, across.places, along.places)
+    if across.words:
+        ax.set_xticks(across.places, across.words)
+    if along.words:
+        ax.set_yticks(along.places, along.words)
+    ax.set_xlabel(across.label)
+    ax.set_ylabel(along.label)
     present = set(chart["outcome"].values.ravel().tolist())
     handles = [
         Patch(color=colour, label=words) for code, (colour, words) in _LOOKS.items() if code in present
@@ -98,21 +95,6 @@ def _mark_crossings(ax: Axes, chart: xr.Dataset, across: Floats, along: Floats) 
             markersize=4,
             color=_LOOKS[Outcome.CROSSES_BACKLASH][0],
         )
-
-
-def _axis(coordinate: xr.DataArray) -> tuple[Floats, str]:
-    """Values of a key as they are drawn, and the label of their axis."""
-    unit = str(coordinate.attrs.get("units", "1"))
-    name = str(coordinate.name)
-    if coordinate.dtype.kind not in "fiu":
-        return np.arange(coordinate.size, dtype=float), name
-    values = coordinate.values.astype(float)
-    if name == "sam_fraction":
-        return 100.0 * values, "SAM (%)"
-    if unit in _SCALED:
-        scale = scale_for(float(np.abs(values).max()), unit)
-        return values * scale.factor, f"{name} ({scale.unit})"
-    return values, name if unit == "1" else f"{name} ({unit})"
 
 
 def _edges(values: Floats) -> Floats:

@@ -22,6 +22,7 @@ from gearidae.archive.select import runs
 from gearidae.errors import SceneError
 from gearidae.plot.picking import pick
 from gearidae.plot.picture import PictureAxes, new_picture
+from gearidae.scene.prefixes import PREFIXES
 
 __all__ = [
     "COLOURS",
@@ -58,20 +59,6 @@ LINE_STYLES = (
 POSITIVE, NEGATIVE = COLOURS[:2]
 """Colours of what pushes and of what pulls."""
 
-_PREFIXES = {
-    -24: "y",
-    -21: "z",
-    -18: "a",
-    -15: "f",
-    -12: "p",
-    -9: "n",
-    -6: "µ",
-    -3: "m",
-    0: "",
-    3: "k",
-    6: "M",
-    9: "G",
-}
 _PREFIXED = ("m", "s", "Pa", "Hz", "N", "N m", "J", "W")
 _SPELT = {"rad s-1": "rad/s", "m s-1": "m/s", "kg m2": "kg m²", "J m-2": "J/m²", "m-2": "1/m²"}
 _MOST_POINTS = 6000
@@ -172,8 +159,9 @@ def scale_for(largest: float, unit: str) -> Scale:
     """
     if not (math.isfinite(largest) and largest > 0.0):
         return Scale(1.0, unit)
-    power = min(max(3 * math.floor(math.log10(largest * (1 + 1e-9)) / 3), min(_PREFIXES)), max(_PREFIXES))
-    return Scale(10.0**-power, f"{_PREFIXES[power]}{unit}")
+    power = min(max(3 * math.floor(math.log10(largest * (1 + 1e-9)) / 3), min(PREFIXES)), max(PREFIXES))
+    prefix = PREFIXES[power].replace("u", "µ")
+    return Scale(10.0**-power, f"{prefix}{unit}")
 
 
 def scaled(largest: float, unit: str) -> Scale:

@@ -66,24 +66,27 @@ def check_executor(executor: object) -> None:
 
 
 @contextmanager
-def dask_executor(address: str) -> Iterator[Executor]:
-    """Provide the executor of a Dask cluster.
+def dask_executor(address: str | None) -> Iterator[Executor | None]:
+    """Provide the executor of a Dask cluster, if one is wanted.
 
     Parameters
     ----------
-    address : str
+    address : str or None
         Of the cluster's scheduler, ``tcp://host:8786``. Its workers need the same version of gearidae.
 
     Yields
     ------
-    Executor
-        On leaving, the connection is closed, and runs that have not been finished are dropped.
+    Executor or None
+        None without an address. On leaving, the connection is closed, and runs that have not been finished are dropped.
 
     Raises
     ------
     SceneError
         If Dask is not installed, no scheduler answers at the address, or one of its workers lacks this version.
     """
+    if address is None:
+        yield None
+        return
     try:
         distributed: Any = import_module("distributed")
     except ImportError:

@@ -7,7 +7,8 @@ import sys
 from typing import TYPE_CHECKING, Final
 
 from gearidae.contact.asperities import law_of
-from gearidae.contact.ranges import GAP_LOW, JOIN_HIGH, STRETCH_HIGH
+from gearidae.contact.ranges import GAP_LOW
+from gearidae.contact.ranges import check_reach as check_asperity_reach
 from gearidae.errors import SceneError
 from gearidae.scene.coating import THICKEST
 
@@ -38,21 +39,9 @@ def check_stretch(scene: Scene) -> None:
         Naming ``surface.roughness``.
     """
     for material in scene.materials():
-        surface = material.surface
-        law = law_of(scene.contact.asperity, surface)
-        limit = law.detach - law.join
-        if material.share > 0.0 and not limit <= STRETCH_HIGH:
-            raise SceneError(
-                "surface.roughness",
-                surface.roughness,
-                f"asperities stretch {limit:.3g} roughnesses, beyond the model's {STRETCH_HIGH:g}",
-            )
-        if material.share > 0.0 and not law.join <= JOIN_HIGH:
-            raise SceneError(
-                "surface.roughness",
-                surface.roughness,
-                f"asperities join over {law.join:.3g} roughnesses, beyond the model's {JOIN_HIGH:g}",
-            )
+        if material.share > 0.0:
+            surface = material.surface
+            check_asperity_reach(law_of(scene.contact.asperity, surface), surface.roughness)
 
 
 def check_thickness(scene: Scene) -> None:

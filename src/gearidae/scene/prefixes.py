@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["with_prefix"]
+__all__ = ["PREFIXES", "with_prefix"]
 
-_PREFIXES = {
+PREFIXES = {
     -24: "y",
     -21: "z",
     -18: "a",
@@ -20,6 +20,7 @@ _PREFIXES = {
     6: "M",
     9: "G",
 }
+"""Power of ten to prefix."""
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:
@@ -47,7 +48,7 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
         return f"{value:.{digits}g} {unit}"
     rounded = float(f"{value:.{digits - 1}e}")
     power = 3 * math.floor(math.log10(abs(rounded)) / 3.0 + 1e-12)
-    if power not in _PREFIXES:
+    if power not in PREFIXES:
         return f"{value:.{digits}g} {unit}"
     number = rounded / 10.0**power
-    return f"{number:.{digits}g} {_PREFIXES[power]}{unit}"
+    return f"{number:.{digits}g} {PREFIXES[power]}{unit}"

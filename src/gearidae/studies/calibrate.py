@@ -111,7 +111,6 @@ def calibrate(
     how = Execution(
         executor=executor, jobs=jobs, backend=backend, archive=archive, overwrite=overwrite, resume=resume
     )
-    how.check()
     about = _attributes(
         base, distributions, seen, {"method": chosen, "points": points, "steps": steps, "seed": seed}
     )

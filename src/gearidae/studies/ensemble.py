@@ -107,7 +107,6 @@ def ensemble(
         overwrite=overwrite,
         resume=resume,
     )
-    how.check()
     drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
     texts = names_of(distributions)
     values = {each.key: drawn.values[:, number] for number, each in enumerate(distributions)}

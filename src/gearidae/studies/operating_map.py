@@ -96,7 +96,6 @@ def operating_map(
         overwrite=overwrite,
         resume=resume,
     )
-    how.check()
     plan = plan_sweep(base, over)
 
     def finish(ds: xr.Dataset) -> xr.Dataset:

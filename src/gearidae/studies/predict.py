@@ -78,7 +78,6 @@ def predict(
         overwrite=overwrite,
         resume=resume,
     )
-    how.check()
     values = posterior_draws(posterior, size, seed)
     source = dict.fromkeys(values, "the posterior")
     plan = member_plan(base, values, source)

@@ -30,7 +30,13 @@ KEPT = ("extremes",)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Execution:
-    """How the runs of a study are computed and kept; each field is an argument of `gearidae.sweep`."""
+    """How the runs of a study are computed and kept; each field is an argument of `gearidae.sweep`.
+
+    Raises
+    ------
+    SceneError
+        If a setting is not allowed: before anything is run.
+    """
 
     executor: Executor | None = None
     jobs: int | None = None
@@ -40,13 +46,7 @@ class Execution:
     overwrite: bool = False
     resume: bool = False
 
-    def check(self) -> None:
-        """Refuse settings that are not allowed, before anything is run.
-
-        Raises
-        ------
-        SceneError
-        """
+    def __post_init__(self) -> None:
         check_jobs(self.jobs)
         check_executor(self.executor)
 

@@ -59,17 +59,14 @@ from gearidae.contact.kernels.layout import (
     H_PSI,
     H_STRETCH,
     HEADER,
-    JOIN_HIGH,
     KNOTS_PER_SIGMA,
     MODE_INTEGRATED,
     MODE_TABLE,
     N_LOADING,
-    STRETCH_HIGH,
     Floats,
     Kernel,
 )
 from gearidae.contact.kernels.pieces import asperity_pieces, hermite_pieces, kernel_table, partial_pieces
-from gearidae.errors import SceneError
 
 __all__ = [
     "B_PIECES",
@@ -78,11 +75,9 @@ __all__ = [
     "HEADER",
     "H_STRETCH",
     "N_LOADING",
-    "STRETCH_HIGH",
     "Kernel",
     "branch_length",
     "branch_value",
-    "check_reach",
     "force_scale",
     "largest_forces",
     "law_table",
@@ -116,30 +111,6 @@ def force_scale(roughness: float, hertz_factor: float, density: float, width: fl
         Face width L [m].
     """
     return width * density * hertz_factor * roughness**1.5
-
-
-def check_reach(law: AsperityLaw, roughness: float) -> None:
-    """Refuse a surface whose asperities reach farther than tables are made for.
-
-    Parameters
-    ----------
-    law : AsperityLaw
-        In units of the roughness.
-    roughness : float
-        What the message names [m].
-
-    Raises
-    ------
-    SceneError
-        If asperities join beyond `JOIN_HIGH` or detach beyond `STRETCH_HIGH` roughnesses.
-    """
-    for what, reach, limit in (("stretch", law.detach, STRETCH_HIGH), ("join over", law.join, JOIN_HIGH)):
-        if reach > limit:
-            raise SceneError(
-                "surface.roughness",
-                roughness,
-                f"asperities {what} {reach:.3g} roughnesses, beyond the model's {limit:g}",
-            )
 
 
 def stretch_followed(law: AsperityLaw) -> float:

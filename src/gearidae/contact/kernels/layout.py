@@ -12,7 +12,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.contact.ranges import GAP_HIGH, GAP_LOW, JOIN_HIGH, STRETCH_HIGH
+from gearidae.contact.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
 
 __all__ = [
     "ASPERITY_PIECES",
@@ -28,7 +28,6 @@ __all__ = [
     "H_PIECES",
     "H_PSI",
     "H_STRETCH",
-    "JOIN_HIGH",
     "KNOTS_PER_SIGMA",
     "MODE_INTEGRATED",
     "MODE_TABLE",

@@ -16,11 +16,11 @@ from gearidae.contact.kernels.law import (
     N_LOADING,
     Kernel,
     branch_length,
-    check_reach,
     force_scale,
     largest_forces,
     law_table,
 )
+from gearidae.contact.ranges import check_reach
 from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
