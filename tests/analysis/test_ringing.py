@@ -55,7 +55,7 @@ def test_ringing_too_fast_for_the_sampling_is_left_out_with_all_that_follows():
 
 def test_noise_and_steady_running_do_not_ring():
     still = ringing([1e3] * 4, amplitude=0.0)
-    for level in (0.0, 1e-3):
+    for level in (0.0, 1e-16, 1e-3):
         noisy = still + level * np.random.default_rng(1).standard_normal(still.shape)
         found = characteristic_frequency(noisy, gear_teeth=TEETH)
         assert np.isnan(found)

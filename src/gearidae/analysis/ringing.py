@@ -41,6 +41,8 @@ _PADDING = 8
 _PROMINENCE = math.log(4.0)
 _ABOVE_NOISE = 30.0
 """A peak must be this many times the median of the spectrum: chance passes it once in a thousand million bins."""
+_ROUNDING = 4.0
+"""What counts as noise in any case, in units of the last place of the largest sample."""
 _SHORTER = (0.8, 0.6)
 """Shorter windows, in parts of the full one, in which a frequency is measured again for its uncertainty."""
 
@@ -320,7 +322,8 @@ def _peak(piece: Floats, rate: float, lowest: float, near: float | None = None) 
     first = int(np.searchsorted(frequency, lowest))
     if first >= len(frequency) - 2:
         return _Peak()
-    floor = float(np.median(density[first:])) + np.finfo(float).tiny
+    rounding = _ROUNDING * np.finfo(float).eps * float(np.abs(piece).max())
+    floor = float(np.median(density[first:])) + 2.0 * rounding**2 / rate + np.finfo(float).tiny
     logarithm = np.log(density + np.finfo(float).tiny)
     peaks, _ = dsp.find_peaks(logarithm, prominence=_PROMINENCE)
     peaks = peaks[(peaks >= first) & (density[peaks] > _ABOVE_NOISE * floor)]
@@ -362,6 +365,8 @@ def piece_of(signal: Signal, start: float, stop: float) -> Floats:
 
 
 def _periodogram(piece: Floats, rate: float, size: int) -> tuple[Floats, Floats]:
+    # of a constant, a straight line's fit leaves its rounding error, other on each processor; nothing is left of zero
+    piece = piece - piece[0]
     frequency, density = dsp.periodogram(piece, rate, window="hann", nfft=size, detrend="linear")
     return frequency, density
 
