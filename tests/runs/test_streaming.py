@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import faulthandler
 import itertools
 import json
 import multiprocessing
@@ -28,6 +29,8 @@ LOW = gd.preset("teodorescu2009_low_speed").replace(
     {"coating.sam_fraction": 0.5, "run.duration": 0.01, "run.samples": 201}
 )
 START_UP = gd.load_case(Path(__file__).parents[2] / "cases" / "start_up.toml")
+HANGS = 60.0
+"""Seconds after which a child counts as hanging: its work takes less than five on a busy machine."""
 MOMENTARY = ("history", "date_created", "wall_time")
 """Attributes in which two runs of one scene may differ."""
 
@@ -82,6 +85,7 @@ def child(work, *arguments):
 
     def act():
         signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
+        faulthandler.dump_traceback_later(HANGS, exit=True)  # says where, if it hangs
         os._exit(work(*arguments) or 0)
 
     process = multiprocessing.get_context("fork").Process(target=act)
@@ -90,7 +94,7 @@ def child(work, *arguments):
 
 
 def end_of(process):
-    process.join(60.0)
+    process.join(2.0 * HANGS)
     assert process.exitcode is not None
     return process.exitcode
 

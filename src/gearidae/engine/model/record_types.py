@@ -80,4 +80,22 @@ INT: Final = "i8"
 
 def record_type(*fields: tuple[Any, ...]) -> np.dtype[Any]:
     """Record type whose fields are attributes, in compiled code and in Python alike."""
-    return np.dtype((np.record, np.dtype(list(fields), align=True)))
+    return np.dtype((_Fields, np.dtype(list(fields), align=True)))
+
+
+class _Fields(np.void):  # type: ignore[misc]  # final in numpy's stubs; numpy.record is another such class
+    """A record whose fields are attributes.
+
+    numpy's own runs Python code for every attribute, also where numba asks for the memory of a record: a
+    `KeyboardInterrupt` that is raised there is lost as soon as numba asks the next record of the same call. Here the
+    attributes of numpy's scalars are found without Python, and the others are fields.
+    """
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except (KeyError, ValueError):
+            raise AttributeError(f"the record has no field {name}") from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self[name] = value
