@@ -189,6 +189,27 @@ def test_account_of_a_run(single, swept):
     assert "Account of the run" not in Page(build_report(swept)).text
 
 
+@pytest.mark.parametrize(
+    ("keep", "sections"),
+    [
+        ([], set()),
+        (["samples"], {"series"}),
+        (["gear_speed", "events"], {"series", "events"}),
+        (["events"], {"events"}),
+    ],
+)
+def test_sweep_that_has_not_kept_everything(keep, sections):
+    """What is there is shown: outcomes in any case."""
+    scene = gd.preset("teodorescu2009_low_speed")
+    over = {"coating.sam_fraction": [1.0, 0.5]}
+    ds = gd.sweep(scene, over, t_end=2e-3, samples=51, keep=keep)
+    page = Page(build_report(ds))
+    shown = {value for tag, name, value in page.attributes if tag == "section" and name == "id"}
+    assert shown == {"outcome", "pictures", "parameters", "provenance"} | sections
+    for each in outcomes(ds):
+        assert each.words in page.text
+
+
 @pytest.mark.parametrize("preset", ["teodorescu2009_low_speed", "roller_slow"])
 def test_run_without_samples(preset):
     ds = gd.simulate(gd.preset(preset).replace({"run.samples": "off"}), t_end=1e-5)

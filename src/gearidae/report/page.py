@@ -9,8 +9,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearidae.archive.select import is_roller, scene_of
-from gearidae.archive.variables import EVENTS, columns
+from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
 from gearidae.report import html
 from gearidae.report.pictures import pictures
@@ -38,7 +37,7 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     Parameters
     ----------
     ds : xarray.Dataset
-        From `simulate`, `sweep` or `open_archive`.
+        From `simulate`, `sweep` or `open_archive`. What its runs have not kept (samples, events) is left out.
     most_values : int, optional
         Numbers to embed at most in the viewer of the time series.
 
@@ -50,11 +49,8 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     Raises
     ------
     SceneError
-        If the dataset carries no scene, or its runs have not kept all samples and events.
+        If the dataset carries no scene.
     """
-    missing = [each for each in (*columns(is_roller(ds)), *EVENTS) if each not in ds.variables]
-    if missing:
-        raise SceneError("report", ", ".join(missing), "have not been kept: keep samples and events (keep=)")
     name = str(scene_of(ds).get("name", "gearidae"))
     main = "\n".join(
         part

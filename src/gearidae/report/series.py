@@ -42,7 +42,7 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
         ``end``), ``runs`` (label and times of onsets and separations [s]). Empty without samples.
     """
     names = [name for name in columns(is_roller(ds)) if name in ds]
-    samples = ds.sizes["time"]
+    samples = ds.sizes.get("time", 0)
     try:
         shown = runs_of(ds, names[0]) if names and samples else []
     except SceneError:  # no run has samples
@@ -104,7 +104,7 @@ def _encode(values: NDArray[np.float64]) -> str:
 
 
 def _contacts(run: xr.Dataset) -> dict[str, list[float]]:
-    """Times of contacts made and broken [s], evenly picked where there are very many."""
+    """Times of contacts made and broken [s], evenly picked where there are very many; none if no events are kept."""
     return {
         name: [float(f"{time:.9g}") for time in _times(run, kind)]
         for name, kind in (("onsets", EventKind.ONSET), ("separations", EventKind.SEPARATION))
@@ -113,6 +113,8 @@ def _contacts(run: xr.Dataset) -> dict[str, list[float]]:
 
 def _times(run: xr.Dataset, kind: EventKind) -> NDArray[np.float64]:
     """Times of the events of a kind, at most `_MOST_EVENTS` of them."""
+    if "event_kind" not in run:
+        return np.empty(0)
     total = count(run["event_kind"], kind)
     wanted = np.linspace(0, total - 1, min(total, _MOST_EVENTS)).astype(int)
     found, passed = [np.empty(0)], 0

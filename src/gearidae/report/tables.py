@@ -123,7 +123,9 @@ def account_table(ds: xr.Dataset) -> str:
 
 
 def event_table(ds: xr.Dataset) -> str:
-    """Count the events of each run and name the first and the hardest contact."""
+    """Count the events of each run and name the first and the hardest contact; nothing if events have not been kept."""
+    if "event_kind" not in ds:
+        return ""
     found = [(label, _count_events(run)) for label, run in runs(ds)]
     kinds = [kind for kind in EventKind if any(counted.counts[kind] for _, counted in found)]
     if not kinds:

@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.select import is_roller, motion_samples, run_scene
+from gearidae.archive.variables import EVENTS, columns
 from gearidae.errors import SceneError
 from gearidae.plot.asperities import SAMPLES, half_width, joined_asperities, rough_sample
 from gearidae.plot.style import runs_of
@@ -61,9 +62,9 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
     dict
         ``columns`` (`FRAME` and `PAIR`), ``words`` (of the states), and per run its ``label``, what follows from its
         scene (lengths in m, shapes in modules), and ``states``: base64 text of little-endian float32 numbers, row by
-        row. Empty for rollers and without samples.
+        row. Empty for rollers, and where samples or events have not been kept.
     """
-    if is_roller(ds):
+    if is_roller(ds) or any(name not in ds.variables for name in (*columns(False), *EVENTS)):
         return {}
     try:
         shown = runs_of(ds, "transmission_error")
