@@ -145,10 +145,13 @@ def run_command(command, printed, where, capfd):
 
 
 def test_every_link_between_pages_leads_somewhere():
+    # the changelog is shown as a page of docs: its links have to lead somewhere from there, too
+    changelog = DOCS / "changelog.md"
     for page in DOCS.rglob("*.md"):
         if "generated" in page.parts or "_build" in page.parts:
             continue
-        text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        shown = ROOT / "CHANGELOG.md" if page == changelog else page
+        text = re.sub(r"```.*?```", "", shown.read_text(encoding="utf-8"), flags=re.DOTALL)
         for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
