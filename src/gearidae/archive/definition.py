@@ -15,6 +15,8 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.interrupts import uninterrupted
+
 __all__ = ["CHUNK", "chunked", "define", "offsets"]
 
 _COMPRESSED_ABOVE = 2**16
@@ -23,6 +25,7 @@ CHUNK = 2**20
 """Largest chunk [bytes]."""
 
 
+@uninterrupted()
 def define(
     template: xr.Dataset,
     path: Path,

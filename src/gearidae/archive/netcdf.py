@@ -16,6 +16,7 @@ from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import sync
 from gearidae.archive.growing_layout import is_growing, trimmed
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
+from gearidae.archive.interrupts import uninterrupted
 from gearidae.archive.keep import kept_in
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
@@ -69,6 +70,7 @@ def check_target(path: str | os.PathLike[str], *, overwrite: bool = False) -> Pa
     return Path(os.path.realpath(target))
 
 
+@uninterrupted()
 def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a dataset to a netCDF4 file.
 
@@ -110,6 +112,7 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
     return target
 
 
+@uninterrupted()
 def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     """Read an archive that `simulate`, `sweep` or the command line wrote.
 

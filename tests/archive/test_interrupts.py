@@ -1,0 +1,90 @@
+"""Ctrl-C while an archive is opened or written: heeded when the file is whole and no lock is left taken."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+
+import pytest
+import xarray as xr
+
+import gearidae as gd
+from gearidae.archive.integrity import CheckedStore
+from gearidae.archive.interrupts import uninterrupted
+
+
+@pytest.fixture(scope="module")
+def ds():
+    return gd.simulate(gd.preset("roller_slow"), samples=11)
+
+
+@pytest.fixture(autouse=True)
+def interruptible():
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
+    yield
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    signal.signal(signal.SIGINT, usual)
+
+
+def interrupting(function):
+    """The same function, which is interrupted as it begins."""
+
+    def act(*arguments, **options):
+        os.kill(os.getpid(), signal.SIGINT)
+        return function(*arguments, **options)
+
+    return act
+
+
+def test_what_is_saved_is_whole_before_the_interrupt_counts(ds, tmp_path, monkeypatch):
+    path = tmp_path / "roller.nc"
+    with monkeypatch.context() as patched:
+        patched.setattr(xr.Dataset, "to_netcdf", interrupting(xr.Dataset.to_netcdf))
+        with pytest.raises(KeyboardInterrupt):
+            gd.save(ds, path)
+    xr.testing.assert_identical(gd.open_archive(path), ds)
+
+
+def test_an_archive_can_be_opened_again_after_an_interrupt(ds, tmp_path, monkeypatch):
+    path = gd.save(ds, tmp_path / "roller.nc")
+    with monkeypatch.context() as patched:
+        patched.setattr(CheckedStore, "open", interrupting(CheckedStore.open))
+        with pytest.raises(KeyboardInterrupt):
+            gd.open_archive(path)
+    xr.testing.assert_identical(gd.open_archive(path), ds)
+
+
+def test_an_interrupt_at_the_end_of_a_run_leaves_its_archive_finished(tmp_path, monkeypatch):
+    """In the definition of the final form, where it once left a lock taken that closing the file waited for."""
+    path, real, calls = tmp_path / "roller.nc", xr.Dataset.to_netcdf, []
+
+    def second(*arguments, **options):
+        calls.append(1)
+        return (interrupting(real) if len(calls) == 2 else real)(*arguments, **options)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(xr.Dataset, "to_netcdf", second)
+        with pytest.raises(KeyboardInterrupt):
+            gd.simulate(gd.preset("roller_slow"), samples=11, archive=path)
+    resumed = gd.simulate(gd.preset("roller_slow"), samples=11, archive=path, resume=True)
+    assert resumed.attrs["status"] == "finished"
+
+
+def test_other_threads_and_ignored_interrupts_are_left_alone():
+    done = []
+
+    def work():
+        with uninterrupted():
+            done.append(signal.getsignal(signal.SIGINT))
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert done == [signal.default_int_handler]
+    usual = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with uninterrupted():
+            assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, usual)
