@@ -1,5 +1,6 @@
 """Asperities with a Dugdale zone: printed figures, the limits, an independent solution, and the tables."""
 
+import dataclasses
 import itertools
 import math
 
@@ -191,3 +192,14 @@ def test_gears_on_coated_teeth_run_as_an_independent_integrator_has_them():
     )
     run = solve(scene.replace({"run.duration": 0.1, "run.samples": 10_001, "run.rtol": 1e-8}))
     assert run.samples["gear_speed"][-1] == pytest.approx(1.499738, abs=2e-6)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("energy", "distance"), [(0.05, 1e-90), (1e-300, 3e-10)], ids=["no range", "no energy"]
+)
+def test_absurd_surfaces_overflow_nowhere(energy, distance):
+    tip = dataclasses.replace(asperity_of(PlainSurface(energy=energy)), interaction_range=distance)
+    law = Maugis.of(tip, 6e-9)
+    assert np.isfinite([law.detach, law.join, law.pull_off, law.loss]).all()
+    assert np.isfinite(law.load(np.linspace(-5.0, 60.0, 14))).all()

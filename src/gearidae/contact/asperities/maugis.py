@@ -127,6 +127,10 @@ def _rising(function: object, low: float) -> float:
     return high
 
 
+_ZONES = (1e-100, 1e10)
+"""Beyond these ends no number of the law changes but the distance of joining: rigid spheres, and JKR to rounding."""
+
+
 @register
 @dataclass(frozen=True)
 class Maugis(AsperityLaw):
@@ -151,7 +155,8 @@ class Maugis(AsperityLaw):
             return Hertz()
         length = tip.stretch_limit / 0.75 ** (1.0 / 3.0)
         distance = 9.0 * math.sqrt(3.0) / 16.0 * tip.interaction_range
-        return cls(length / unit, 2.0 * length / (math.pi * distance))
+        zone = 2.0 * length / (math.pi * distance)
+        return cls(length / unit, min(max(zone, _ZONES[0]), _ZONES[1]))
 
     @cached_property
     def _marks(self) -> tuple[float, float, float, float]:
