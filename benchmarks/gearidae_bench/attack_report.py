@@ -13,7 +13,7 @@ import gearidae
 from gearidae.engine.integrate.driver import Ending
 from gearidae_bench.attack import Outcome
 
-__all__ = ["balance_rows", "ending_rows", "page"]
+__all__ = ["balance_rows", "ending_rows", "page", "warned_rows"]
 
 _MEANINGS = {ending.status: ending.message for ending in Ending} | {
     "finished": "reached the end",
@@ -58,6 +58,15 @@ def balance_rows(outcomes: Sequence[Outcome]) -> list[tuple[str, str]]:
     return [*rows, ("warned of", f"{100 * sum(o.warned for o in agreeing) / len(agreeing):.2g} %")]
 
 
+def warned_rows(outcomes: Sequence[Outcome]) -> list[str]:
+    """Name the scenes whose energy balance is warned of although the motion agrees, the worst first."""
+    warned = sorted((o for o in outcomes if o.agrees and o.warned), key=lambda o: -o.balance)
+    if not warned:
+        return []
+    rows = [f"| {o.number} | {o.backend} | {o.rtol:.1g} | {o.balance:.2g} |" for o in warned[:_LISTED]]
+    return ["| warned of | driver | rtol | residual over bound |", "|---|---|---|---|", *rows, ""]
+
+
 def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = None) -> str:
     """Write the report.
 
@@ -100,6 +109,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "|---|---|",
         *(f"| {share} | {ratio} |" for share, ratio in balance_rows(outcomes)),
         "",
+        *warned_rows(outcomes),
         "## Faults",
         "",
         "| scene | driver | ending | where |",

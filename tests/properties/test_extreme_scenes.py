@@ -16,7 +16,7 @@ from gearidae.engine.integrate.driver import Ending
 from gearidae.errors import SceneError
 from gearidae.scene.limits import MOST_PAIRS, check_reach, pairs_within_reach
 from gearidae_bench.attack import run_attack
-from gearidae_bench.attack_report import balance_rows, ending_rows, page
+from gearidae_bench.attack_report import balance_rows, ending_rows, page, warned_rows
 from gearidae_bench.attack_worker import FAULTS, Outcome, judge
 from gearidae_bench.extreme_scenes import extreme_scene
 from gearidae_bench.random_scenes import random_scene
@@ -190,6 +190,7 @@ def test_the_page_counts_endings_and_warnings():
     ]
     assert [(status, count) for status, count, _ in ending_rows(outcomes)] == [("finished", 3), ("killed", 1)]
     assert balance_rows(outcomes)[-1] == ("warned of", "50 %")  # the third's motion does not agree
+    assert [row.split("|")[1].strip() for row in warned_rows(outcomes)[2:-1]] == ["1"]
     text = page(outcomes, 7, date(2026, 1, 2), 9)
     assert "--runs 9 --seed 7" in text
     assert "**Faults: 1.**" in text
