@@ -82,7 +82,8 @@ class AsperityLaw(ABC):
         ----------
         displacement : array_like
             Displacement, positive in compression. The load must be smooth above ``-detach``, where it may end in a
-            fold (a square root), and smooth or Hertzian at 0.
+            jump or a fold (a square root); without stretching it may begin at 0 with any multiple of half a power.
+            Another kink needs `nodes` of its own, with a part on either side of it.
 
         Returns
         -------
