@@ -40,6 +40,7 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.contact.asperities import AsperityLaw
+from gearidae.contact.gauss import gauss_rule
 from gearidae.contact.kernels.densities import kernel_at_knots
 from gearidae.contact.kernels.evaluate import integrated_work, stretched_value
 from gearidae.contact.kernels.knots import loading_derivatives
@@ -168,7 +169,7 @@ def _potential(pieces: Floats, low: float) -> Floats:
     """Pieces of ``int_x^high f`` from those of f, shape (n, 8), both scaled by ``exp(max(x, 0)^2 / 2)``."""
     h = 1.0 / KNOTS_PER_SIGMA
     knots = low + h * np.arange(len(pieces) + 1)
-    x, w = np.polynomial.legendre.leggauss(_GAUSS)
+    x, w = gauss_rule(_GAUSS)
     u = 0.5 * (x + 1.0)
     places = np.maximum(knots[:-1, None] + h * u, 0.0)
     values = pieces @ np.vander(u, 8, increasing=True).T * np.exp(-0.5 * places**2)
@@ -208,7 +209,7 @@ def _stretch_integral(pieces: int) -> Floats:
     """Matrix from a piecewise polynomial f to that of ``v^-2 int_0^v v'^3 f dv'``, both in powers of place."""
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
-    x, w = np.polynomial.legendre.leggauss(_GAUSS)
+    x, w = gauss_rule(_GAUSS)
     n = DEGREE + 1
     matrix = np.zeros((pieces, n, pieces, n))
     before = np.zeros((pieces, n))  # integral over all earlier pieces

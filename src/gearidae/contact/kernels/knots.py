@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.contact.asperities import AsperityLaw
+from gearidae.contact.gauss import gauss_rule
 from gearidae.contact.kernels.densities import kernel_at
 from gearidae.contact.kernels.layout import KNOTS_PER_SIGMA, Floats, Kernel
 
@@ -24,7 +25,7 @@ PANEL: Final = 0.5  # longest panel, in roughnesses
 
 def _close_nodes(law: AsperityLaw) -> tuple[Floats, Floats]:
     """Gauss nodes and weights from joining to half a roughness of compression, where the load is not smooth."""
-    rule = np.polynomial.legendre.leggauss(48)
+    rule = gauss_rule(48)
     edges = np.linspace(-law.join, 0.0, math.ceil(law.join / PANEL) + 1)
     parts = [law.nodes(low, high, *rule) for low, high in pairwise([*edges, PANEL])]
     delta, weight = (np.concatenate(column) for column in zip(*parts, strict=True))
@@ -39,7 +40,7 @@ def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats
     """
     delta, weight = _close_nodes(law)
     result = np.einsum("i,kji->kj", weight, kernel_at(kernel, gap[:, None] + delta[None, :]))
-    x, w = np.polynomial.legendre.leggauss(12)
+    x, w = gauss_rule(12)
     within, half = 0.25 * (x + 1.0), KNOTS_PER_SIGMA // 2
     panels = math.ceil((12.0 - gap[0]) / PANEL)
     step = np.arange(len(gap) + panels * half)
@@ -54,7 +55,7 @@ def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats
 def stretched_derivatives(joined: Floats, law: AsperityLaw, v: Floats, kernel: Kernel) -> Floats:
     """t(Z, S) and three derivatives in Z at fixed S = D (1 - v^2), shape (4, n, len(v))."""
     limit = law.detach - law.join
-    rule = np.polynomial.legendre.leggauss(GAUSS)
+    rule = gauss_rule(GAUSS)
     result = np.empty((4, len(joined), len(v)))
     panels = 1 + int(limit / PANEL)
     for m, value in enumerate(v):
