@@ -1,104 +1,108 @@
-"""Where the sticking limit moves with what is assumed of the coating: pairing, thickness and law of one asperity.
+"""Where the paper's answers move with what is assumed of coating, asperities and radius force.
 
-The low-speed preset runs with each combination; the SAM fraction at which the gear begins to stick within the run is
-bisected, and the smallest speed at half coverage is taken. With independent sides both have the fraction. Makes the
-table of `docs/coating_compared.md`::
+Runs the presets under every combination and writes the tables and pictures of `docs/coating_compared.md`::
 
-    python -m gearidae_bench.coating_comparison
+    python -m gearidae_bench.coating_comparison docs
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 
-import gearidae as gd
-from gearidae.scene import Scene
-from gearidae_bench.sensitivity import sticking_limit
+from gearidae_bench.coating_assumptions import (
+    FRACTIONS,
+    LAWS,
+    HighSpeed,
+    Impact,
+    LowSpeed,
+    high_speed,
+    impacts,
+    low_speed,
+)
+from gearidae_bench.coating_pictures import draw_all
 
-__all__ = ["Compared", "comparison", "comparison_table"]
-
-LAWS: Final = ("jkr", "maugis")
-PAIRINGS: Final = ("patches", "independent")
-THICKNESSES: Final = (0.0, 2.5e-9)
-RESOLUTION: Final = 0.01
-_HALF: Final = 0.5
-
-
-@dataclass(frozen=True, slots=True)
-class Compared:
-    """One set of assumptions and what follows from it.
-
-    Attributes
-    ----------
-    law, pairing : str
-        ``contact.asperity`` and ``coating.pairing``.
-    thickness : float
-        ``coating.thickness`` [m].
-    sticks, turns : float
-        Bracket of the SAM fraction at which the gear begins to stick; NaN where there is none.
-    speed : float
-        Smallest speed at half coverage [rad/s].
-    """
-
-    law: str
-    pairing: str
-    thickness: float
-    sticks: float
-    turns: float
-    speed: float
+__all__ = ["high_speed_table", "impact_table", "low_speed_table", "with_tables", "write_page"]
 
 
-def comparison(
-    base: Scene | None = None,
-    laws: Sequence[str] = LAWS,
-    pairings: Sequence[str] = PAIRINGS,
-    thicknesses: Sequence[float] = THICKNESSES,
-    resolution: float = RESOLUTION,
-) -> Iterator[Compared]:
-    """Run every combination.
-
-    Parameters
-    ----------
-    base : Scene, optional
-        The low-speed preset if not given.
-    laws, pairings, thicknesses : sequence, optional
-        What to combine.
-    resolution : float, optional
-        Width of the bracket of a limit.
-
-    Yields
-    ------
-    Compared
-    """
-    base = base or gd.preset("teodorescu2009_low_speed").replace({"run.samples": 3001})
-    for law, pairing, thickness in itertools.product(laws, pairings, thicknesses):
-        scene = base.replace(
-            {"contact.asperity": law, "coating.pairing": pairing, "coating.thickness": thickness}
-        )
-        sticks, turns = sticking_limit(scene, lowest=0.0, highest=0.9, resolution=resolution)
-        half = gd.simulate(scene.replace({"coating.sam_fraction": _HALF}), samples="off")
-        yield Compared(law, pairing, thickness, sticks, turns, float(half["min_gear_speed"]))
-
-
-def comparison_table(found: Sequence[Compared]) -> str:
-    """Write the combinations as a table in Markdown."""
-    lines = [
-        "| asperity | pairing | thickness | sticks at a SAM fraction of | turns at | smallest speed at 0.5 |",
-        "|---|---|---:|---:|---:|---:|",
-    ]
+def low_speed_table(found: Sequence[LowSpeed]) -> str:
+    """Write what the low-speed gears do as a table in Markdown."""
+    heads = [f"{100 * f:g} %" for f in FRACTIONS]
+    rows = []
     for one in found:
-        ends = [f"{end:.3f}" if not math.isnan(end) else "-" for end in (one.sticks, one.turns)]
-        lines.append(
-            f"| `{one.law}` | {one.pairing} | {one.thickness * 1e9:g} nm | {ends[0]} | {ends[1]} "
-            f"| {one.speed:.4f} rad/s |"
-        )
-    return "\n".join(lines) + "\n"
+        ends = [_number(end, ".3f") for end in (one.sticks, one.turns)]
+        frequencies = [_number(1e-3 * each, ".2f") for each in one.frequencies]
+        rows.append([one.assumption.coating, one.assumption.contact, *ends, f"{one.speed:.4f}", *frequencies])
+    head = ["coating", "asperities", "sticks at", "turns at", "smallest speed at 50 % (rad/s)"]
+    return _table([*head, *(f"frequency at {each} (kHz)" for each in heads)], 2, rows)
+
+
+def high_speed_table(found: Sequence[HighSpeed]) -> str:
+    """Write mean speeds of the high-speed gears as a table in Markdown."""
+    rows = [
+        [one.assumption.contact, f"{one.whole:.2f}", f"{one.bare:.2f}", f"{one.whole - one.bare:.3f}"]
+        for one in found
+    ]
+    return _table(["asperities", "SAM (rad/s)", "bare (rad/s)", "SAM less bare (rad/s)"], 1, rows)
+
+
+def impact_table(found: Sequence[Impact]) -> str:
+    """Write peak forces and tensions of the rollers as a table in Markdown."""
+    rows = [
+        [f"{one.speed:g} m/s", LAWS[one.law], *(_micro(each) for each in (*one.peaks, *one.tensions))]
+        for one in found
+    ]
+    heads = ["peak, bare (uN)", "peak, SAM (uN)", "largest tension, bare (uN)", "largest tension, SAM (uN)"]
+    return _table(["speed", "asperities", *heads], 2, rows)
+
+
+def _micro(force: float) -> str:
+    """Force in uN with three digits; what is below a thousandth of it is none."""
+    return f"{1e6 * force:.3g}" if force >= 1e-9 else "0"
+
+
+def _number(value: float, form: str) -> str:
+    return "-" if math.isnan(value) else format(value, form)
+
+
+def _table(heads: Iterable[str], words: int, rows: Sequence[Sequence[str]]) -> str:
+    """Put a table together whose first columns are words and the others numbers."""
+    heads = list(heads)
+    rule = "|" + "---|" * words + "---:|" * (len(heads) - words)
+    return "\n".join([f"| {' | '.join(heads)} |", rule, *(f"| {' | '.join(row)} |" for row in rows)]) + "\n"
+
+
+def with_tables(page: str, tables: Mapping[str, str]) -> str:
+    """Return a page with its tables renewed, each between ``<!-- NAME -->`` and ``<!-- end -->``.
+
+    Raises
+    ------
+    ValueError
+        If the page has no place for one of them.
+    """
+    for name, table in tables.items():
+        before, begin, rest = page.partition(f"<!-- {name} -->\n")
+        _, end, after = rest.partition("<!-- end -->")
+        if not end:
+            raise ValueError(f"the page has no place for the table {name}")
+        page = f"{before}{begin}\n{table}\n{end}{after}"
+    return page
+
+
+def write_page(docs: Path) -> None:
+    """Run everything, and renew tables and pictures of the page in a folder of documentation."""
+    page = docs / "coating_compared.md"
+    low = list(low_speed())
+    tables = {
+        "impacts": impact_table(list(impacts())),
+        "high speed": high_speed_table(list(high_speed())),
+        "low speed": low_speed_table(low),
+    }
+    page.write_text(with_tables(page.read_text(), tables))
+    draw_all(low, docs / "images")
 
 
 if __name__ == "__main__":
-    sys.stdout.write(comparison_table(list(comparison())))
+    write_page(Path(sys.argv[1]))

@@ -49,7 +49,7 @@ def test_the_engine_reads_the_tooth_and_place_of_a_pair(coast):
             fraction_at(table, tooth, place) for table, tooth in zip((PINION, GEAR), teeth, strict=True)
         ]
         expected = interface_shares("independent", *fractions)
-        ours = shares_of(m, coast, pair, place * ratio)
+        ours = shares_of(m, coast * int(m.scene.slots), coast, pair, place * ratio)
         assert ours == pytest.approx(
             [expected[name].item() for name in ("bare", "coated", "mixed")], abs=1e-13
         )
@@ -75,8 +75,8 @@ def test_shares_are_smooth_and_their_derivatives_true():
     m = make_problem(sides(SHORT, PINION, GEAR)).model
     step = 1e-5
     for inside in np.linspace(0.01, SHORT.geometry.contact_ratio - 0.01, 57):
-        low, here, high = (np.array(shares_of(m, 0, 4, inside + by * step)) for by in (-1, 0, 1))
-        value, slope, bend = (np.array(one) for one in share_changes(m, 0, 4, inside))
+        low, here, high = (np.array(shares_of(m, 0, 0, 4, inside + by * step)) for by in (-1, 0, 1))
+        value, slope, bend = (np.array(one) for one in share_changes(m, 0, 0, 4, inside))
         np.testing.assert_allclose(value, here, atol=1e-15)
         # differences of second order: the third and fourth derivatives times step^2, and rounding over step
         np.testing.assert_allclose((high - low) / (2 * step), slope, atol=1e-6)
@@ -91,10 +91,11 @@ def test_lengths_of_the_materials_change_as_said():
     w, w_rate, dt = 3.0, 0.7, 1e-3
     travel = [m.scene.phase_rate * (w * t + 0.5 * w_rate * t * t) for t in (-dt, 0.0, dt)]
     for coast, pair, phase in [(0, 0, 0.4), (0, -1, 0.1), (1, 0, 1.9)]:
+        k = coast * int(m.scene.slots)
         low, here, high = (
-            np.array(material_lengths(m, coast, pair, phase + by, w, w_rate)[0]) for by in travel
+            np.array(material_lengths(m, k, coast, pair, phase + by, w, w_rate)[0]) for by in travel
         )
-        _, rate, bend = (np.array(one) for one in material_lengths(m, coast, pair, phase, w, w_rate))
+        _, rate, bend = (np.array(one) for one in material_lengths(m, k, coast, pair, phase, w, w_rate))
         np.testing.assert_allclose((high - low) / (2 * dt), rate, rtol=1e-5, atol=1e-12)
         np.testing.assert_allclose((high - 2 * here + low) / dt**2, bend, rtol=1e-3, atol=1e-7)
 
@@ -158,12 +159,11 @@ def test_the_work_of_changing_shares_is_the_sum_of_what_they_store():
 
 
 def test_losses_of_the_materials_add_up():
-    scene = sides(SHORT, PINION, GEAR)
-    m = make_problem(scene).model
-    k = 0
+    problem = make_problem(sides(SHORT, PINION, GEAR))
+    m, k = problem.model, 0
     m.state.history[k].joined[:] = 6.0
-    losses, slopes = losses_by_material(m, k, 4.0)
-    near, _ = losses_by_material(m, k, 4.0 - 1e-5)
+    losses, slopes = losses_by_material(m, k, problem.start, 4.0)
+    near, _ = losses_by_material(m, k, problem.start, 4.0 - 1e-5)
     for material in range(3):
         assert losses[material] > 0.0
         assert (losses[material] - near[material]) / 1e-5 == pytest.approx(slopes[material], rel=1e-4)

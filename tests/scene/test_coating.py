@@ -164,10 +164,6 @@ def test_bad_tables_name_the_key_and_what_is_allowed(changes, message):
         tables(**changes)
 
 
-def test_tables_need_rigid_gears():
-    with pytest.raises(
-        SceneError, match=r"contact\.model = auto: must be \"asperity\" with coating\.pinion_table"
-    ):
-        LOW.replace({"coating.pinion_table": [[0.5]]})
+def test_tables_need_gears():
     with pytest.raises(SceneError, match=r"coating\.pinion_table = .*: needs gears: a roller has no teeth"):
         gd.preset("roller_slow").replace({"coating.pinion_table": [[0.5]]})

@@ -138,7 +138,7 @@ def check_tables(scene: Scene) -> None:
     Raises
     ------
     SceneError
-        Naming ``coating.pinion_table`` or ``coating.gear_table``, or ``contact.model``.
+        Naming ``coating.pinion_table`` or ``coating.gear_table``.
     """
     for side in ("pinion", "gear"):
         table: Any = getattr(scene.coating, f"{side}_table")
@@ -153,10 +153,4 @@ def check_tables(scene: Scene) -> None:
                 key,
                 f"({len(table)} rows)",
                 f"must have {teeth} rows, one for each tooth of the {side}, or one row for all",
-            )
-        if scene.contact.model != "asperity":
-            raise SceneError(
-                "contact.model",
-                scene.contact.model,
-                f'must be "asperity" with {key}: by tooth and place a coating is followed for rigid bodies',
             )

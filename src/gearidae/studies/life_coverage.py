@@ -153,11 +153,6 @@ def coverage_of(scene: Scene, resolved: str, places: int) -> Coverage:
         return Coverage(resolved, (len(start), 1, 1), independent, start)
     if independent:
         raise SceneError("coating.pairing", coating.pairing, f'must be patches with resolved = "{resolved}"')
-    if scene.contact.model != "asperity":
-        allowed = (
-            f'must be asperity with resolved = "{resolved}": by place a coating is followed for rigid bodies'
-        )
-        raise SceneError("contact.model", scene.contact.model, allowed)
     teeth = gears.pinion_teeth if resolved == "tooth" else 1
     table = np.full((teeth, places), coating.sam_fraction)
     if coating.pinion_table:

@@ -122,7 +122,7 @@ def test_quadrature_follows_both_branches(zone):
 
 
 @pytest.mark.parametrize("length", [0.04, 0.244])
-@pytest.mark.parametrize("zone", [0.5207, 0.8, 0.9487, 5.785, 23.14])
+@pytest.mark.parametrize("zone", [0.5207, 0.68, 0.722, 0.9375, 0.9385, 0.9487, 5.785, 23.14])
 def test_force_table_against_quadrature(length, zone):
     law = Maugis(length, zone)
     table, heights = law_table(law), Heights(1.0, 1.0, law)
@@ -133,8 +133,8 @@ def test_force_table_against_quadrature(length, zone):
     loading = heights.integral(psi, gap, np.full(150, law.join), decays_left=False)
     values = np.array([law_value(table, g, g - s * width)[0] for g, s in zip(gap, share, strict=True)])
     size = np.abs(loading) + np.abs(exact - loading)
-    # 1e-9 as for other laws, but for a zone below 0.94, where the load has a kink: 3e-8
-    assert np.max(np.abs(values - exact) / size) < (1e-9 if zone > 0.94 else 3e-8)
+    # 1e-9 as for other laws; 5e-9 where fold and touch lie close to each other or to joining
+    assert np.max(np.abs(values - exact) / size) < (1e-9 if zone > 0.94 or zone < 0.6 else 5e-9)
     # the readable law against adaptive quadrature of the load itself
     top = math.sqrt(9.5 - min(gap[0], 0.0) + law.detach + 2)
     bend = [math.sqrt(max(law.length * law._marks[1] + law.detach, 0.0)), math.sqrt(law.detach)]

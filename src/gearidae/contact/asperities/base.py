@@ -74,6 +74,14 @@ class AsperityLaw(ABC):
         """Even pieces in ``sqrt((displacement + detach) / (detach - join))``, of degree seven, that the load wants."""
         return 4
 
+    @property
+    def kink(self) -> float:
+        """The same square root at a kink of the load between detachment and joining; 1 if there is none.
+
+        Above it the load may grow with the power 3/2 of the way, as it does from touching on.
+        """
+        return 1.0
+
     @abstractmethod
     def load(self, displacement: ArrayLike) -> Floats:
         """Load of an asperity in contact, on the branch that is stable under given displacement.

@@ -179,13 +179,15 @@ class Maugis(AsperityLaw):
 
     @property
     def pieces(self) -> int:
-        """Pieces of the load in v: 12 where fold and touch come close together, more to put a kink between two."""
+        """Pieces of the load in v, where fold and touch may come close together."""
+        return 12
+
+    @property
+    def kink(self) -> float:
+        """Where a tip that is drawn away ceases to touch before it lets go."""
         join = -2.0 / (math.pi * self.zone)
         _, touch, fold, _ = self._marks
-        if not fold < touch < join:
-            return 12
-        v = math.sqrt((touch - fold) / (join - fold))
-        return min(range(12, 33), key=lambda n: abs(v * n - round(v * n)) / n)
+        return math.sqrt((touch - fold) / (join - fold)) if fold < touch < join else 1.0
 
     def load(self, displacement: ArrayLike) -> Floats:
         """Load of an asperity on its stable branch; see `AsperityLaw.load`."""

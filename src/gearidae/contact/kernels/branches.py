@@ -8,12 +8,17 @@ from typing import Final
 import numpy as np
 
 from gearidae.compiled import compiled
+from gearidae.contact.kernels.division import place_above
 from gearidae.contact.kernels.evaluate import coefficients, power8, value_and_slope
 from gearidae.contact.kernels.lanes import eight_powers
 from gearidae.contact.kernels.layout import (
     DEGREE,
+    H_ABOVE,
+    H_BEFORE,
+    H_BELOW,
     H_COUNT,
     H_END,
+    H_KINK,
     H_LOW,
     H_MODE,
     H_PARTIAL,
@@ -29,7 +34,11 @@ __all__ = ["B_PIECES", "branch_length", "branch_value", "set_branch"]
 B_SHARE: Final = 0  # 1 / D
 B_PIECES: Final = 1
 B_END: Final = 2  # t at full stretch
-B_BODY: Final = 3  # then eight powers for each piece in v
+B_BEFORE: Final = 3  # the division of v, as in the header of a table,
+B_KINK: Final = 4
+B_BELOW: Final = 5
+B_ABOVE: Final = 6
+B_BODY: Final = 7  # then eight powers for each piece in v
 
 
 @compiled
@@ -61,7 +70,8 @@ def set_branch(table: Floats, joined: float, branch: Floats) -> None:
     u4 = u2 * u2
     decay = math.exp(-0.5 * joined * joined) if joined > 0.0 else 1.0
     branch[B_SHARE] = 1.0 / table[H_STRETCH]
-    branch[B_PIECES] = table[H_PIECES]
+    branch[B_PIECES], branch[B_BEFORE], branch[B_KINK] = table[H_PIECES], table[H_BEFORE], table[H_KINK]
+    branch[B_BELOW], branch[B_ABOVE] = table[H_BELOW], table[H_ABOVE]
     branch[B_END] = decay * power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)
     start = int(table[H_PARTIAL]) + 8 * (DEGREE + 1) * j * pieces
     for piece in range(pieces):
@@ -76,8 +86,11 @@ def branch_value(branch: Floats, stretch: float) -> tuple[float, float]:
     """t(Z, S) and its slope in S on a branch, 0 <= S <= D."""
     share = branch[B_SHARE]
     v = math.sqrt(max(1.0 - stretch * share, 0.0))
-    place = v * branch[B_PIECES]
+    scale = branch[B_BELOW]
+    place = v * scale
+    if v >= branch[B_KINK]:
+        place, scale = place_above(branch[B_BEFORE], branch[B_PIECES], branch[B_ABOVE], v - branch[B_KINK])
     piece = min(int(place), int(branch[B_PIECES]) - 1)
     r = 2.0 * (place - piece) - 1.0
     f, d = value_and_slope(coefficients(branch, np.uintp(B_BODY + (DEGREE + 1) * piece)), r)
-    return branch[B_END] + v * v * f, -(f + place * d) * share
+    return branch[B_END] + v * v * f, -(f + v * scale * d) * share

@@ -42,6 +42,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.asperities import AsperityLaw
 from gearidae.contact.gauss import gauss_rule
 from gearidae.contact.kernels.densities import kernel_at_knots
+from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.evaluate import integrated_work, stretched_value
 from gearidae.contact.kernels.knots import loading_derivatives
 from gearidae.contact.kernels.law import law_table, stretch_followed
@@ -54,7 +55,6 @@ from gearidae.contact.kernels.layout import (
     H_LOW,
     H_MODE,
     H_PARTIAL,
-    H_PIECES,
     H_STRETCH,
     HEADER,
     KNOTS_PER_SIGMA,
@@ -193,36 +193,36 @@ def _potential(pieces: Floats, low: float) -> Floats:
 
 def _store_partial(law: Floats, end: Floats, table: Floats) -> None:
     """Pieces of e(Z, S) as ``V(Z) + v^2 times a polynomial``, which begins with ``D t(Z, D)``."""
-    pieces, limit, first = int(law[H_PIECES]), law[H_STRETCH], int(law[H_PARTIAL])
-    n = DEGREE + 1
+    division, limit, first = Division.read(law), law[H_STRETCH], int(law[H_PARTIAL])
+    pieces, n = division.pieces, DEGREE + 1
     shape = (len(end), pieces, 8, n)
     size = math.prod(shape)
     # powers of v in all pieces, then those of u
     partial = law[first : first + size].reshape(shape).swapaxes(2, 3).reshape(len(end), pieces * n, 8)
-    result = 2.0 * limit * np.einsum("ab,jbc->jac", _stretch_integral(pieces), partial, optimize=True)
+    result = 2.0 * limit * np.einsum("ab,jbc->jac", _stretch_integral(division), partial, optimize=True)
     result[:, ::n] += limit * end[:, None]
     table[first : first + size] = result.reshape(len(end), pieces, n, 8).swapaxes(2, 3).ravel()
 
 
 @lru_cache(maxsize=8)
-def _stretch_integral(pieces: int) -> Floats:
+def _stretch_integral(division: Division) -> Floats:
     """Matrix from a piecewise polynomial f to that of ``v^-2 int_0^v v'^3 f dv'``, both in powers of place."""
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
     x, w = gauss_rule(_GAUSS)
-    n = DEGREE + 1
+    pieces, n = division.pieces, DEGREE + 1
     matrix = np.zeros((pieces, n, pieces, n))
     before = np.zeros((pieces, n))  # integral over all earlier pieces
     for piece in range(pieces):
         rows = np.zeros((n, pieces, n))
         for i, node in enumerate((*nodes, 1.0)):
             r = -1.0 + 0.5 * (node + 1.0) * (x + 1.0)
-            v = (piece + 0.5 * (r + 1.0)) / pieces
-            weight = 0.25 * (node + 1.0) * w / pieces * v**3
+            v = division.at(piece, 0.5 * (r + 1.0))
+            weight = 0.25 * (node + 1.0) * w / division.scale(piece) * v**3
             upto = before.copy()
             upto[piece] += weight @ np.vander(r, n, increasing=True)
             if i < n:
-                rows[i] = upto / ((piece + 0.5 * (node + 1.0)) / pieces) ** 2
+                rows[i] = upto / division.at(piece, 0.5 * (node + 1.0)) ** 2
             else:
                 before = upto
         matrix[piece] = np.einsum("ab,bcd->acd", to_powers, rows)

@@ -8,13 +8,15 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.lanes import eight_powers
+from gearidae.contact.kernels.division import place_of
+from gearidae.contact.kernels.lanes import BESIDE, eight_powers, three_slopes
 from gearidae.contact.kernels.layout import (
     DEGREE,
     GAP_HIGH,
     GAP_LOW,
     H_COUNT,
     H_END,
+    H_KINK,
     H_LOW,
     H_MODE,
     H_PARTIAL,
@@ -29,7 +31,6 @@ from gearidae.contact.kernels.layout import (
 )
 
 __all__ = [
-    "blended_value",
     "coefficients",
     "integrated_value",
     "integrated_work",
@@ -37,15 +38,16 @@ __all__ = [
     "loading_value",
     "power8",
     "stretched_value",
+    "three_values",
     "value_and_slope",
 ]
 
+Three: TypeAlias = tuple[float, float, float]
 Eight: TypeAlias = tuple[float, float, float, float, float, float, float, float]
 
 # Indices are unsigned where it counts: a signed one makes numba test for Python's negative indices at every access.
 _AT: Final = tuple(np.uintp(i) for i in range(8))
 _A1, _A2, _A3, _A4, _A5, _A6, _A7 = _AT[1:]
-_THREES: Final = tuple(np.uintp(3 * i) for i in range(8))
 
 
 @compiled
@@ -97,51 +99,31 @@ def loading_value(table: Floats, offset: int, gap: float) -> tuple[float, float]
     return _septic(table, offset, gap, GAP_LOW, N_LOADING)
 
 
-@compiled(inline=True)
-def _blended(table: Floats, k: np.uintp, a: float, b: float, c: float) -> float:
-    """Sum of a coefficient of three branches, which lie side by side."""
-    return a * table[k] + b * table[k + _A1] + c * table[k + _A2]
-
-
 @compiled
-def blended_value(
-    table: Floats, offset: int, shares: tuple[float, float, float], gap: float
-) -> tuple[float, float]:
-    """Sum of three loading branches by their shares, and its slope: one polynomial of the sums of the coefficients.
+def three_values(table: Floats, offset: int, gap: float) -> tuple[Three, Three]:
+    """Three loading branches at one gap, and their slopes.
 
     Parameters
     ----------
     table : ndarray
-        Where the branches lie, in the layout of loading branches, the three numbers of each coefficient side by side.
+        Where the branches lie, in the layout of loading branches, the three numbers of each coefficient side by side
+        and one more.
     offset : int
         Where they begin.
-    shares : tuple of three float
-        By what each is multiplied.
     gap : float
         G, gap over roughness [1].
     """
     if gap >= GAP_HIGH:
-        return 0.0, 0.0
+        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     position = (gap - GAP_LOW) * KNOTS_PER_SIGMA
     j = min(max(int(position), 0), N_LOADING - 1)
-    k, u = np.uintp(offset + 24 * j), position - j
-    a, b, c = shares
-    sums = (
-        _blended(table, k, a, b, c),
-        _blended(table, k + _THREES[1], a, b, c),
-        _blended(table, k + _THREES[2], a, b, c),
-        _blended(table, k + _THREES[3], a, b, c),
-        _blended(table, k + _THREES[4], a, b, c),
-        _blended(table, k + _THREES[5], a, b, c),
-        _blended(table, k + _THREES[6], a, b, c),
-        _blended(table, k + _THREES[7], a, b, c),
-    )
-    f, d = value_and_slope(sums, u)
-    d *= KNOTS_PER_SIGMA
+    a, b, c, a1, b1, c1 = three_slopes(table, np.uintp(offset + 8 * BESIDE * j), position - j)
+    a1, b1, c1 = KNOTS_PER_SIGMA * a1, KNOTS_PER_SIGMA * b1, KNOTS_PER_SIGMA * c1
     if gap > 0.0:
         decay = math.exp(-0.5 * gap * gap)
-        return f * decay, (d - gap * f) * decay
-    return f, d
+        slopes = (a1 - gap * a) * decay, (b1 - gap * b) * decay, (c1 - gap * c) * decay
+        return (a * decay, b * decay, c * decay), slopes
+    return (a, b, c), (a1, b1, c1)
 
 
 @compiled(inline=True)
@@ -155,14 +137,14 @@ def _partial(table: Floats, joined: float, stretch: float) -> tuple[float, float
     u2 = u * u
     u4 = u2 * u2
     v = math.sqrt(1.0 - stretch / limit)
-    place = v * pieces
+    place, scale = place_of(table, v)
     piece = min(int(place), pieces - 1)
     r = 2.0 * (place - piece) - 1.0
     start = int(table[H_PARTIAL]) + 8 * (DEGREE + 1) * (j * pieces + piece)
     f, d = value_and_slope(eight_powers(table, np.uintp(start), u), r)
     end = power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)
     decay = math.exp(-0.5 * joined * joined) if joined > 0.0 else 1.0
-    return (end + v * v * f) * decay, -(f + place * d) / limit * decay
+    return (end + v * v * f) * decay, -(f + v * scale * d) / limit * decay
 
 
 @compiled
@@ -184,19 +166,28 @@ def _sums(table: Floats, joined: float, stretch: float) -> tuple[float, float, f
     lowest = joined + stretch - table[int(table[H_PARTIAL])]
     panels = 1 + int(stretch / 0.25)
     pull = rate = work = 0.0
-    # the fold is regular in e = sqrt((Delta + detach) / D)
-    e_low = math.sqrt(max(1.0 - stretch / limit, 0.0))
-    for panel in range(panels):
-        a = e_low + (1.0 - e_low) * panel / panels
-        b = e_low + (1.0 - e_low) * (panel + 1) / panels
-        for i in range(8):
-            e = 0.5 * (a + b) + 0.5 * (b - a) * _GAUSS_X[i]
-            value, slope = _septic(table, offset + 1, lowest + limit * (e * e - 1.0), low, count)
-            weight = 0.5 * (b - a) * _GAUSS_W[i] * 2.0 * limit * e
-            load = weight * _piece_value(table, loads, pieces, e)
-            pull += load * value
-            rate += load * slope
-            work += weight * _piece_value(table, works, pieces, e) * value
+    # the fold is regular in e = sqrt((Delta + detach) / D), and above a kink sqrt(e - kink) is
+    start, kink = math.sqrt(max(1.0 - stretch / limit, 0.0)), table[H_KINK]
+    while start < 1.0:
+        above = kink <= start
+        end = 1.0 if above or kink >= 1.0 else kink
+        first, last = (math.sqrt((start - kink) / (1.0 - kink)), 1.0) if above else (start, end)
+        for panel in range(panels):
+            a = first + (last - first) * panel / panels
+            b = first + (last - first) * (panel + 1) / panels
+            for i in range(8):
+                e = 0.5 * (a + b) + 0.5 * (b - a) * _GAUSS_X[i]
+                weight = 0.5 * (b - a) * _GAUSS_W[i] * 2.0 * limit
+                if above:
+                    weight *= 2.0 * (1.0 - kink) * e
+                    e = kink + (1.0 - kink) * e * e
+                weight *= e
+                value, slope = _septic(table, offset + 1, lowest + limit * (e * e - 1.0), low, count)
+                load = weight * _piece_value(table, loads, pieces, e)
+                pull += load * value
+                rate += load * slope
+                work += weight * _piece_value(table, works, pieces, e) * value
+        start = end
     return pull, rate, work
 
 
@@ -210,7 +201,7 @@ def _asperity_places(table: Floats) -> tuple[int, int, int]:
 @compiled(inline=True)
 def _piece_value(table: Floats, offset: int, pieces: int, e: float) -> float:
     """Polynomial pieces on 0..1 at e."""
-    place = e * pieces
+    place, _ = place_of(table, e)
     piece = min(int(place), pieces - 1)
     r = 2.0 * (place - piece) - 1.0
     r2 = r * r

@@ -1,7 +1,8 @@
-"""Eight polynomials at one place, side by side in the processor's wide registers.
+"""Polynomials at one place, side by side in the processor's wide registers.
 
 Compilers do not see that the eight coefficients of the second variable in a two-dimensional table are eight polynomials
-of the first, so the vector instructions are written down here.
+of the first, nor that the branches of three materials are polynomials of one gap, so the vector instructions are
+written down here.
 """
 
 from __future__ import annotations
@@ -13,41 +14,57 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-__all__ = ["eight_powers"]
+__all__ = ["BESIDE", "eight_powers", "three_slopes"]
 
 _LANES = 8
+BESIDE = 4
+"""Numbers of each power that `three_slopes` reads, of which the last is padding."""
+
+
+class _Lanes:
+    """Vectors of the lanes of a function that is being compiled."""
+
+    def __init__(self, context: Any, builder: Any, kind: Any, array: Any, start: Any, count: int) -> None:
+        self._builder, self._start, self._count = builder, start, count
+        self._vector = ir.VectorType(ir.DoubleType(), count)
+        self._data = context.make_array(kind)(context, builder, array).data
+
+    def spread(self, value: Any) -> Any:
+        """Put one number into all lanes."""
+        result = ir.Constant(self._vector, ir.Undefined)
+        for k in range(self._count):
+            result = self._builder.insert_element(result, value, ir.Constant(ir.IntType(32), k))
+        return result
+
+    def power(self, power: int) -> Any:
+        """Coefficients of a power."""
+        place = self._builder.add(self._start, ir.Constant(self._start.type, self._count * power))
+        address = cgutils.gep_inbounds(self._builder, self._data, place)  # type: ignore[no-untyped-call]
+        return self._builder.load(self._builder.bitcast(address, self._vector.as_pointer()), align=8)
+
+    def line(self, low: Any, high: Any, by: Any) -> Any:
+        """``low + high * by``."""
+        return self._builder.fadd(low, self._builder.fmul(high, by))
+
+    def parts(self, vector: Any, count: int) -> list[Any]:
+        """Return the numbers of the first lanes."""
+        return [self._builder.extract_element(vector, ir.Constant(ir.IntType(32), k)) for k in range(count)]
 
 
 def _eight_powers(typing: Any, table: Any, start: Any, u: Any) -> Any:
     """Type and code of `eight_powers`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        real = ir.DoubleType()
-        lanes = ir.VectorType(real, _LANES)
-        array = context.make_array(signature.args[0])(context, builder, values[0])
-
-        def spread(value: Any) -> Any:
-            """Put one number into all lanes."""
-            result = ir.Constant(lanes, ir.Undefined)
-            for k in range(_LANES):
-                result = builder.insert_element(result, value, ir.Constant(ir.IntType(32), k))
-            return result
-
-        def coefficients(power: int) -> Any:
-            place = builder.add(values[1], ir.Constant(values[1].type, _LANES * power))
-            address = cgutils.gep_inbounds(builder, array.data, place)  # type: ignore[no-untyped-call]
-            return builder.load(builder.bitcast(address, lanes.as_pointer()), align=8)
-
-        def line(power: int, by: Any) -> Any:
-            return builder.fadd(coefficients(power), builder.fmul(coefficients(power + 1), by))
-
+        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], _LANES)
         once = values[2]
         square = builder.fmul(once, once)
-        u1, u2, u4 = spread(once), spread(square), spread(builder.fmul(square, square))
-        low = builder.fadd(line(0, u1), builder.fmul(line(2, u1), u2))
-        high = builder.fadd(line(4, u1), builder.fmul(line(6, u1), u2))
-        total = builder.fadd(low, builder.fmul(high, u4))
-        parts = [builder.extract_element(total, ir.Constant(ir.IntType(32), k)) for k in range(_LANES)]
+        u1, u2, u4 = lanes.spread(once), lanes.spread(square), lanes.spread(builder.fmul(square, square))
+
+        def line(power: int) -> Any:
+            return lanes.line(lanes.power(power), lanes.power(power + 1), u1)
+
+        low, high = lanes.line(line(0), line(2), u2), lanes.line(line(4), line(6), u2)
+        parts = lanes.parts(lanes.line(low, high, u4), _LANES)
         return context.make_tuple(builder, signature.return_type, parts)
 
     result = types.UniTuple(types.float64, _LANES)  # type: ignore[no-untyped-call]
@@ -56,3 +73,31 @@ def _eight_powers(typing: Any, table: Any, start: Any, u: Any) -> Any:
 
 eight_powers: Any = intrinsic(_eight_powers)
 """Eight polynomials of degree seven at u: their coefficients of u^0 lie at ``start``, those of u^1 after these, ..."""
+
+
+def _three_slopes(typing: Any, table: Any, start: Any, u: Any) -> Any:
+    """Type and code of `three_slopes`."""
+
+    def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], BESIDE)
+        once = values[2]
+        square = builder.fmul(once, once)
+        u1, u2, u4 = lanes.spread(once), lanes.spread(square), lanes.spread(builder.fmul(square, square))
+        c = [lanes.power(k) for k in range(8)]
+        n = [
+            builder.fmul(lanes.spread(ir.Constant(ir.DoubleType(), float(k))), c[k]) if k > 1 else c[k]
+            for k in range(8)
+        ]
+        low = lanes.line(lanes.line(c[0], c[1], u1), lanes.line(c[2], c[3], u1), u2)
+        high = lanes.line(lanes.line(c[4], c[5], u1), lanes.line(c[6], c[7], u1), u2)
+        slope = lanes.line(lanes.line(n[1], n[2], u1), lanes.line(n[3], n[4], u1), u2)
+        slope = lanes.line(slope, lanes.line(lanes.line(n[5], n[6], u1), n[7], u2), u4)
+        parts = lanes.parts(lanes.line(low, high, u4), 3) + lanes.parts(slope, 3)
+        return context.make_tuple(builder, signature.return_type, parts)
+
+    result = types.UniTuple(types.float64, 6)  # type: ignore[no-untyped-call]
+    return result(table, types.uintp, types.float64), evaluate
+
+
+three_slopes: Any = intrinsic(_three_slopes)
+"""Three polynomials of degree seven at u, then their derivatives: `BESIDE` coefficients of u^0 lie at ``start``, ..."""

@@ -20,8 +20,12 @@ __all__ = [
     "GAP_HIGH",
     "GAP_LOW",
     "HEADER",
+    "H_ABOVE",
+    "H_BEFORE",
+    "H_BELOW",
     "H_COUNT",
     "H_END",
+    "H_KINK",
     "H_LOW",
     "H_MODE",
     "H_PARTIAL",
@@ -55,7 +59,11 @@ H_PARTIAL: Final = (
 )
 H_PIECES: Final = 6
 H_PSI: Final = 7  # offset of psi, with its own first knot in front
-HEADER: Final = 8  # the loading branch follows at once
+H_BEFORE: Final = 8  # pieces below the kink of one asperity's load, and its v,
+H_KINK: Final = 9
+H_BELOW: Final = 10  # and how many pieces there are in a unit of v below it, and above
+H_ABOVE: Final = 11
+HEADER: Final = 12  # the loading branch follows at once
 
 # Modes of the partly stretched branch; 0 where loading and unloading agree.
 MODE_TABLE: Final = 1

@@ -9,9 +9,9 @@ import numpy as np
 
 from gearidae.contact.asperities import AsperityLaw
 from gearidae.contact.kernels.densities import kernel_at_knots
+from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.knots import stretched_derivatives
 from gearidae.contact.kernels.layout import (
-    ASPERITY_PIECES,
     DEGREE,
     GAP_HIGH,
     GAP_LOW,
@@ -75,7 +75,9 @@ def hermite_pieces(knots: Floats, derivatives: Floats) -> Floats:
     return np.moveaxis(np.tensordot(hermite_matrix(), np.stack(ends), axes=1), 0, 1)
 
 
-def partial_pieces(joined: Floats, end: Floats, law: AsperityLaw, pieces: int, kernel: Kernel) -> Floats:
+def partial_pieces(
+    joined: Floats, end: Floats, law: AsperityLaw, division: Division, kernel: Kernel
+) -> Floats:
     """Pieces of t(Z, S) as ``t(Z, D) + v^2 times a polynomial`` (regular slope at the fold): the polynomial.
 
     Returns
@@ -85,9 +87,9 @@ def partial_pieces(joined: Floats, end: Floats, law: AsperityLaw, pieces: int, k
     """
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
-    out = np.empty((len(joined) - 1, pieces, 8, DEGREE + 1))
-    for piece in range(pieces):
-        v = (piece + 0.5 * (nodes + 1.0)) / pieces
+    out = np.empty((len(joined) - 1, division.pieces, 8, DEGREE + 1))
+    for piece in range(division.pieces):
+        v = np.asarray(division.at(piece, 0.5 * (nodes + 1.0)))
         rest = (stretched_derivatives(joined, law, v, kernel) - end) / v**2
         out[:, piece] = hermite_pieces(joined, rest) @ to_powers.T
     return out
@@ -101,11 +103,11 @@ def kernel_table(kernel: Kernel) -> Floats:
     return np.concatenate([[low], hermite_pieces(knots, kernel_at_knots(kernel, knots)).ravel()])
 
 
-def asperity_pieces(law: AsperityLaw) -> Floats:
+def asperity_pieces(law: AsperityLaw, division: Division) -> Floats:
     """Pieces of one asperity's load while it is stretched, and of the work that stretching it has taken.
 
     Both are smooth in ``e = sqrt((Delta + detach) / D)``, from the fold e = 0, where an asperity lets go, to e = 1,
-    where it joins. `ASPERITY_PIECES` pieces cover that.
+    where it joins.
 
     Returns
     -------
@@ -114,7 +116,8 @@ def asperity_pieces(law: AsperityLaw) -> Floats:
     """
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
-    e = (np.arange(ASPERITY_PIECES)[:, None] + 0.5 * (nodes + 1.0)) / ASPERITY_PIECES
+    parts = 0.5 * (nodes + 1.0)
+    e = np.stack([np.asarray(division.at(piece, parts)) for piece in range(division.pieces)])
     delta = (law.detach - law.join) * e**2 - law.detach
     work = law.energy(-law.join) - law.energy(delta)
     return np.concatenate([[law.join], (law.load(delta) @ to_powers.T).ravel(), (work @ to_powers.T).ravel()])

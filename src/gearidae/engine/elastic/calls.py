@@ -33,6 +33,8 @@ __all__ = [
     "JOIN",
     "JOINING_LOSS",
     "LENGTH_FORCE",
+    "MATERIAL_ENERGY",
+    "MATERIAL_LOSS",
     "NUMBER",
     "QUESTION",
     "RATES",
@@ -46,6 +48,8 @@ __all__ = [
     "node_residual",
     "nodes_joining_loss",
     "nodes_length_force",
+    "nodes_material_energy",
+    "nodes_material_loss",
     "nodes_number",
     "nodes_stored",
     "service",
@@ -61,6 +65,8 @@ STORED: Final = 6
 JOINING_LOSS: Final = 7
 LENGTH_FORCE: Final = 8
 NUMBER: Final = 9
+MATERIAL_ENERGY: Final = 10
+MATERIAL_LOSS: Final = 11
 
 
 @cache
@@ -190,3 +196,18 @@ def nodes_length_force(
 def nodes_number(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
     """See `gearidae.engine.elastic.energy.nodes_number`; the material is asked for in the place of a flag."""
     return _ask(m.work.elastic_service, m, Question(NUMBER, k, material, 0.0, gap, 0.0, 0.0), y, y)[0]
+
+
+@compiled
+def nodes_material_energy(
+    m: Model, k: int, y: Floats, gap: float, rate: float, material: int
+) -> tuple[float, float]:
+    """See `gearidae.engine.elastic.energy.nodes_material_energy`; the material is asked for as above."""
+    question = Question(MATERIAL_ENERGY, k, material, 0.0, gap, rate, 0.0)
+    return _ask(m.work.elastic_service, m, question, y, y)
+
+
+@compiled
+def nodes_material_loss(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
+    """See `gearidae.engine.elastic.energy.nodes_material_loss`; the material is asked for as above."""
+    return _ask(m.work.elastic_service, m, Question(MATERIAL_LOSS, k, material, 0.0, gap, 0.0, 0.0), y, y)[0]

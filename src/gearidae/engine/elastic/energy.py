@@ -31,6 +31,7 @@ from gearidae.engine.elastic.rows import (
     ADHERED_ENERGY,
     JOINED,
     PRESSURE,
+    SHARE,
     first_unknown,
     influence_powers,
     node_profile,
@@ -38,10 +39,19 @@ from gearidae.engine.elastic.rows import (
     point_gaps,
     point_weights,
     row,
+    to_points,
 )
+from gearidae.engine.model.coverage import noted_shares, potential_of, potentials_of
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 
-__all__ = ["nodes_joining_loss", "nodes_length_force", "nodes_number", "nodes_stored"]
+__all__ = [
+    "nodes_joining_loss",
+    "nodes_length_force",
+    "nodes_material_energy",
+    "nodes_material_loss",
+    "nodes_number",
+    "nodes_stored",
+]
 
 
 @compiled(makes_arrays=True)
@@ -53,11 +63,11 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
     """
     node_force(m, k, True, t, y, gap, rate, length)
     first, profile, weights = first_unknown(m, k), node_profile(m), node_weights(m)
-    pressure = row(m, k, PRESSURE)
+    pressure, shares = row(m, k, PRESSURE), noted_shares(m, k)
     energy = 0.0
     for i in range(m.scene.nodes):
         h = gap + profile[i] + y[first + i]
-        own = loading_value(m.tables, m.scene.potential_at, h)[0] + 0.5 * pressure[i] * y[first + i]
+        own = potential_of(m, h, shares) + 0.5 * pressure[i] * y[first + i]
         energy += weights[i] * own
     finer, gaps = point_weights(m), np.empty(m.scene.points)
     point_gaps(m, k, y, gap, gaps)
@@ -66,7 +76,7 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
             continue
         own = m.scene.material[material]
         table = m.tables[own.energy_at :]
-        scale, offset = own.force_scale, own.gap_offset
+        scale, offset = own.force_scale * shares[material], own.gap_offset
         heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
         farthest = farthest_joined(heights[0], offset)
         for i in range(gaps.size):
@@ -80,21 +90,71 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
 @compiled(makes_arrays=True)
 def nodes_joining_loss(m: Model, k: int, y: Floats, gap: float) -> float:
     """Adhesion loss per length of the asperities that came into contact since the last turning point."""
-    finer, gaps = point_weights(m), np.empty(m.scene.points)
+    gaps, shares = np.empty(m.scene.points), noted_shares(m, k)
     point_gaps(m, k, y, gap, gaps)
     loss = 0.0
     for material in range(MATERIALS):
-        if m.scene.material[material].stretch_limit == 0.0:
-            continue
-        own = m.scene.material[material]
-        joining, scale, number = own.joining_energy, own.force_scale, own.number_at
-        heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
-        for i in range(gaps.size):
-            if gaps[i] < heights[i]:
-                above = loading_value(m.tables, number, gaps[i] + own.gap_offset)[0]
-                more = joining * above + adhered_energy[i]
-                loss += scale * finer[i] * more
+        if m.scene.material[material].stretch_limit != 0.0:
+            scale = m.scene.material[material].force_scale * shares[material]
+            loss = _add_joining_loss(m, k, gaps, material, scale, loss)
     return loss
+
+
+@compiled(makes_arrays=True)
+def _add_joining_loss(m: Model, k: int, gaps: Floats, material: int, scale: float, loss: float) -> float:
+    """Add the joining loss of a material with hysteresis, times a scale."""
+    finer, own = point_weights(m), m.scene.material[material]
+    joining, number = own.joining_energy, own.number_at
+    heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
+    for i in range(gaps.size):
+        if gaps[i] < heights[i]:
+            above = loading_value(m.tables, number, gaps[i] + own.gap_offset)[0]
+            more = joining * above + adhered_energy[i]
+            loss += scale * finer[i] * more
+    return loss
+
+
+@compiled(makes_arrays=True)
+def nodes_material_loss(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
+    """Do the same for one material, as if it covered everything."""
+    own, gaps = m.scene.material[material], np.empty(m.scene.points)
+    if own.stretch_limit == 0.0:
+        return 0.0
+    point_gaps(m, k, y, gap, gaps)
+    return _add_joining_loss(m, k, gaps, material, own.force_scale, 0.0)
+
+
+@compiled(makes_arrays=True)
+def nodes_material_energy(
+    m: Model, k: int, y: Floats, gap: float, rate: float, material: int
+) -> tuple[float, float]:
+    """Energy of a material's asperities per length as if it covered everything, and how fast the gap changes it.
+
+    It is the slope of a pair's energy in the material's share, at fixed gap and length: by symmetry of the influence
+    coefficients what changes of the deflections leaves the energy as it is.
+    """
+    first, profile, weights, share = first_unknown(m, k), node_profile(m), node_weights(m), row(m, k, SHARE)
+    energy = slope = 0.0
+    for i in range(m.scene.nodes):
+        potentials, pushes = potentials_of(m, gap + profile[i] + y[first + i])
+        energy += weights[i] * potentials[material]
+        slope += weights[i] * share[i] * pushes[material]
+    own, points = m.scene.material[material], m.scene.points
+    if own.stretch_limit == 0.0:
+        return energy, slope * rate
+    finer, gaps, moved = point_weights(m), np.empty(points), np.empty(points)
+    point_gaps(m, k, y, gap, gaps)
+    to_points(m, share, moved)
+    heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
+    offset, table = own.gap_offset, m.tables[own.energy_at :]
+    farthest = farthest_joined(heights[0], offset)
+    for i in range(points):
+        if heights[i] > farthest:
+            break
+        e, de = stretched_energy(table, adhered_energy[i], gaps[i] + offset, heights[i] + offset)
+        energy += own.force_scale * finer[i] * e
+        slope += own.force_scale * finer[i] * moved[i] * de
+    return energy, slope * rate
 
 
 @compiled(makes_arrays=True)

@@ -7,6 +7,7 @@ how deep an impact of a given energy can go.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -19,7 +20,7 @@ from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_node
 from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_value, loading_table
 from gearidae.contact.tip import asperity_of, contact_modulus
 from gearidae.engine.elastic.rows import FINER, point_count
-from gearidae.scene import Scene
+from gearidae.scene import Material, Scene
 
 __all__ = [
     "DEPTH_HIGH",
@@ -178,7 +179,8 @@ def deepest_gap(scene: Scene, bounds: ContactBounds) -> float:
 
 def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
     """Gap at which a closing contact has taken up its energy or folds; NaN if it does neither down to a depth."""
-    grid, middle, surfaces = _static(scene, bounds, -depth)
+    grid, middle = _static(scene, bounds, -depth)
+    surfaces = _laws(scene, bounds, scene.materials())
     n = grid.nodes
     profile, weights = grid.body[:n], grid.body[n : 2 * n]
     deflection = np.zeros(n)
@@ -212,29 +214,30 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
     return math.nan
 
 
-def _static(
-    scene: Scene, bounds: ContactBounds, deepest: float
-) -> tuple[NodeGrid, Floats, list[tuple[Floats, float, float]]]:
-    """Nodes of the widest contact in newtons, its influence coefficients, and laws of its materials.
-
-    Each law comes with its scale and the material's gap offset in roughnesses.
-    """
-    sigma = scene.surface.roughness
+def _static(scene: Scene, bounds: ContactBounds, deepest: float) -> tuple[NodeGrid, Floats]:
+    """Nodes of the widest contact in newtons, and its influence coefficients."""
     grid = node_grid(scene, bounds, 1.0, deepest, NODES)
     n = grid.nodes
     powers = grid.body[2 * n : (2 + grid.orders * n) * n].reshape(grid.orders, n, n)
     x = (bounds.longest - grid.middle) / grid.half
-    kappa = np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
+    return grid, np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
+
+
+def _laws(
+    scene: Scene, bounds: ContactBounds, materials: Sequence[Material]
+) -> list[tuple[Floats, float, float]]:
+    """Laws of an interface's materials, each with its scale and the material's gap offset in roughnesses."""
+    sigma = scene.surface.roughness
     unit = bounds.width * math.sqrt(2.0 * bounds.radius * sigma)
     surfaces = []
-    for surface, share, offset, _ in scene.materials():
+    for surface, share, offset, _ in materials:
         if share > 0.0:
             tip = asperity_of(surface)
             # a copy: numba compiles everything a second time for arrays that are read-only
             table = loading_table(law_of(scene.contact.asperity, surface), "plane").copy()
             scale = share * surface.asperity_density * tip.hertz_factor * sigma**1.5 * unit
             surfaces.append((table, scale, offset / sigma))
-    return grid, kappa, surfaces
+    return surfaces
 
 
 @compiled(makes_arrays=True)
@@ -249,6 +252,8 @@ def _loading(table: Floats, gaps: Floats) -> Floats:
 def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     """Gap down to which the deflection of the bodies is negligible, and whether that suffices.
 
+    Where shares change with tooth and place, each material may be alone somewhere: the one with the widest gap counts.
+
     Returns
     -------
     lowest : float
@@ -257,12 +262,24 @@ def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     enough : bool
         Whether neither an impact nor the load is certain to press the teeth closer than that, nor do they begin there.
     """
-    grid, kappa, surfaces = _static(scene, bounds, -4.0)
+    grid, kappa = _static(scene, bounds, -4.0)
+    materials = scene.materials()
+    mixtures: list[tuple[Material, ...]] = [materials]
+    if scene.coating.by_place:
+        mixtures = [(one._replace(share=1.0),) for one in materials if one.share > 0.0]
+    limits = [_limit_of(scene, bounds, grid, kappa, one) for one in mixtures]
+    return max(lowest for lowest, _ in limits), all(enough for _, enough in limits)
+
+
+def _limit_of(
+    scene: Scene, bounds: ContactBounds, grid: NodeGrid, kappa: Floats, materials: Sequence[Material]
+) -> tuple[float, bool]:
+    """`rigid_limit` of an interface of some materials."""
     profile, weights = grid.body[: grid.nodes], grid.body[grid.nodes : 2 * grid.nodes]
     step = 0.125
     gaps = np.arange(GAP_HIGH, -4.0, -step)
     pressure = np.zeros((gaps.size, grid.nodes))
-    for table, scale, offset in surfaces:
+    for table, scale, offset in _laws(scene, bounds, materials):
         pressure += scale * _loading(table, np.add.outer(gaps + offset, profile).ravel())[0].reshape(
             pressure.shape
         )

@@ -17,6 +17,9 @@ the nodes by interpolation of the deflections, :math:`h_m = g + s_m^2 + \sum_i A
 by the same matrix, :math:`w_i p_i = \sum_m A_{mi} w_m t_m`: work and force stay as they are, and there is no
 unknown more. Each point remembers its own joined heights.
 
+Where shares of the materials change with tooth and place, those of the pair's place hold for all nodes of its contact,
+as the pair's radius does: a contact is some hundredths of a pitch wide.
+
 While a contact is stable every gap along it moves with the pair's, one way or the other together with it, so
 that all of them turn round when the pair does: that instant is found as a root, and the joined heights taken there are
 those of the play operator without an error of their own.
@@ -31,7 +34,7 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.contact.bulk import STENCIL
 from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.kernels.law import loading_value, stretched_value
+from gearidae.contact.kernels.law import stretched_value
 from gearidae.engine.elastic.rows import (
     JOINED,
     PRESSURE,
@@ -50,6 +53,7 @@ from gearidae.engine.elastic.rows import (
     shares_of_nodes,
     to_points,
 )
+from gearidae.engine.model.coverage import loading_of, noted_shares
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 
 __all__ = [
@@ -110,12 +114,12 @@ def node_force(
     gap, rate, length : float
         The pair's gap, gap rate and contact length.
     """
-    n, first = m.scene.nodes, first_unknown(m, k)
+    n, first, shares = m.scene.nodes, first_unknown(m, k), noted_shares(m, k)
     profile, weights = node_profile(m), node_weights(m)
     pressure, slope, stiff = row(m, k, PRESSURE), row(m, k, SLOPE), row(m, k, STIFFNESS)
     for i in range(n):
         h = gap + profile[i] + y[first + i]
-        pressure[i], slope[i] = loading_value(m.tables, m.scene.loading_at, h)
+        pressure[i], slope[i] = loading_of(m, h, shares)
     stiff[:] = 0.0
     if known:
         _add_stretched(m, k, t, y, gap, rate)
@@ -143,6 +147,7 @@ def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: floa
     # bodies that part stretch what is joined: where they seem not to, the errors of the deflection say so, and Newton's
     # iteration must not take the soft slope of closing on for that of what comes
     opening = h.direction > 0.0 and not turned
+    shares = noted_shares(m, k)
     gaps, turning, added = np.empty(points), np.empty(points), np.zeros(points)
     point_gaps(m, k, y, gap, gaps)
     if turned:
@@ -152,7 +157,7 @@ def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: floa
             turning[i] = gaps[i] + turning[i] * back
     for material in range(MATERIALS):
         own = m.scene.material[material]
-        limit, scale, offset = own.stretch_limit, own.force_scale, own.gap_offset
+        limit, scale, offset = own.stretch_limit, own.force_scale * shares[material], own.gap_offset
         if limit == 0.0:
             continue
         table = m.tables[own.table_at :]

@@ -12,6 +12,8 @@ from gearidae.engine.elastic import calls, histories, nodes
 from gearidae.engine.elastic.energy import (
     nodes_joining_loss,
     nodes_length_force,
+    nodes_material_energy,
+    nodes_material_loss,
     nodes_number,
     nodes_stored,
 )
@@ -59,5 +61,9 @@ def answer(  # type: ignore[no-untyped-def]
         two[0] = nodes_joining_loss(m, k, y, gap)
     elif kind == calls.NUMBER:
         two[0] = nodes_number(m, k, y, gap, known)
+    elif kind == calls.MATERIAL_ENERGY:
+        two[0], two[1] = nodes_material_energy(m, k, y, gap, rate, known)
+    elif kind == calls.MATERIAL_LOSS:
+        two[0] = nodes_material_loss(m, k, y, gap, known)
     else:
         two[0], two[1] = nodes_length_force(m, k, t, y, gap, rate, length)

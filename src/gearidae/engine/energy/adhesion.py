@@ -5,8 +5,9 @@ length changes along the path of contact, so that it loses
 
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
-The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has
-been worked out as if nothing were lost until the turning point (`gearidae.engine.energy.balance`).
+The last integral, the lag, is followed from step to step; where shares change with tooth and place, which takes longer,
+over as many steps at once as the energy balance, and to every event. The work of the changing radius is less by the
+same: it has been worked out as if nothing were lost until the turning point (`gearidae.engine.energy.balance`).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from gearidae.engine.energy.coverage import losses_by_material
 from gearidae.engine.energy.lengths import length_and_rates, material_lengths
 from gearidae.engine.energy.quadrature import integral
 from gearidae.engine.energy.radius import pairs_on_path
-from gearidae.engine.model.coverage import WHOLE, place_inside, shares_of
+from gearidae.engine.model.coverage import WHOLE, note_shares, place_inside, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import contact_length, history_of, pair_gap
 
@@ -38,11 +39,13 @@ def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float)
             m.state.energy.radius_work -= h.lag
         h.lag = h.lag_power = h.lag_rate = 0.0
     if m.scene.nodes > 0:
+        if m.scene.by_place != 0:
+            note_shares(m, k, coast, pair, place_inside(m, coast, pair, y[PHASE]))
         m.state.energy.adhesion_loss += length * nodes_joining_loss(m, k, y, gap)
         return
     shares = WHOLE
     if m.scene.by_place != 0:
-        shares = shares_of(m, coast, pair, place_inside(m, coast, pair, y[PHASE]))
+        shares = shares_of(m, k, coast, pair, place_inside(m, coast, pair, y[PHASE]))
     loss = joining_loss(m, k, gap, shares)
     m.state.energy.adhesion_loss += length * loss
     if m.scene.kind != GEARS or m.scene.radius_force != 0:
@@ -79,9 +82,9 @@ def _book_materials_before(m: Model, coast: int, pair: int, k: int, y: Floats, g
         return
     q = m.work.quadrature
     before = q.gear_travel * m.scene.phase_rate
-    was, rates, bends = material_lengths(m, coast, pair, before, q.gear_speed, q.gear_acceleration)
-    now = material_lengths(m, coast, pair, y[PHASE], 0.0, 0.0)[0]
-    losses = losses_by_material(m, k, gap)[0]
+    was, rates, bends = material_lengths(m, k, coast, pair, before, q.gear_speed, q.gear_acceleration)
+    now = material_lengths(m, k, coast, pair, y[PHASE], 0.0, 0.0)[0]
+    losses = losses_by_material(m, k, y, gap)[0]
     for material in range(MATERIALS):
         q.radius_power -= losses[material] * rates[material]
         q.radius_power_rate -= losses[material] * bends[material]
@@ -89,7 +92,7 @@ def _book_materials_before(m: Model, coast: int, pair: int, k: int, y: Floats, g
 
 
 @compiled(inline=True)
-def follow_joining(m: Model, h: float, y: Floats, w_rate: float) -> None:
+def follow_joining(m: Model, h: float, y: Floats, w_rate: float, now: bool) -> None:
     """Follow the lag of closing gear contacts over a step that has been accepted.
 
     Parameters
@@ -102,11 +105,31 @@ def follow_joining(m: Model, h: float, y: Floats, w_rate: float) -> None:
         State at its end.
     w_rate : float
         Acceleration of the gear's surface there.
+    now : bool
+        Whether to do so even where several steps can be followed at once.
     """
-    if m.scene.kind != GEARS or h <= 0.0:
+    if m.scene.kind != GEARS:
+        return
+    if m.scene.by_place != 0:
+        _follow_by_place(m, y, w_rate, now)
+        return
+    if h <= 0.0:
         return
     for coast in range(2):
         if m.state.near[coast] != 0 and (y[V] < 0.0) == (coast != 0):
+            _follow_flank(m, coast, h, y, w_rate)
+
+
+@compiled
+def _follow_by_place(m: Model, y: Floats, w_rate: float, now: bool) -> None:
+    """Follow the lags of contacts whose shares change along the path, since they were followed last."""
+    h = m.state.time - m.work.lag_time
+    steps = m.work.quadrature.steps + 1
+    if h <= 0.0 or not (now or h > m.scene.balance_span or steps >= m.scene.balance_steps):
+        return
+    m.work.lag_time = m.state.time
+    for coast in range(2):
+        if m.state.near[coast] != 0:
             _follow_flank(m, coast, h, y, w_rate)
 
 
@@ -151,10 +174,10 @@ def _material_lags(
 ) -> tuple[float, float]:
     """Rate of the lag of a pair whose shares change along the path, and the rate of that."""
     power = rate = 0.0
-    losses, slopes = losses_by_material(m, k, gap)
+    losses, slopes = losses_by_material(m, k, y, gap)
     if losses[0] == 0.0 and losses[1] == 0.0 and losses[2] == 0.0:
         return 0.0, 0.0
-    _, stretches, bends = material_lengths(m, coast, pair, y[PHASE], y[W], w_rate)
+    _, stretches, bends = material_lengths(m, k, coast, pair, y[PHASE], y[W], w_rate)
     closing = (1.0 - 2.0 * coast) * y[V]
     for material in range(MATERIALS):
         power += losses[material] * stretches[material]

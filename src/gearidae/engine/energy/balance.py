@@ -32,6 +32,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled
+from gearidae.engine.energy.adhesion import follow_joining
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.exposures import begin_exposures
 from gearidae.engine.energy.motion import kinetic_energy
@@ -55,6 +56,7 @@ __all__ = [
     "accumulate_energy",
     "balance_at",
     "carry_balance",
+    "close_balance",
     "open_balance",
     "restart_quadrature",
     "sample_radius_power",
@@ -81,7 +83,7 @@ def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q = m.work.quadrature
     q.steps = 0
     q.length_work = 0.0
-    q.time = t
+    q.time = m.work.lag_time = t
     q.kinetic = kinetic_energy(m, y)
     if m.scene.kind == ROLLER:
         return
@@ -240,6 +242,14 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
     r.mesh_speed, r.mesh_acceleration = y[V], yp[V]
 
 
+@compiled
+def close_balance(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Bring all sums up to an accepted time, after its event."""
+    if m.scene.kind == GEARS:
+        follow_joining(m, 0.0, y, yp[W], True)
+    accumulate_energy(m, t, y, yp, True)
+
+
 BALANCE: Final = 3
 """Numbers that `balance_at` leaves besides the sums: stored and pending energy, energy of motion."""
 
@@ -260,7 +270,7 @@ def balance_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None
         Filled in.
     """
     m = model_at(place)
-    accumulate_energy(m, t, y, yp, True)
+    close_balance(m, t, y, yp)
     out[0], out[1] = stored_energy(m, y)
     out[2] = kinetic_energy(m, y)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_stored
-from gearidae.engine.model.coverage import Shares, potential_of, shares_of
+from gearidae.engine.model.coverage import Shares, note_shares, potential_of, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     all_pairs,
@@ -18,7 +20,15 @@ from gearidae.engine.model.tooth_pairs import (
     pair_gap,
 )
 
-__all__ = ["free_energy", "joined_energy", "joining_loss", "stored_energy"]
+__all__ = [
+    "free_energy",
+    "free_material_energy",
+    "joined_energy",
+    "joining_loss",
+    "material_energy",
+    "stored_energy",
+    "turning_point",
+]
 
 
 @compiled
@@ -26,26 +36,28 @@ def joined_energy(m: Model, k: int, gap: float, shares: Shares) -> tuple[float, 
     """Energy of a pair's stretched asperities beyond the loading branch, per length, and its slope in the gap."""
     energy = slope = 0.0
     for material in range(MATERIALS):
-        own = m.scene.material[material]
-        limit, scale, offset = own.stretch_limit, own.force_scale * shares[material], own.gap_offset
-        if limit == 0.0 or scale == 0.0:
-            continue
-        stretch = gap - m.state.history[k].joined[material]
-        if stretch <= 0.0:
-            energy += scale * m.state.history[k].adhered_energy[material]
-            continue
-        table = m.tables[own.energy_at :]
-        joined = m.state.history[k].joined[material] + offset
-        if stretch < limit and m.scene.branch_length > 0 and branch_length(table) > 0:
-            branch = m.rows[energy_branch(m, k, material) :]
-            if branch[B_PIECES] == 0.0:
-                set_branch(table, joined, branch)
-            e, de = branch_value(branch, stretch)
-        else:
-            e, de = stretched_energy(table, m.state.history[k].adhered_energy[material], gap + offset, joined)
-        energy += scale * e
-        slope += scale * de
+        scale = m.scene.material[material].force_scale * shares[material]
+        if m.scene.material[material].stretch_limit != 0.0 and scale != 0.0:
+            e, de = material_energy(m, k, gap, material)
+            energy += scale * e
+            slope += scale * de
     return energy, slope
+
+
+@compiled
+def material_energy(m: Model, k: int, gap: float, material: int) -> tuple[float, float]:
+    """Do the same for one of its materials, which has hysteresis, in the unit of its force scale."""
+    h, own = m.state.history[k], m.scene.material[material]
+    stretch = gap - h.joined[material]
+    if stretch <= 0.0:
+        return h.adhered_energy[material], 0.0
+    table, joined = m.tables[own.energy_at :], h.joined[material] + own.gap_offset
+    if stretch < own.stretch_limit and m.scene.branch_length > 0 and branch_length(table) > 0:
+        branch = m.rows[energy_branch(m, k, material) :]
+        if branch[B_PIECES] == 0.0:
+            set_branch(table, joined, branch)
+        return branch_value(branch, stretch)
+    return stretched_energy(table, h.adhered_energy[material], gap + own.gap_offset, joined)
 
 
 @compiled
@@ -76,10 +88,11 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
         if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
             continue
         if m.scene.nodes > 0:
+            note_shares(m, k, coast, pair, inside)
             stored += length * nodes_stored(m, k, m.state.time, y, gap, rate, length)
             pending += length * nodes_joining_loss(m, k, y, gap)
             continue
-        shares = shares_of(m, coast, pair, inside)
+        shares = shares_of(m, k, coast, pair, inside)
         energy, _ = joined_energy(m, k, gap, shares)
         stored += length * (potential_of(m, gap, shares) + energy)
         pending += length * joining_loss(m, k, gap, shares)
@@ -100,9 +113,7 @@ def joining_loss(m: Model, k: int, gap: float, shares: Shares) -> float:
 
 
 @compiled
-def free_energy(
-    m: Model, k: int, known: bool, t: float, gap: float, rate: float, shares: Shares
-) -> tuple[float, float]:
+def free_energy(m: Model, k: int, known: bool, t: float, gap: float, rate: float) -> tuple[float, float]:
     """Free energy of a pair of rigid bodies per length, and its slope in the gap.
 
     It is what `stored_energy` adds up less what is pending: zero where nothing is in contact, and for an asperity at
@@ -119,36 +130,49 @@ def free_energy(
         Time over tau.
     gap, rate : float
         The pair's gap and gap rate.
-    shares : tuple of float
-        See `gearidae.engine.model.coverage.shares_of`.
     """
-    h = m.state.history[k]
-    energy = slope = 0.0
-    if m.scene.by_place == 0:
-        energy, slope = loading_value(m.tables, m.scene.potential_at, gap)
-    turned = known and h.direction * rate < 0.0
-    turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate) if turned else gap
+    energy, slope = loading_value(m.tables, m.scene.potential_at, gap)
+    turning_gap = turning_point(m, k, known, t, gap, rate)
     for material in range(MATERIALS):
-        own, offset = m.scene.material[material], m.scene.material[material].gap_offset
-        scale = own.force_scale * shares[material]
-        if scale == 0.0:
-            continue
-        if m.scene.by_place != 0:
-            stored, push = loading_value(m.tables, own.potential_at, gap)
-            energy += shares[material] * stored
-            slope += shares[material] * push
-        if own.stretch_limit == 0.0:
-            continue
-        joined = h.joined[material] if known else gap
-        if turned:
-            joined = joined_height(joined, turning_gap, own.stretch_limit)
-        number, falling = loading_value(m.tables, own.number_at, min(gap, joined) + offset)
-        adhered = -own.joining_energy * number
-        if gap <= joined:
-            energy += scale * adhered
-            slope -= scale * own.joining_energy * falling
-            continue
-        e, de = stretched_energy(m.tables[own.energy_at :], adhered, gap + offset, joined + offset)
-        energy += scale * e
-        slope += scale * de
+        e, de = free_material_energy(m, k, known, gap, turning_gap, material)
+        energy += e
+        slope += de
     return energy, slope
+
+
+@compiled
+def turning_point(m: Model, k: int, known: bool, t: float, gap: float, rate: float) -> float:
+    """Gap of the turning point that a pair has gone through since the last accepted time; NaN if it has not."""
+    h = m.state.history[k]
+    if not known or h.direction * rate >= 0.0:
+        return math.nan
+    return extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate)
+
+
+@compiled
+def free_material_energy(
+    m: Model, k: int, known: bool, gap: float, turning_gap: float, material: int
+) -> tuple[float, float]:
+    """Free energy of a material's asperities beyond the loading branch per length, and its slope in the gap.
+
+    Parameters
+    ----------
+    m, k, known, gap
+        As for `free_energy`.
+    turning_gap : float
+        From `turning_point`.
+    material : int
+    """
+    h, own = m.state.history[k], m.scene.material[material]
+    scale, offset = own.force_scale, own.gap_offset
+    if own.stretch_limit == 0.0 or scale == 0.0:
+        return 0.0, 0.0
+    joined = h.joined[material] if known else gap
+    if not math.isnan(turning_gap):
+        joined = joined_height(joined, turning_gap, own.stretch_limit)
+    number, falling = loading_value(m.tables, own.number_at, min(gap, joined) + offset)
+    adhered = -own.joining_energy * number
+    if gap <= joined:
+        return scale * adhered, -(scale * own.joining_energy * falling)
+    e, de = stretched_energy(m.tables[own.energy_at :], adhered, gap + offset, joined + offset)
+    return scale * e, scale * de

@@ -22,7 +22,7 @@ from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import node_force, nodes_number
 from gearidae.engine.energy.quadrature import integral
-from gearidae.engine.model.coverage import shares_of
+from gearidae.engine.model.coverage import note_shares, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
@@ -179,9 +179,10 @@ def _force(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> tupl
     """Force of a pair and its rate along the gap."""
     gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     if m.scene.nodes > 0:
+        note_shares(m, k, coast, pair, inside)
         force, stiffness = node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
     else:
-        force, stiffness = pair_force(m, k, True, t, gap, rate, inside, shares_of(m, coast, pair, inside))
+        force, stiffness = pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
     return force, stiffness * rate
 
 

@@ -36,14 +36,14 @@ def length_and_rates(
 
 @compiled
 def material_lengths(
-    m: Model, coast: int, pair: int, phase: float, w: float, w_rate: float
+    m: Model, k: int, coast: int, pair: int, phase: float, w: float, w_rate: float
 ) -> tuple[Shares, Shares, Shares]:
     """Contact length times share of each material of a pair on the path of contact, with two derivatives in time."""
     length, rate, bend = length_and_rates(m, coast, pair, phase, w, w_rate)
     along = m.scene.phase_rate * (1.0 - 2.0 * coast)
     speed, speed_rate = along * w, along * w_rate
     inside = place_inside(m, coast, pair, phase)
-    (a, b, c), (a1, b1, c1), (a2, b2, c2) = share_changes(m, coast, pair, inside)
+    (a, b, c), (a1, b1, c1), (a2, b2, c2) = share_changes(m, k, coast, pair, inside)
     # a' = da/dx v and a'' = d2a/dx2 v^2 + da/dx v', with x the place and v its rate
     twice, square, both = 2.0 * rate * speed, length * speed * speed, length * speed_rate
     return (

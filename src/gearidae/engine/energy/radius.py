@@ -17,10 +17,10 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_length_force
 from gearidae.engine.energy.contacts import free_energy, joined_energy
-from gearidae.engine.energy.coverage import coverage_power, only
-from gearidae.engine.energy.lengths import length_and_rates, material_lengths
+from gearidae.engine.energy.coverage import coverage_force, coverage_power
+from gearidae.engine.energy.lengths import length_and_rates
 from gearidae.engine.model.coverage import WHOLE
-from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import history_of
 
 __all__ = ["pairs_on_path", "radius_force", "radius_power", "sample_radius_power"]
@@ -57,7 +57,7 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
             if m.state.history[k].pair != pair:
                 continue
             if m.scene.by_place != 0:
-                own_power, own_rate = coverage_power(m, k, coast, pair, gap, y, w_rate)
+                own_power, own_rate = coverage_power(m, k, coast, pair, gap, t, y, w_rate)
                 power += own_power
                 rate += own_rate
                 continue
@@ -115,31 +115,13 @@ def radius_force(
         return 0.0, 0.0, 0.0
     sign = 1.0 - 2.0 * coast
     if m.scene.by_place != 0:
-        return _force_by_place(m, t, y, coast, pair, k, gap, rate)
+        return coverage_force(m, t, y, coast, pair, k, gap, rate)
     length, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], 1.0, 0.0)
     slope, known = 0.0, m.state.history[k].pair == pair
     if m.scene.nodes == 0:
-        energy, slope = free_energy(m, k, known, t, gap, rate, WHOLE)
+        energy, slope = free_energy(m, k, known, t, gap, rate)
     elif known:
         energy = nodes_length_force(m, k, t, y, gap, rate, length)[0] - nodes_joining_loss(m, k, y, gap)
     else:
         energy = 0.0  # it has just come within reach
     return -energy * stretch, sign * slope * stretch, -energy * bend / m.scene.phase_rate
-
-
-@compiled
-def _force_by_place(
-    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float, rate: float
-) -> tuple[float, float, float]:
-    """Do the same for a pair whose shares change along the path, material by material."""
-    force = force_u = force_phase = 0.0
-    known = m.state.history[k].pair == pair
-    _, stretches, bends = material_lengths(m, coast, pair, y[PHASE], 1.0, 0.0)
-    for material in range(MATERIALS):
-        if stretches[material] == 0.0 and bends[material] == 0.0:
-            continue
-        energy, slope = free_energy(m, k, known, t, gap, rate, only(material))
-        force -= energy * stretches[material]
-        force_u += (1.0 - 2.0 * coast) * slope * stretches[material]
-        force_phase -= energy * bends[material] / m.scene.phase_rate
-    return force, force_u, force_phase

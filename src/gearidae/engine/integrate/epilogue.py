@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.energy.adhesion import follow_joining
-from gearidae.engine.energy.balance import accumulate_energy
+from gearidae.engine.energy.balance import accumulate_energy, close_balance
 from gearidae.engine.energy.exposures import follow_exposures
 from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
 from gearidae.engine.events.histories import accept
@@ -60,7 +60,7 @@ def finish_step(
     """
     driver, t = m.work.driver, m.work.driver.time
     accept(m, t, y)
-    follow_joining(m, t - m.work.track.time, y, yp[W] if m.scene.kind == GEARS else 0.0)
+    follow_joining(m, t - m.work.track.time, y, yp[W] if m.scene.kind == GEARS else 0.0, flag != 0)
     follow_extremes(m, t, y, yp, flag != 0, between[0])
     _book(m, t, y, yp, between, flag)
     if m.state.bound_exceeded != 0:
@@ -115,7 +115,7 @@ def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floa
 @compiled
 def prepare_restart(m: Model, y: Floats, yp: Floats) -> None:
     """Close the energy balance's interval and move whole pitches out of the phase, before a start from here."""
-    accumulate_energy(m, m.work.driver.time, y, yp, True)
+    close_balance(m, m.work.driver.time, y, yp)
     if m.scene.places > 0:
         follow_exposures(m, m.work.driver.time, y, yp)
     rebase(m, y)

@@ -9,6 +9,7 @@ import numpy as np
 from gearidae.contact.asperities import law_of
 from gearidae.contact.asperities.base import AsperityLaw
 from gearidae.contact.kernels.energy import energy_table, joining_energy, loading_pieces, number_table
+from gearidae.contact.kernels.lanes import BESIDE
 from gearidae.contact.kernels.law import (
     GAP_LOW,
     H_STRETCH,
@@ -24,7 +25,7 @@ from gearidae.contact.ranges import check_reach
 from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
-from gearidae.engine.model.state import MATERIALS, Record
+from gearidae.engine.model.state import Record
 from gearidae.engine.model.tables import Tables
 from gearidae.scene import Material, Scene
 
@@ -95,7 +96,7 @@ def add_contact(
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
-    blended = np.zeros((loading.size, MATERIALS))
+    loadings, potentials, numbers = np.zeros((3, loading.size, BESIDE))
     longest = 0
     for material, (surface, share, offset, _) in enumerate(_parts(scene)):
         own, tip = s.material[material], asperity_of(surface)
@@ -110,18 +111,22 @@ def add_contact(
         own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
         own.table_at, own.energy_at, own.table_count = tables.add(table), tables.add(energy), table.size
         own.number_at = tables.add(number_table(kernel, law.join))
+        if s.by_place != 0:
+            numbers[:, material] = number_table(kernel, law.join - float(own.gap_offset))
         longest = max(longest, branch_length(table))
         if share > 0.0:
             push, stored = loading_pieces(law, kernel, float(own.gap_offset))
             loading += force * push
             potential += force * stored
-            own.potential_at = tables.add(force * stored) if s.by_place != 0 else 0
-            blended[:, material] = force * push
+            loadings[:, material], potentials[:, material] = force * push, force * stored
             for floor, gap in reach.items():
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
                 reach[floor] = max(gap, widest_gap - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
-    s.blended_at = tables.add(blended.ravel()) if s.by_place != 0 else 0
+    if s.by_place != 0:
+        s.loadings_at, s.potentials_at, s.numbers_at = (
+            tables.add(each.ravel()) for each in (loadings, potentials, numbers)
+        )
     s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
     s.branch_length = 0 if s.nodes > 0 else longest
 
@@ -141,7 +146,7 @@ def _add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
     for own, table in zip(s.coverage, scene.coating.tables, strict=True):
         own.teeth, own.places = len(table), len(table[0])
         own.values_at = tables.add(np.array(table).ravel())
-        own.inverse_teeth, own.place_scale = 1.0 / len(table), len(table[0]) / float(s.contact_ratio)
+        own.place_scale = len(table[0]) / float(s.contact_ratio)
 
 
 def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:

@@ -18,7 +18,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.calls import node_force, node_residual
 from gearidae.engine.elastic.nodes import mark_out_of_reach
 from gearidae.engine.energy.radius import radius_force
-from gearidae.engine.model.coverage import WHOLE, shares_of
+from gearidae.engine.model.coverage import WHOLE, note_shares, shares_of
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
@@ -76,9 +76,10 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
         k = history_of(m, coast, pair)
         known = m.state.history[k].pair == pair
         if elastic:
+            note_shares(m, k, coast, pair, inside)
             load, stiffness = node_force(m, k, known, t, y, gap, rate, contact_length(m, inside))
         else:
-            shares = shares_of(m, coast, pair, inside)
+            shares = shares_of(m, k, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
         load *= sign
         # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair

@@ -23,7 +23,6 @@ __all__ = [
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # per sqrt(radius / pitch), with the material's share of the surface
     ("gap_offset", REAL),  # by which its gap is wider than that of the pair, over sigma
-    ("potential_at", INT),  # by tooth and place: the potential of its loading branch over the pair's gap
     ("stretch_limit", REAL),  # over sigma; 0 where there is no hysteresis worth following
     ("joining_energy", REAL),  # energy lost by an asperity at contact onset, in the unit of `force_scale`
     ("table_at", INT),  # where its force law and its stored energy begin among the tables,
@@ -36,7 +35,6 @@ COVERAGE: Final = record_type(  # of one side's flanks
     ("teeth", INT),  # rows, one after the other: of each tooth, or one for all
     ("places", INT),  # fractions in each, at equal parts of the path of contact
     ("values_at", INT),
-    ("inverse_teeth", REAL),
     ("place_scale", REAL),  # places in a pitch
 )
 
@@ -99,7 +97,9 @@ SCENE: Final = record_type(
     ("lowest_gap", REAL),  # the model holds above this gap of a pair
     ("material", MATERIAL, (MATERIALS,)),
     ("by_place", INT),  # 1 where shares change with tooth and place and are not in the force scales
-    ("blended_at", INT),  # their loading branches over the pair's gap, in forces, side by side
+    ("loadings_at", INT),  # their loading branches over the pair's gap, in forces, side by side,
+    ("potentials_at", INT),  # the potentials of these, and numbers of asperities above the gap
+    ("numbers_at", INT),
     ("patches", INT),  # 1 where the pinion's fractions are those of the interface
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
     ("loading_at", INT),  # loading branch of all materials together, in forces

@@ -17,6 +17,7 @@ from gearidae.engine.model.record_types import (
 
 __all__ = [
     "ADAMS",
+    "CELL",
     "DRIVER",
     "EXPOSED",
     "POINT",
@@ -136,13 +137,38 @@ EXPOSED: Final = record_type(  # a pair at the end of the last interval of the e
     ("power_rate", REAL),
 )
 
+PART: Final = (
+    record_type(  # of a cell, one side: before + change u^3 (10 - 15 u + 6 u^2), u = (place - origin) scale
+        ("origin", REAL),
+        ("scale", REAL),
+        ("before", REAL),
+        ("change", REAL),
+    )
+)
+
+CELL: Final = (
+    record_type(  # where fractions change with tooth and place: those of a pair between middles of places
+        ("number", REAL),  # of the pair, counted without end,
+        ("low", REAL),  # and the way along the path of contact in pitches; none at first
+        ("high", REAL),
+        ("side", PART, (2,)),  # of the pinion and of the gear
+    )
+)
+
 WORK: Final = record_type(
     ("quadrature", QUADRATURE),
     ("resistance", RESISTANCE),
     ("track", TRACK),
+    ("lag_time", REAL),  # by tooth and place: time to which the lags of joining are followed
     ("exposure_time", REAL),  # end of the last interval of the exposures
     ("exposure_begun", INT),  # 0 before the first
     ("exposed", EXPOSED, (2 * SLOTS_HIGH,)),
+    ("cell", CELL, (2 * SLOTS_HIGH,)),
+    (
+        "shares",
+        REAL,
+        (2 * SLOTS_HIGH, MATERIALS),
+    ),  # by tooth and place, of elastic contacts as last asked for
     ("adams", ADAMS),
     ("search", SEARCH),
     ("driver", DRIVER),

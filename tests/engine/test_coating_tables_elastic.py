@@ -1,0 +1,105 @@
+"""Fractions by tooth and place between elastic bodies: limits, both drivers, energy, and its slope along the path."""
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.engine import solve
+from gearidae.engine.elastic.static_solve import settle_nodes
+from gearidae.engine.energy.contacts import stored_energy
+from gearidae.engine.energy.radius import radius_power
+from gearidae.engine.model.build import make_problem
+from gearidae.engine.model.state import PHASE, V, W
+
+SHORT = gd.preset("teodorescu2009_low_speed").replace(
+    {
+        "contact.model": "elastic",
+        "initial.mesh_phase": 0.6,
+        "run.duration": "3 ms",
+        "run.samples": 31,
+        "run.rtol": 1e-8,
+    }
+)
+RANDOM = np.random.default_rng(7)
+PINION, GEAR = RANDOM.uniform(0.2, 0.8, (19, 5)), RANDOM.uniform(0.1, 0.9, (76, 3))
+
+
+def sides(scene, pinion, gear, **more):
+    keys = {"pairing": "independent", "pinion_table": pinion, "gear_table": gear, **more}
+    return scene.replace({f"coating.{key}": value for key, value in keys.items()})
+
+
+def closes(scene, solution):
+    balance = solution.balance
+    assert balance.throughput > 0.0
+    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=False)
+    return balance
+
+
+def test_a_table_of_one_fraction_is_that_fraction():
+    """Same numbers, summed in another order: to the tolerance, amplified over the oscillations of the contact."""
+    uniform = SHORT.replace({"coating.sam_fraction": 0.6, "coating.pairing": "independent"})
+    tables = {"coating.pinion_table": np.full((19, 4), 0.6), "coating.gear_table": [[0.6]]}
+    one, other = solve(uniform), solve(uniform.replace(tables))
+    swing = np.ptp(one.samples["gear_speed"])
+    np.testing.assert_allclose(other.samples["gear_speed"], one.samples["gear_speed"], atol=1e-5 * swing)
+    taken, expected = (each.balance.adhesion_loss - each.balance.radius_work for each in (other, one))
+    assert taken == pytest.approx(expected, rel=1e-6, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "backend"),
+    [
+        ({}, "auto"),
+        ({"mesh.radius_force": True}, "auto"),
+        ({"contact.asperity": "maugis", "run.duration": "1.5 ms"}, "auto"),
+        ({"run.duration": "0.4 ms", "run.rtol": 1e-6, "initial.gap": "20 nm"}, "sksundae"),
+    ],
+)
+def test_energy_closes(changes, backend):
+    scene = sides(SHORT, PINION, GEAR, thickness="1 nm").replace(changes)
+    balance = closes(scene, solve(scene, backend=backend))
+    assert balance.adhesion_loss > 0.0
+
+
+def test_both_drivers_agree():
+    scene = sides(SHORT, PINION, GEAR).replace({"run.duration": "0.2 ms", "initial.gap": "20 nm"})
+    native, portable = (solve(scene, backend=backend).samples for backend in ("native", "sksundae"))
+    for name in ("transmission_error", "gear_speed", "min_separation"):
+        # 1e-8 a step, gathered over some hundred steps
+        swing = np.ptp(native[name])
+        np.testing.assert_allclose(portable[name], native[name], rtol=0, atol=1e-5 * swing, err_msg=name)
+
+
+@pytest.mark.parametrize("phase", [0.9, 0.5])
+def test_power_of_the_change_along_the_path_is_what_the_stored_energy_gains(phase):
+    """At fixed gap, deflections settled: radius, shares and bodies of all pairs, against differences of the energy."""
+    scene = sides(SHORT, PINION, GEAR, thickness="1 nm")
+    problem = make_problem(scene.replace({"initial.gap": "12 nm", "initial.mesh_phase": phase}))
+    m, y = problem.model, problem.start.copy()
+    y[V], y[W] = 0.0, 1.0
+
+    def stored(travel):
+        moved = y.copy()
+        moved[PHASE] += m.scene.phase_rate * travel
+        assert settle_nodes(m, 0.0, moved)
+        return stored_energy(m, moved)[0]
+
+    step = 1e-2 / m.scene.phase_rate
+    differences = [(stored(by * step) - stored(-by * step)) / (2.0 * by * step) for by in (0.05, 0.1)]
+    settle_nodes(m, 0.0, y)
+    # differences of second order, extrapolated to fourth: 1e-3 of a pitch against places of a third
+    gained = (4.0 * differences[0] - differences[1]) / 3.0
+    assert radius_power(m, 0.0, y, 0.0)[0] == pytest.approx(gained, rel=1e-6, abs=0)
+
+
+def test_the_model_of_rigid_bodies_ends_where_the_softest_material_would_deflect_them():
+    """A place may be bare however much is covered on average: the limit of a table is that of bare flanks."""
+    table = np.full((19, 4), 0.95)
+    scene = SHORT.replace({"contact.model": "auto"})
+    worn = make_problem(scene.replace({"coating.pinion_table": table})).model.scene.lowest_gap
+    bare, whole = (
+        make_problem(scene.replace({"coating.sam_fraction": f})).model.scene.lowest_gap for f in (0.0, 1.0)
+    )
+    assert worn == max(bare, whole)
+    assert bare != whole
