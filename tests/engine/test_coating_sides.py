@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import gearidae as gd
+from balances import assert_closes
 from gearidae.contact import asperity_of
 from gearidae.contact.asperities import law_of
 from gearidae.contact.asperities.jkr import JOINING
@@ -23,13 +24,6 @@ ROLLER = gd.preset("roller_slow").replace({"contact.model": "asperity", "run.sam
 def coated(scene, first, second, **more):
     keys = {"pairing": "independent", "pinion_fraction": first, "gear_fraction": second, **more}
     return scene.replace({f"coating.{key}": value for key, value in keys.items()})
-
-
-def closes(scene, solution):
-    balance = solution.balance
-    assert balance.throughput > 0.0
-    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=scene.roller is not None)
-    return balance
 
 
 # -- the checked numbers ---------------------------------------------------------------------------------------------
@@ -124,7 +118,7 @@ def test_an_impact_loses_what_the_asperities_of_all_materials_cost():
     """N L sqrt(2 R sigma) 0.9355 Pc dc times Psi at the deepest gap of each material, by its share."""
     scene = coated(ROLLER, 0.4, 0.7, thickness=1e-9).replace({"run.duration": 3e-5, "run.samples": 40_001})
     run = solve(scene)
-    balance = closes(scene, run)
+    balance = assert_closes(scene, run)
     surface, roller = scene.surface, scene.roller
     count = surface.asperity_density * roller.width * np.sqrt(2 * roller.radius * surface.roughness)
     lost = 0.0
@@ -150,7 +144,7 @@ def test_an_impact_loses_what_the_asperities_of_all_materials_cost():
 )
 def test_energy_closes_with_every_law_driver_and_body(changes, backend):
     scene = coated(SHORT, 1.0, 0.5, thickness="1 nm").replace(changes)
-    balance = closes(scene, solve(scene, backend=backend))
+    balance = assert_closes(scene, solve(scene, backend=backend))
     if scene.contact.asperity in ("jkr", "maugis"):
         assert balance.adhesion_loss > 0.0
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from balances import assert_closes
 from gearidae.engine import solve
 from gearidae.engine.energy.coverage import losses_by_material
 from gearidae.engine.energy.lengths import material_lengths
@@ -25,13 +26,6 @@ PINION, GEAR = RANDOM.uniform(0.2, 0.8, (19, 5)), RANDOM.uniform(0.1, 0.9, (76, 
 def sides(scene, pinion, gear, **more):
     keys = {"pairing": "independent", "pinion_table": pinion, "gear_table": gear, **more}
     return scene.replace({f"coating.{key}": value for key, value in keys.items()})
-
-
-def closes(scene, solution):
-    balance = solution.balance
-    assert balance.throughput > 0.0
-    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=False)
-    return balance
 
 
 # -- tooth and place -------------------------------------------------------------------------------------------------
@@ -144,7 +138,7 @@ def test_only_the_teeth_that_meet_count():
 )
 def test_energy_closes(changes, backend):
     scene = sides(SHORT, PINION, GEAR, thickness="1 nm").replace(changes)
-    closes(scene, solve(scene, backend=backend))
+    assert_closes(scene, solve(scene, backend=backend))
 
 
 def test_the_work_of_changing_shares_is_the_sum_of_what_they_store():
@@ -154,7 +148,7 @@ def test_the_work_of_changing_shares_is_the_sum_of_what_they_store():
     """
     steep = np.tile([1.0, 0.2, 1.0, 0.2], (19, 1))
     scene = SHORT.replace({"coating.pinion_table": steep, "run.duration": "0.1 s", "run.rtol": 1e-8})
-    balance = closes(scene, solve(scene))
+    balance = assert_closes(scene, solve(scene))
     assert abs(balance.radius_work) > 100 * balance.bound(scene.run.rtol, roller=False)
 
 

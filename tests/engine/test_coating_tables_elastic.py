@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from balances import assert_closes
 from gearidae.engine import solve
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.contacts import stored_energy
@@ -29,13 +30,6 @@ def sides(scene, pinion, gear, **more):
     return scene.replace({f"coating.{key}": value for key, value in keys.items()})
 
 
-def closes(scene, solution):
-    balance = solution.balance
-    assert balance.throughput > 0.0
-    assert abs(balance.residual) <= balance.bound(scene.run.rtol, roller=False)
-    return balance
-
-
 def test_a_table_of_one_fraction_is_that_fraction():
     """Same numbers, summed in another order: to the tolerance, amplified over the oscillations of the contact."""
     uniform = SHORT.replace({"coating.sam_fraction": 0.6, "coating.pairing": "independent"})
@@ -58,7 +52,7 @@ def test_a_table_of_one_fraction_is_that_fraction():
 )
 def test_energy_closes(changes, backend):
     scene = sides(SHORT, PINION, GEAR, thickness="1 nm").replace(changes)
-    balance = closes(scene, solve(scene, backend=backend))
+    balance = assert_closes(scene, solve(scene, backend=backend))
     assert balance.adhesion_loss > 0.0
 
 
