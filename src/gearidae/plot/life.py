@@ -59,8 +59,13 @@ def life(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             passages, frequency, color="C1", marker=".", linestyle="--", label="characteristic frequency"
         )
         right.set_ylabel("characteristic frequency [kHz]")
-        right.legend(loc="center left", frameon=False)
-    ax.legend(loc="lower left", frameon=False)
+        lines, labels = (
+            a + b
+            for a, b in zip(ax.get_legend_handles_labels(), right.get_legend_handles_labels(), strict=True)
+        )
+        right.legend(lines, labels, loc="center left", frameon=False)
+    else:
+        ax.legend(loc="lower left", frameon=False)
     return ax
 
 

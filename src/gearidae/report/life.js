@@ -5,7 +5,7 @@
   if (!source || !root) return;
   const { decode, element, style, colour, quantity, whenSeenAnew, penOf } = gearidae;
   const data = JSON.parse(source.textContent);
-  const STEPS = 1000, LEFT = 46, RIGHT = 52, TOP = 10, BOTTOM = 34, FONT = "12px system-ui, sans-serif";
+  const STEPS = 1000, LEFT = 58, RIGHT = 52, TOP = 10, BOTTOM = 34, FONT = "12px system-ui, sans-serif";
   const last = data.passages.length - 1, end = Math.max(data.sticksBy || 0, data.passages[last]) || 1;
   const tables = (data.tables || []).map(decode);
   let at = 0;
