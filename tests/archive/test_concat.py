@@ -193,3 +193,28 @@ def test_a_chain_without_samples():
     )
     joined = gd.concat(parts, "time")
     assert np.array_equal(joined.event_time, run.event_time)
+
+
+EXPOSED = LOW.replace({"run.exposures": 3, "run.samples": "off"})
+
+
+def test_exposures_are_joined_and_picked():
+    swept = gd.sweep(EXPOSED, {KEY: [0.7, 0.5], "drive.torque": TORQUES})
+    assert swept.sliding_work.dims == ("sam_fraction", "torque", "flank", "tooth", "place")
+    assert float(swept.sliding_work.sum()) > 0.0
+    same(gd.concat([swept.isel(sam_fraction=[0]), swept.isel(sam_fraction=[1])], KEY), swept)
+    same(gd.concat([swept.sel(torque=[each]) for each in TORQUES], "torque"), swept)
+    one = swept.sel(torque=TORQUES[1], sam_fraction=0.5)
+    alone = gd.simulate(EXPOSED.replace({KEY: 0.5, "drive.torque": TORQUES[1]}))
+    np.testing.assert_array_equal(one.gearidae.run().event_time, alone.event_time)
+    for name in ("sliding_work", "adhesion_work", "flank_area", "place"):
+        np.testing.assert_array_equal(one[name], alone[name])
+
+
+def test_a_chain_has_the_exposures_of_its_last_run():
+    first = gd.simulate(EXPOSED.replace({"run.samples": 11}))
+    second = gd.simulate(EXPOSED.replace({"run.samples": 11}), start=first)
+    joined = gd.concat([first, second], "time")
+    np.testing.assert_array_equal(joined.sliding_work, second.sliding_work)
+    np.testing.assert_array_equal(joined.place, second.place)
+    assert joined.sizes["time"] == 21

@@ -112,6 +112,15 @@ def test_contacts_are_those_of_the_samples(sampled):
     np.testing.assert_allclose(ours, expected, rtol=0, atol=1e-3 * expected.max())
 
 
+def test_sums_at_a_usual_tolerance_are_those_at_a_tight_one():
+    """Also where contacts vibrate between pushing and pulling, whose forces are far from smooth."""
+    scene = LOW.replace({**OFF, "run.exposures": 4, "run.duration": 0.005, "coating.sam_fraction": 0.3})
+    usual, tight = (gd.simulate(scene.replace({"run.rtol": rtol})) for rtol in (1e-6, 1e-9))
+    for name in NAMES:
+        ours, other = (float(ds[name].sum()) for ds in (usual, tight))
+        assert ours == pytest.approx(other, rel=2e-4, abs=0)  # the error of the motion at 1e-6 is 1e-4
+
+
 def test_adhesion_work_adds_up_to_the_loss(worn):
     assert total(worn) == pytest.approx(worn.gearidae.scene and _loss(worn), rel=1e-4, abs=0)
 

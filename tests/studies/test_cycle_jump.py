@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gearidae.studies.cycle_jump import Sticks, jump
+from gearidae.studies.cycle_jump import Life, Sticks, jump
 
 
 def decay(state):
@@ -76,3 +76,21 @@ def test_archard_ends_at_zero():
     found = jump(lambda f: np.where(f > 0.0, -1e-6, 0.0), np.array([1.0]), passages=3e6, tolerance=1e-3)
     assert found.states[-1][0] == pytest.approx(0.0, abs=1e-3)
     assert min(state.min() for state in found.states) >= 0.0
+
+
+def test_what_an_exception_interrupts_is_kept():
+    asked = []
+
+    def rate(state):
+        asked.append(state)
+        if len(asked) > 20:
+            raise KeyboardInterrupt
+        return decay(state)
+
+    life = Life()
+    with pytest.raises(KeyboardInterrupt):
+        jump(rate, np.ones(1), passages=2e9, tolerance=1e-6, life=life)
+    whole = jump(decay, np.ones(1), passages=2e9, tolerance=1e-6)
+    assert life.ending == "interrupted"
+    assert 2 < len(life.passages) < len(whole.passages)
+    assert life.passages == whole.passages[: len(life.passages)]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from gearidae.archive.exposures import flank_areas, gear_flank_areas
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_window import Cycles, run_window, window_scene
 
@@ -70,9 +71,12 @@ def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
         return run(*args)
 
     monkeypatch.setattr(sys.modules["gearidae.studies.life"], "run_window", cut)
-    with pytest.raises(gd.Interrupted, match="resume"):
+    with pytest.raises(gd.Interrupted, match="resume") as stopped:
         gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
-    assert not path.exists()
+    kept = gd.studies.open_life(path)
+    assert (kept.attrs["ending"], kept.sizes["passages"]) == ("interrupted", 1)
+    for ds in (kept, stopped.value.dataset):
+        np.testing.assert_array_equal(ds.coverage_loss, short.coverage_loss[:1])
     with pytest.raises(gd.SceneError, match="cut off"):
         gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
     resumed = gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path, resume=True)
@@ -103,11 +107,44 @@ def test_both_sides_of_independent_ones():
     assert 0.0 < float(lost.sel(side="gear")) < 0.5 * float(lost.sel(side="pinion"))
 
 
+@pytest.mark.parametrize("resolved", ["place", "tooth"])
+def test_sides_by_place_add_up_to_uniform_ones(resolved):
+    """Where all places are covered alike, they lose on average what uniform flanks lose."""
+    changes = {"coating.pairing": "independent", "coating.pinion_fraction": 0.9, "coating.gear_fraction": 0.7}
+    scene = LOW.replace({**changes, "contact.model": "asperity"})
+    losses = []
+    for each in ("uniform", resolved):
+        coverage = coverage_of(scene, each, 4)
+        window = window_scene(scene, Cycles(0, 2), 4).replace(coverage.changes(coverage.start))
+        found, _ = run_window(window, Cycles(0, 2), "native")
+        rate = LAW.rate(coverage.start, coverage.exposure(window, found, 2, coverage.start))
+        areas = (flank_areas(window), gear_flank_areas(window))
+        assert all(np.isfinite(rate))
+        losses.append(
+            [
+                (part.mean(axis=0) * (area if part.shape[1] > 1 else 1.0)).sum()
+                / (area.sum() if part.shape[1] > 1 else 1.0)
+                for part, area in zip(coverage.split(rate), areas, strict=True)
+            ]
+        )
+    assert losses[1] == pytest.approx(
+        losses[0], rel=1e-3
+    )  # motions by table and by fraction differ by rounding
+
+
+def test_a_side_by_place_has_one_row_for_the_gear():
+    scene = LOW.replace({"coating.pairing": "independent", "contact.model": "asperity"})
+    table = np.full((76, 4), 0.5).tolist()
+    with pytest.raises(gd.SceneError, match="one tooth") as error:
+        coverage_of(scene.replace({"coating.gear_table": table}), "place", 4)
+    assert error.value.key == "coating.gear_table"
+
+
 def test_each_tooth_has_its_own_share():
     scene = LOW.replace({"contact.model": "asperity"})
     scene = scene.replace({"coating.pinion_table": np.linspace(0.7, 0.9, 19)[:, None].tolist()})
     coverage = coverage_of(scene, "tooth", 4)
-    assert coverage.shape == (1, 19, 4)
+    assert coverage.shapes == ((19, 4),)
     np.testing.assert_allclose(coverage.start.reshape(19, 4)[:, 2], np.linspace(0.7, 0.9, 19))
     again = scene.replace(coverage.changes(coverage.start))
     np.testing.assert_allclose(np.array(again.coating.pinion_table)[:, 0], np.linspace(0.7, 0.9, 19))
@@ -144,3 +181,17 @@ def test_scenes_are_checked():
         gd.studies.life(gd.preset("start_up"), LAW)
     with pytest.raises(gd.SceneError, match="loss law"):
         gd.studies.life(LOW, "contacts")
+
+
+def test_signals_along_a_life_follow_its_coverage(short):
+    """A sensor with some noise, and a map none of whose fractions is that of a state but the first."""
+    chart = gd.studies.coating_map(LOW, [0.74, 0.72, 0.7, 0.68, 0.66, 0.64, 0.62])
+    found = gd.studies.assess_life(short, chart, noise=0.002)
+    assert set(found.assessed_verdict.values) == {"clear"}
+    truth = found.coverage.isel(side=0)
+    assert (found.assessed_low <= truth).all()
+    assert (truth <= found.assessed_high).all()
+    np.testing.assert_allclose(found.assessed_coverage, truth, rtol=0, atol=0.004)  # as in the closed loop
+    assert len(gd.plot.life(found).containers) == 1
+    with pytest.raises(gd.SceneError, match="noise"):
+        gd.studies.assess_life(short, chart, noise=-1.0)

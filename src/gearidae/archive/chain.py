@@ -28,6 +28,8 @@ _CONTINUOUS = ("gear_speed", "pinion_speed", "gear_angle", "transmission_error",
 _SEAM = 1e3
 """Tolerances by which a state may differ on both sides of a seam, over its range: each run reads it from its own dense
 output."""
+_GROWING = (("time",), ("event",))
+"""What a chain has more of with each run; anything else is that of the last."""
 _SUMS = ("wall_time", *(name for name, variable in RUN.items() if variable.dtype is np.int64))
 
 
@@ -64,7 +66,7 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     variables = {
         str(name): (
             each.dims,
-            np.concatenate([part[name].values for part in cut]) if each.dims else each.values,
+            np.concatenate([part[name].values for part in cut]) if each.dims[:1] in _GROWING else each.values,
             each.attrs,
         )
         for name, each in last.variables.items()

@@ -13,12 +13,13 @@ import xarray as xr
 from gearidae.archive.chain import chained
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.energy import balance_in_attributes, balance_of
+from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.joint import history_of, part_name, software_of
 from gearidae.archive.keep import kept_in
 from gearidae.archive.select import run_value, runs, scene_of
 from gearidae.archive.single import single_run
 from gearidae.archive.stack import Axis, held, stack
-from gearidae.archive.variables import ENERGY_BALANCE, EXTREMES, RUN, VERDICT
+from gearidae.archive.variables import ENERGY_BALANCE, EXPOSURES, EXTREMES, RUN, VERDICT
 from gearidae.errors import SceneError
 from gearidae.records import Events, Solution, Statistics
 from gearidae.scene import Scene, describe_keys
@@ -41,11 +42,11 @@ def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        As `gearidae.sweep` returns it, with the runs in the order given: scenes, events, statistics, extremes and
-        energy balance of each are its own. Of a chain, as `gearidae.simulate` returns it: the samples and events of
-        all, their statistics added up; energy balance and extremes, which each run carries on from the one before, are
-        those of the last, and so are scene and status. The attribute ``chain`` holds where each run begins and ends,
-        and its scene.
+        As `gearidae.sweep` returns it, with the runs in the order given: scenes, events, statistics, extremes,
+        exposures and energy balance of each are its own. Of a chain, as `gearidae.simulate` returns it: the samples and
+        events of all, their statistics added up; energy balance, extremes and exposures, which each run carries on from
+        the one before, are those of the last, and so are scene and status. The attribute ``chain`` holds where each run
+        begins and ends, and its scene.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
             )
     base = Scene.from_dict(scene_of(parts[0]))
     ds = stack(base, axes, scenes, [_solution(each.single) for each in found], keep=keep)
-    ds = _with_numbers(ds, parts, found)
+    ds = _with_exposures(_with_numbers(ds, parts, found), base, [each.picked for each in found])
     return ds.assign_attrs(
         history=history_of(parts, f"joined {len(parts)} datasets along {dim}"), **software_of(parts)
     )
@@ -252,3 +253,19 @@ def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_
             is_text = variable.dtype is np.str_
             ds.attrs[name] = ", ".join(sorted({*told} - {""})) if is_text else sum(told)
     return ds
+
+
+def _with_exposures(ds: xr.Dataset, base: Scene, picked: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Put in what the flanks of each run have been exposed to, if all have the same teeth, places and materials."""
+    dims, shape = ds["status"].dims, ds["status"].shape
+    for name, variable in EXPOSURES.items():
+        if {run[name].dims if name in run else () for run in picked} != {variable.dims}:
+            continue
+        if len({run[name].shape for run in picked}) == 1:
+            values = np.stack([run[name].values for run in picked])
+            ds[name] = (
+                (*dims, *variable.dims),
+                values.reshape(*shape, *values.shape[1:]),
+                variable.attributes,
+            )
+    return ds.assign_coords(exposure_coordinates(base)) if "place" in ds.dims else ds

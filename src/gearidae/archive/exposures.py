@@ -13,7 +13,7 @@ from gearidae.archive.variables import EXPOSURES, PLACES
 from gearidae.records import Solution
 from gearidae.scene import MATERIAL_NAMES, Scene
 
-__all__ = ["FLANKS", "exposure_coordinates", "exposure_variables", "flank_areas"]
+__all__ = ["FLANKS", "exposure_coordinates", "exposure_variables", "flank_areas", "gear_flank_areas"]
 
 Floats = NDArray[np.float64]
 
@@ -42,6 +42,25 @@ def flank_areas(scene: Scene) -> Floats:
     tangent = geometry.base_radius_pinion * math.tan(scene.gears.pressure_angle)
     radius = tangent - geometry.approach + edges
     return np.asarray(scene.gears.face_width * np.diff(radius**2) / (2.0 * geometry.base_radius_pinion))
+
+
+def gear_flank_areas(scene: Scene) -> Floats:
+    """Areas of one flank of the gear that the places stand for: what meets `flank_areas` of the pinion.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of gears, with ``run.exposures`` above 0.
+
+    Returns
+    -------
+    ndarray, shape (places,)
+        Square metres.
+    """
+    assert scene.gears is not None
+    geometry = scene.geometry
+    radius = geometry.tangent_gear + geometry.approach - _edges(scene)
+    return np.asarray(scene.gears.face_width * -np.diff(radius**2) / (2.0 * geometry.base_radius_gear))
 
 
 def _edges(scene: Scene) -> Floats:

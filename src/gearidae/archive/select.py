@@ -13,7 +13,7 @@ import xarray as xr
 from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
-from gearidae.archive.variables import EXTREMES, columns
+from gearidae.archive.variables import EXTREMES, PLACES, columns
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
@@ -174,7 +174,7 @@ def own_events(ds: xr.Dataset) -> xr.Dataset:
         return ds
     own = np.ones(ds.sizes["event"], dtype=bool)
     for name in map(str, ds.coords):
-        if name not in ("time", "event") and f"event_{name}" in ds.variables and ds[name].ndim < 2:
+        if name not in ("time", "event", *PLACES) and f"event_{name}" in ds.variables and ds[name].ndim < 2:
             own &= np.isin(ds[f"event_{name}"].values, ds[name].values)
     return ds if own.all() else ds.isel(event=own)
 

@@ -13,6 +13,7 @@ from gearidae.plot.ensembles import sobol_indices, sticking_probability
 from gearidae.plot.files import write
 from gearidae.plot.gears import gap, gear_speed, transmission_error
 from gearidae.plot.life import coverage_along_flank, life
+from gearidae.plot.lives import lives
 from gearidae.plot.outcome import outcome
 from gearidae.plot.outcome_map import outcome_map
 from gearidae.plot.overview import overview
@@ -35,6 +36,7 @@ __all__ = [
     "gear_speed",
     "impact_spectrum",
     "life",
+    "lives",
     "outcome",
     "outcome_map",
     "overview",

@@ -22,7 +22,8 @@ def life(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     ds : xarray.Dataset
-        From `gearidae.studies.life`.
+        From `gearidae.studies.life`; of `gearidae.studies.assess_life` what the signals say is drawn too, with its 95 %
+        interval.
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
 
@@ -39,6 +40,8 @@ def life(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _require(ds, "coverage")
     ax = new_axes(ax, height=3.8)
     passages = ds["passages"].values
+    if "assessed_coverage" in ds:
+        _draw_assessed(ds, ax)
     for side in ds["side"].values:
         share = 100.0 * ds["coverage"].sel(side=side).values
         ax.plot(passages, share, marker=".", label=f"coverage, {side}")
@@ -56,9 +59,32 @@ def life(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             passages, frequency, color="C1", marker=".", linestyle="--", label="characteristic frequency"
         )
         right.set_ylabel("characteristic frequency [kHz]")
-        right.legend(loc="center left", frameon=False)
-    ax.legend(loc="lower left", frameon=False)
+        lines, labels = (
+            a + b
+            for a, b in zip(ax.get_legend_handles_labels(), right.get_legend_handles_labels(), strict=True)
+        )
+        right.legend(lines, labels, loc="center left", frameon=False)
+    else:
+        ax.legend(loc="lower left", frameon=False)
     return ax
+
+
+def _draw_assessed(ds: xr.Dataset, ax: Axes) -> None:
+    """Draw what signals along the life say, where they can tell."""
+    passages, shares = ds["passages"].values, 100.0 * ds["assessed_coverage"].values
+    below, above = 100.0 * ds["assessed_low"].values, 100.0 * ds["assessed_high"].values
+    told = np.isfinite(shares)
+    spread = [shares[told] - below[told], above[told] - shares[told]]
+    ax.errorbar(
+        passages[told],
+        shares[told],
+        yerr=spread,
+        label="by the speed signal, 95 %",
+        fmt="o",
+        color="C2",
+        markersize=4.0,
+        capsize=2.5,
+    )
 
 
 def coverage_along_flank(ds: xr.Dataset, ax: Axes | None = None, *, tooth: int | None = None) -> Axes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import secrets
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import xarray as xr
 from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
 from gearidae.report import html
+from gearidae.report.life import is_life, life_headline, life_pictures, life_table, life_viewer
 from gearidae.report.pictures import pictures
 from gearidae.report.series import MOST_VALUES, pack
 from gearidae.report.tables import (
@@ -37,7 +39,8 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     Parameters
     ----------
     ds : xarray.Dataset
-        From `simulate`, `sweep` or `open_archive`. What its runs have not kept (samples, events) is left out.
+        From `simulate`, `sweep`, `open_archive` or `gearidae.studies.life`. What runs have not kept (samples, events)
+        is left out.
     most_values : int, optional
         Numbers to embed at most in the viewer of the time series.
 
@@ -51,21 +54,39 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     SceneError
         If the dataset carries no scene.
     """
-    name = str(scene_of(ds).get("name", "gearidae"))
-    main = "\n".join(
-        part
-        for part in (
-            html.section("outcome", "Outcome", outcome_table(ds), account_table(ds)),
-            html.section("series", "Time series", _viewer(ds, most_values)),
-            html.section("teeth", "Teeth in mesh", _teeth(ds)),
-            html.section("pictures", "Pictures", pictures(ds)),
-            html.section("events", "Events", event_table(ds)),
-            html.section("validity", "How far the model holds", validity_table(ds)),
-            html.section("parameters", "Parameters", parameter_tables(ds)),
-            html.section("provenance", "Provenance", provenance_list(ds)),
-        )
-        if part
+    if is_life(ds):
+        return _life_page(ds)
+    sections = (
+        html.section("outcome", "Outcome", outcome_table(ds), account_table(ds)),
+        html.section("series", "Time series", _viewer(ds, most_values)),
+        html.section("teeth", "Teeth in mesh", _teeth(ds)),
+        html.section("pictures", "Pictures", pictures(ds)),
+        html.section("events", "Events", event_table(ds)),
     )
+    scripts = ("common.js", "save.js", "box.js", "viewer.js", "teeth.js")
+    return _page(ds, headline(ds), sections, scripts)
+
+
+def _life_page(ds: xr.Dataset) -> str:
+    """Make the page about the life of a coating."""
+    sections = (
+        html.section("life", "Over passages", life_viewer(ds)),
+        html.section("outcome", "Steps", life_table(ds)),
+        html.section("pictures", "Pictures", life_pictures(ds)),
+    )
+    return _page(ds, life_headline(ds), sections, ("common.js", "save.js", "life.js"))
+
+
+def _page(ds: xr.Dataset, told: str, sections: Sequence[str], scripts: Sequence[str]) -> str:
+    """Put a page together from its own sections and those that all pages have."""
+    name = str(scene_of(ds).get("name", "gearidae"))
+    common = (
+        html.section("validity", "How far the model holds", validity_table(ds)),
+        html.section("parameters", "Parameters", parameter_tables(ds)),
+        html.section("provenance", "Provenance", provenance_list(ds)),
+    )
+    main = "\n".join(part for part in (*sections, *common) if part)
+    script = "\n".join(_resource(each) for each in scripts)
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -82,18 +103,14 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
 <body>
 <header>
 <h1>{html.text(name.replace("_", " "))}</h1>
-<p class="headline">{html.text(headline(ds))}</p>
+<p class="headline">{html.text(told)}</p>
 {html.paragraph(ds.attrs.get("summary", ""), "summary")}
 </header>
 <main>
 {main}
 </main>
 <script>
-{_resource("common.js")}
-{_resource("save.js")}
-{_resource("box.js")}
-{_resource("viewer.js")}
-{_resource("teeth.js")}
+{script}
 </script>
 </body>
 </html>

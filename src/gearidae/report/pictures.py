@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import xarray as xr
@@ -14,7 +14,7 @@ from gearidae.errors import SceneError
 from gearidae.report import html
 from gearidae.report.svg import colour_rules, drawing
 
-__all__ = ["pictures"]
+__all__ = ["figures", "pictures"]
 
 _Draw = Callable[[xr.Dataset], Any]
 
@@ -48,16 +48,21 @@ def pictures(ds: xr.Dataset) -> str:
     wanted = _ROLLER if is_roller(ds) else _GEARS if swept else _GEARS + _SINGLE
     if swept:
         wanted = (_OUTCOME, *wanted)
+    return figures(ds, wanted)
+
+
+def figures(ds: xr.Dataset, wanted: Sequence[tuple[_Draw, str]]) -> str:
+    """Draw pictures with their captions; those for which a dataset is too short or too empty are left out."""
     drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
     shown = [(name, text, caption) for name, text, caption in drawn if text]
     if not shown:
         return ""
-    figures = "\n".join(
+    content = "\n".join(
         f'<figure class="picture" data-name="{html.text(name)}"><div class="wide" role="region" tabindex="0" '
         f'aria-label="{html.text(caption)}">{text}</div><figcaption>{html.text(caption)}</figcaption></figure>'
         for name, text, caption in shown
     )
-    return f"<style>\n{colour_rules(text for _, text, _ in shown)}</style>\n{figures}"
+    return f"<style>\n{colour_rules(text for _, text, _ in shown)}</style>\n{content}"
 
 
 def _drawn(ds: xr.Dataset, draw: _Draw, caption: str) -> str:

@@ -26,6 +26,7 @@ __all__ = [
     "account_table",
     "event_table",
     "headline",
+    "law_table",
     "outcome_table",
     "parameter_tables",
     "provenance_list",
@@ -179,6 +180,19 @@ def parameter_tables(ds: xr.Dataset) -> str:
         shown = f"swept: {_values(swept[key], unit)}" if key in swept else _value(value, unit)
         rows.append((key, shown, meaning))
     return html.table(("key", "value", "meaning"), rows, caption="Parameters of the scene")
+
+
+def law_table(ds: xr.Dataset) -> str:
+    """List the loss law of a life with its parameters and its source; nothing if it names none."""
+    try:
+        law = json.loads(ds.attrs.get("law", ""))
+    except ValueError:
+        return ""
+    if not isinstance(law, dict):
+        return ""
+    rows = [(key, _value(value, "")) for key, value in law.items()]
+    rows.append(("source", str(ds.attrs.get("law_source", ""))))
+    return html.table(("loss law", "in SI units"), rows, caption="How coverage is lost")
 
 
 def validity_table(ds: xr.Dataset) -> str:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.life import life
     from gearidae.studies.life_file import open_life
+    from gearidae.studies.life_signals import assess_life
+    from gearidae.studies.lives import lives
     from gearidae.studies.observations import Observation
     from gearidae.studies.operating_map import operating_map
     from gearidae.studies.predict import predict
@@ -29,10 +31,12 @@ if TYPE_CHECKING:
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.sticking_probability import sticking_probability
     from gearidae.studies.sticking_threshold import sticking_threshold
+    from gearidae.studies.surviving_share import surviving_share
     from gearidae.studies.tooth_contacts import tooth_contacts
 
 __all__ = [
     "Observation",
+    "assess_life",
     "calibrate",
     "coating_map",
     "contact_resonance",
@@ -40,6 +44,7 @@ __all__ = [
     "effective_mass",
     "ensemble",
     "life",
+    "lives",
     "natural_frequency",
     "open_life",
     "open_map",
@@ -53,18 +58,21 @@ __all__ = [
     "steady_speed",
     "sticking_probability",
     "sticking_threshold",
+    "surviving_share",
     "tooth_contacts",
     "validity",
 ]
 
 _HOME = {
     "Observation": "observations",
+    "assess_life": "life_signals",
     "calibrate": "calibrate",
     "coating_map": "coating_map",
     "contact_resonance": "equilibrium",
     "doubts": "gearidae.runs.plausibility",
     "effective_mass": "gearidae.runs.estimates",
     "life": "life",
+    "lives": "lives",
     "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
     "open_life": "life_file",
@@ -79,6 +87,7 @@ _HOME = {
     "steady_speed": "gearidae.runs.estimates",
     "sticking_probability": "sticking_probability",
     "sticking_threshold": "sticking_threshold",
+    "surviving_share": "surviving_share",
     "tooth_contacts": "tooth_contacts",
     "validity": "gearidae.runs.validity",
 }

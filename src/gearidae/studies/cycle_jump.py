@@ -40,7 +40,7 @@ class Life:
     states : list of ndarray
         State there.
     ending : str
-        ``sticks``, ``coverage`` or ``passages``: what was reached.
+        ``sticks``, ``coverage`` or ``passages``: what was reached; ``interrupted`` until one of them is.
     sticks_by : float
         Passages by which the gear sticks, the upper end of a bracket whose lower end is the last of `passages`; NaN if
         it has not stuck.
@@ -48,7 +48,7 @@ class Life:
 
     passages: list[float] = field(default_factory=list)
     states: list[Floats] = field(default_factory=list)
-    ending: str = "passages"
+    ending: str = "interrupted"
     sticks_by: float = np.nan
 
     def add(self, passages: float, state: Floats) -> None:
@@ -65,7 +65,7 @@ def jump(
     tolerance: float,
     least: float = 0.0,
     bracket: float = 0.01,
-    on_step: Callable[[float, Floats], None] | None = None,
+    life: Life | None = None,
 ) -> Life:
     """Integrate a coverage over passages.
 
@@ -83,14 +83,15 @@ def jump(
         Mean of the state at which the integration ends.
     bracket : float, optional
         Width, over the passages, at which the place where the gear sticks is known well enough.
-    on_step : callable, optional
-        Told passages and state after each step.
+    life : Life, optional
+        Continued with each step; what it holds is there also where an exception ends the integration. By default a new
+        one.
 
     Returns
     -------
     Life
     """
-    life, known = Life(), dict[bytes, Floats]()
+    life, known = Life() if life is None else life, dict[bytes, Floats]()
     life.add(0.0, start)
 
     def of(n: float, state: Floats) -> Floats:
@@ -107,8 +108,9 @@ def jump(
         return life
     if fastest == 0.0:
         life.add(passages, start)
+        life.ending = "passages"
         return life
-    _integrate(of, life, _Limits(passages, tolerance, least, bracket), _FIRST / fastest, on_step)
+    _integrate(of, life, _Limits(passages, tolerance, least, bracket), _FIRST / fastest)
     return life
 
 
@@ -127,7 +129,6 @@ def _integrate(
     life: Life,
     limits: _Limits,
     step: float,
-    on_step: Callable[[float, Floats], None] | None,
 ) -> None:
     """Step until something ends it; `life` is continued."""
     from scipy.integrate import RK23
@@ -161,12 +162,11 @@ def _integrate(
             life.ending = "coverage"
             return
         life.add(solver.t, np.clip(solver.y, 0.0, 1.0))
-        if on_step is not None:
-            on_step(life.passages[-1], life.states[-1])
         step = solver.h_abs
         if upper < np.inf and upper - solver.t <= limits.bracket * upper:
             life.ending, life.sticks_by = "sticks", upper
             return
+    life.ending = "passages"
 
 
 def _crossing(

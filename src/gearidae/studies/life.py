@@ -119,7 +119,8 @@ def life(
     SolverError
         If a window could not be finished, or more windows would be needed than are allowed.
     Interrupted
-        On Ctrl-C; finished windows are kept beside `archive`.
+        On Ctrl-C, with the life so far as its ``dataset``, whose ``ending`` is interrupted. It is written to `archive`,
+        beside which finished windows are kept.
 
     Notes
     -----
@@ -151,21 +152,24 @@ def life(
         windows = _Windows(
             window, coverage, law, Cycles(settle, cycles), starts, backend, executor or own, kept, report
         )
+        found = Life()
         try:
-            found = jump(
+            jump(
                 windows.rate,
                 coverage.start,
                 passages=passages,
                 tolerance=tolerance,
                 least=fraction,
                 bracket=bracket,
+                life=found,
             )
             ds = _dataset(scene, law, coverage, windows, found, frequency=frequency)
         except KeyboardInterrupt:
-            where = (
-                "" if archive is None else "finished windows are kept beside the archive; go on with --resume"
-            )
-            raise Interrupted(where, xr.Dataset()) from None
+            ds = _so_far(scene, law, coverage, windows, found)
+            if archive is not None and ds.sizes:
+                save(ds, archive, overwrite=overwrite or resume)
+            where = "" if archive is None else "the life so far is in the archive; go on with --resume"
+            raise Interrupted(where, ds) from None
     if archive is not None:
         save(ds, archive, overwrite=overwrite or resume)
     if kept is not None:
@@ -207,6 +211,10 @@ class _Windows:
         if seen.sticks:
             raise Sticks
         return seen.rate
+
+    def has(self, state: Floats) -> bool:
+        """Whether the windows of a state have been run."""
+        return np.clip(state, 0.0, 1.0).tobytes() in self.seen
 
     def of(self, state: Floats) -> _Seen:
         """Look a state up, or run its windows."""
@@ -297,6 +305,17 @@ def _dataset(
             "passages_jumped": max(whole - simulated, 0.0) / teeth,
         }
     )
+
+
+def _so_far(scene: Scene, law: LossLaw, coverage: Coverage, windows: _Windows, found: Life) -> xr.Dataset:
+    """Make the dataset of a life that was cut off: of its steps whose windows have been run, without frequencies."""
+    done = [number for number, state in enumerate(found.states) if windows.has(state)]
+    if not done:
+        return xr.Dataset()
+    kept = Life(
+        [found.passages[n] for n in done], [found.states[n] for n in done], found.ending, found.sticks_by
+    )
+    return _dataset(scene, law, coverage, windows, kept, frequency=False)
 
 
 def _check(

@@ -1,8 +1,9 @@
 """The coverage of a life as a vector of numbers: what it means for a scene, and what each number is exposed to.
 
 - ``uniform``: one share, of both sides alike; with independent sides one of the pinion and one of the gear.
-- ``place``: a share for each place along the flank, of all teeth alike.
-- ``tooth``: one for each tooth of the pinion and place.
+- ``place``: a share for each place along the path of contact, of all teeth alike; with independent sides, of each side.
+- ``tooth``: one for each tooth of the pinion and place. Each tooth of an independent gear meets those of the pinion in
+  turn: it has one for each place, and is exposed to their mean.
 
 Rates are taken from the drive flank, which carries the load: the coast flank has the same row of a table. A passage is
 that of a tooth of the pinion through mesh; a tooth of the gear passes less often by the ratio of the teeth.
@@ -10,19 +11,20 @@ that of a tooth of the pinion through mesh; a tooth of the gear passes less ofte
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.archive.exposures import exposure_coordinates, exposure_variables
+from gearidae.archive.exposures import exposure_coordinates, exposure_variables, gear_flank_areas
 from gearidae.errors import SceneError
 from gearidae.wear import Exposure
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import Scene
+    from gearidae.scene import Coating, Scene
 
 __all__ = ["RESOLUTIONS", "Coverage", "coverage_of"]
 
@@ -39,33 +41,58 @@ class Coverage:
     ----------
     resolved : str
         One of `RESOLUTIONS`.
-    shape : tuple of int
-        Of a state: sides, teeth, places.
-    independent : bool
-        Whether each side is covered on its own.
+    shapes : tuple of tuple of int
+        Teeth and places of each side; one place where it is uniform, one tooth where all are alike.
     start : ndarray
-        State at the beginning.
+        State at the beginning: the sides one after the other.
     """
 
     resolved: str
-    shape: tuple[int, int, int]
-    independent: bool
+    shapes: tuple[tuple[int, int], ...]
     start: Floats
+
+    @property
+    def independent(self) -> bool:
+        """Whether each side is covered on its own."""
+        return len(self.shapes) > 1
 
     @property
     def sides(self) -> tuple[str, ...]:
         """Names of what is covered."""
         return ("pinion", "gear") if self.independent else ("interface",)
 
+    @property
+    def places(self) -> int:
+        """Places along the path of contact; 1 where coverage is uniform."""
+        return self.shapes[0][1]
+
+    @property
+    def teeth(self) -> int:
+        """Teeth of the pinion that are told apart."""
+        return self.shapes[0][0]
+
+    def split(self, numbers: Floats) -> list[Floats]:
+        """Take numbers of a state apart, into an array of teeth and places for each side."""
+        ends = np.cumsum([teeth * places for teeth, places in self.shapes])[:-1]
+        parts = np.split(np.asarray(numbers), ends)
+        return [part.reshape(shape) for part, shape in zip(parts, self.shapes, strict=True)]
+
+    def table(self, numbers: Floats) -> Floats:
+        """Return numbers of a state by side, tooth and place; of a side whose teeth are alike, the same for all."""
+        shape = self.shapes[0]
+        return np.stack([np.broadcast_to(part, shape) for part in self.split(numbers)])
+
     def changes(self, state: Floats) -> dict[str, Any]:
         """Return what a state changes in the scene."""
-        table = np.clip(state, 0.0, 1.0).reshape(self.shape)
+        parts = self.split(np.clip(state, 0.0, 1.0))
         if self.resolved != "uniform":
-            return {"coating.pinion_table": table[0].tolist()}
+            tables = {
+                f"coating.{side}_table": part.tolist() for side, part in zip(_SIDES, parts, strict=False)
+            }
+            return {**tables, "coating.pinion_fraction": None, "coating.gear_fraction": None}
         if self.independent:
-            first, second = table[:, 0, 0].tolist()
-            return {"coating.pinion_fraction": first, "coating.gear_fraction": second}
-        return {"coating.sam_fraction": float(table[0, 0, 0])}
+            return {f"coating.{side}_fraction": part.item() for side, part in zip(_SIDES, parts, strict=True)}
+        return {"coating.sam_fraction": parts[0].item()}
 
     def exposure(self, scene: Scene, solution: Solution, cycles: int, state: Floats) -> Exposure:
         """What each number of a state is exposed to in one passage.
@@ -87,50 +114,47 @@ class Coverage:
             for name in ("asperity_contacts", "adhesion_work")
         )
         shared = (found["sliding_work"][1][0], found["largest_pressure"][1][0])
+        area = exposure_coordinates(scene)["flank_area"][1]
         if not self.independent:
-            return self._gathered(scene, cycles, (contacts["coated"], work["coated"], *shared))
+            tables = (contacts["coated"], work["coated"], *shared)
+            return Exposure(*(each.ravel() for each in _gathered(tables, area, cycles, self.shapes[0])))
         sides = []
-        other = np.clip(state, 0.0, 1.0)[::-1]
-        for side in range(2):  # what is covered meets a covered or a bare place of the other side
-            met = [
-                other[side] * each["coated"] + (1.0 - other[side]) * each["mixed"]
-                for each in (contacts, work)
-            ]
-            sides.append(self._gathered(scene, cycles, (*met, *shared)))
-        ratio = _gear_over_pinion(scene)
-        pinion, gear = sides
+        for other, shape in zip(self.split(np.clip(state, 0.0, 1.0))[::-1], self.shapes, strict=True):
+            # what is covered meets a covered or a bare place of the other side
+            met = [other * each["coated"] + (1.0 - other) * each["mixed"] for each in (contacts, work)]
+            sides.append(_gathered((*met, *shared), area, cycles, shape))
+        ratio = _gear_over_pinion(scene, self.places)
+        gear = [each * ratio for each in sides[1][:3]] + [sides[1][3]]
         return Exposure(
-            np.concatenate([pinion.contacts, ratio * gear.contacts]),
-            np.concatenate([pinion.adhesion_work, ratio * gear.adhesion_work]),
-            np.concatenate([pinion.sliding_work, ratio * gear.sliding_work]),
-            np.concatenate([pinion.pressure, gear.pressure]),
+            *(np.concatenate([a.ravel(), b.ravel()]) for a, b in zip(sides[0], gear, strict=True))
         )
 
-    def _gathered(self, scene: Scene, cycles: int, tables: tuple[Floats, ...]) -> Exposure:
-        """Put exposures by tooth and place together as the state has them, per passage."""
-        area = exposure_coordinates(scene)["flank_area"][1]
-        contacts, work, sliding, pressure = tables
-        if self.resolved == "tooth":
-            per = [(table * len(table) / cycles).ravel() for table in (contacts, work, sliding)]
-            return Exposure(per[0], per[1], per[2], pressure.ravel())
-        per = [table.sum(axis=0) / cycles for table in (contacts, work, sliding)]
-        most = pressure.max(axis=0)
-        if self.resolved == "uniform":
-            per = [np.array([(each * area).sum() / area.sum()]) for each in per]
-            most = np.array([most.max()])
-        return Exposure(per[0], per[1], per[2], most)
+
+_SIDES = ("pinion", "gear")
 
 
-def _gear_over_pinion(scene: Scene) -> float:
+def _gathered(tables: Sequence[Floats], area: Floats, cycles: int, shape: tuple[int, int]) -> list[Floats]:
+    """Put exposures by tooth of the pinion and place together as a side has them, per passage; pressures last."""
+    found = []
+    for number, table in enumerate(tables):
+        is_pressure = number == len(tables) - 1
+        each = table if is_pressure else table * len(table) / cycles
+        if shape[0] == 1:
+            each = (each.max(axis=0) if is_pressure else each.mean(axis=0))[None, :]
+        if shape[1] == 1:
+            mean = (each * area).sum(axis=1) / area.sum()
+            each = (each.max(axis=1) if is_pressure else mean)[:, None]
+        found.append(each)
+    return found
+
+
+def _gear_over_pinion(scene: Scene, places: int) -> Floats:
     """Exposure per area of the gear's flank and passage of the pinion's teeth, over that of the pinion's flank."""
     assert scene.gears is not None
-    geometry = scene.geometry
-    span = geometry.contact_ratio * geometry.base_pitch
-    first = geometry.tangent_pinion - geometry.approach
-    last = geometry.tangent_pinion + geometry.tangent_gear - first
-    pinion = ((first + span) ** 2 - first**2) / geometry.base_radius_pinion
-    gear = (last**2 - (last - span) ** 2) / geometry.base_radius_gear
-    return pinion / gear * scene.gears.pinion_teeth / scene.gears.gear_teeth
+    pinion, gear = exposure_coordinates(scene)["flank_area"][1], gear_flank_areas(scene)
+    if places == 1:
+        pinion, gear = pinion.sum(keepdims=True), gear.sum(keepdims=True)
+    return np.asarray(pinion / gear * scene.gears.pinion_teeth / scene.gears.gear_teeth)
 
 
 def coverage_of(scene: Scene, resolved: str, places: int) -> Coverage:
@@ -148,20 +172,27 @@ def coverage_of(scene: Scene, resolved: str, places: int) -> Coverage:
     independent = coating.pairing == "independent"
     if resolved == "uniform":
         if coating.by_place:
-            raise SceneError("coating.pinion_table", "(given)", 'needs resolved = "place" or "tooth"')
+            key = "coating.pinion_table" if coating.pinion_table else "coating.gear_table"
+            raise SceneError(key, "(given)", 'needs resolved = "place" or "tooth"')
         start = np.array(coating.fractions) if independent else np.array([coating.sam_fraction])
-        return Coverage(resolved, (len(start), 1, 1), independent, start)
-    if independent:
-        raise SceneError("coating.pairing", coating.pairing, f'must be patches with resolved = "{resolved}"')
+        return Coverage(resolved, ((1, 1),) * len(start), start)
     teeth = gears.pinion_teeth if resolved == "tooth" else 1
-    table = np.full((teeth, places), coating.sam_fraction)
-    if coating.pinion_table:
-        given = np.array(coating.pinion_table)
-        if given.shape[1] not in (1, places) or given.shape[0] not in (1, teeth):
-            raise SceneError(
-                "coating.pinion_table",
-                f"{given.shape[0]} teeth, {given.shape[1]} places",
-                f"must have {teeth} or one, and {places} or one",
-            )
-        table = np.broadcast_to(given, table.shape).copy()
-    return Coverage(resolved, (1, teeth, places), False, table.ravel())
+    shapes = ((teeth, places), (1, places))[: 2 if independent else 1]
+    tables = [
+        _spread_table(coating, f"{side}_table", number, shape)
+        for number, (side, shape) in enumerate(zip(_SIDES, shapes, strict=False))
+    ]
+    return Coverage(resolved, shapes, np.concatenate([table.ravel() for table in tables]))
+
+
+def _spread_table(coating: Coating, key: str, side: int, shape: tuple[int, int]) -> Floats:
+    """Coverage of a side at the beginning, for as many teeth and places as are followed."""
+    given = np.array(coating.tables[side])
+    teeth, places = shape
+    if given.shape[1] not in (1, places) or given.shape[0] not in (1, teeth):
+        raise SceneError(
+            f"coating.{key}",
+            f"{given.shape[0]} teeth, {given.shape[1]} places",
+            f"must have {'one tooth' if teeth == 1 else f'{teeth} teeth or one'}, and {places} places or one",
+        )
+    return np.broadcast_to(given, shape).copy()

@@ -14,6 +14,7 @@ from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.provenance import provenance
 from gearidae.studies.cycle_jump import Life
 from gearidae.studies.life_coverage import Coverage
+from gearidae.studies.life_signals import signal_of
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -76,13 +77,13 @@ def life_dataset(
     Dataset
     """
     states = np.array(found.states)
-    tables = states.reshape(len(states), *coverage.shape)
+    tables = np.array([coverage.table(state) for state in states])
     dims = ("passages", "side")
     variables: dict[str, Any] = {
         "coverage": (dims, tables.mean(axis=(2, 3)), _about("1", "mean covered share of the flanks")),
         "coverage_loss": (
             dims,
-            -np.array([each.rate for each in seen]).reshape(tables.shape).mean(axis=(2, 3)),
+            -np.array([coverage.table(each.rate) for each in seen]).mean(axis=(2, 3)),
             _about("1", "share lost in a passage"),
         ),
         "verdict": ("passages", [_word(each) for each in seen], _about("1", "what the gear does")),
@@ -98,7 +99,7 @@ def life_dataset(
         ),
     }
     for name, (unit, meaning) in _EXPOSURES.items():
-        values = np.array([_mean(each, name, len(states[0])) for each in seen]).reshape(tables.shape)
+        values = np.array([coverage.table(_mean(each, name, len(states[0]))) for each in seen])
         together = values.max(axis=(2, 3)) if name == "pressure" else values.mean(axis=(2, 3))
         variables[f"passage_{name}"] = (dims, together, _about(unit, meaning))
         if name != "pressure":
@@ -120,9 +121,9 @@ def life_dataset(
         "side": list(coverage.sides),
     }
     if coverage.resolved != "uniform":
-        own = exposure_coordinates(scene.replace({"run.exposures": coverage.shape[2]}))
+        own = exposure_coordinates(scene.replace({"run.exposures": coverage.places}))
         coords["place"] = own["place"]
-        coords["tooth"] = np.arange(coverage.shape[1])
+        coords["tooth"] = np.arange(coverage.teeth)
     return xr.Dataset(
         variables,
         coords=coords,
@@ -159,12 +160,7 @@ def _cumulated(passages: Floats, rates: Floats) -> Floats:
 def _frequencies(scene: Scene, coverage: Coverage, states: Floats) -> Floats:
     """Characteristic frequency at each state, of the first impact of a run as a coating map has it."""
     from gearidae.analysis import characteristic_frequency
-    from gearidae.runs.simulation import simulate
 
-    assert scene.gears is not None
-    found = []
-    for state in states:
-        own = scene.replace({**coverage.changes(state), "run.stop": "time", "run.exposures": 0})
-        ds = simulate(own, samples=own.run.samples if own.run.sample_count else 30_001)
-        found.append(float(characteristic_frequency(ds)))
-    return np.array(found)
+    return np.array(
+        [float(characteristic_frequency(signal_of(scene, coverage.changes(state)))) for state in states]
+    )

@@ -8,11 +8,13 @@ For both flanks of every tooth of the pinion and every place along the path of c
 - the energy that they have lost by it, in the proportion of the energy balance (where shares change with tooth and
   place, as if the material covered everything);
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
-  times the distance from the pitch point. It is integrated over the intervals of the energy balance;
-- the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the ends of these intervals and at turning points.
+  times the distance from the pitch point. It is integrated over some steps at once; the forces are those of Newton's
+  iteration (`gearidae.engine.energy.noted_force`);
+- the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times and at turning points.
 
-What falls into an interval in which a contact passes from one place to the next is divided in proportion. Contacts on
-the tip relief count at the end of the path.
+An elastic contact is looked at as often as the energy balance closes an interval. What falls into a step in which a
+contact passes from one place to the next is divided in proportion. Contacts on the tip relief count at the end of the
+path.
 """
 
 from __future__ import annotations
@@ -21,9 +23,10 @@ from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import node_force, nodes_number
+from gearidae.engine.energy.noted_force import begin_notes, note_force
 from gearidae.engine.energy.quadrature import integral
 from gearidae.engine.model.coverage import note_shares, shares_of
-from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
     history_of,
@@ -40,14 +43,19 @@ __all__ = [
     "QUANTITIES",
     "begin_exposures",
     "close_exposures_at",
+    "expose_step",
     "expose_turning",
     "follow_exposures",
 ]
 
 QUANTITIES = 2 * MATERIALS + 2
 """Sums of a place: contacts and adhesion work of each material, sliding work, largest pressure."""
-SEEN = 2
-"""A pair that was near at the end of the last interval; one less while the next is looked at."""
+MOST_STEPS = 6
+"""Accepted steps over which sliding work is integrated at once; where adhesion matters, single ones are."""
+ADHESIVE = 0.1
+"""Power of a pair that pulls, over that of the pair that pushes most, from which on adhesion matters."""
+FADING = 0.9
+"""Of the largest power from one of these times to the next."""
 PARTS = 16
 """Parts of an interval in which a contact begins or ceases to push."""
 SLIDING, PRESSURE = 2 * MATERIALS, 2 * MATERIALS + 1
@@ -58,25 +66,25 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Note what is in contact at a start; nothing is exposed yet."""
     if m.scene.places == 0:
         return
-    m.work.exposure_time = t
-    m.work.exposure_begun = 1
+    m.work.exposing.time, m.work.exposing.begun = t, 1
+    _wait(m, 1)
     for k in range(m.scene.histories):
-        m.work.exposed[k].known = 0
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair == pair:
-            own = m.work.exposed[k]
-            for material in range(MATERIALS):
-                own.front[material] = 0.0
-            own.power = own.power_rate = 0.0
-            _follow_pair(m, 0.0, t, y, yp, coast, pair, k)
+        m.work.exposing.pair[k].known = 0
+    _note_forces(m, t, y)
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        k = noted.history
+        _begin_pair(m, t, k, noted.pair, noted.place)
+        for material in range(MATERIALS):
+            if m.scene.material[material].force_scale > 0.0:
+                m.work.exposing.pair[k].front[material] = _front(m, y, k, noted.gap, material)
+        sliding = _sliding(m, y, yp[V], yp[W])
+        _slide(m, t, k, sliding, noted.place, (noted.force, noted.slope * noted.gap_rate))
 
 
-@compiled
+@compiled(inline=True)
 def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Add what the flanks have been exposed to since the last interval, up to an accepted time.
+    """Add what the flanks have been exposed to since the last call, up to an accepted time.
 
     Parameters
     ----------
@@ -87,34 +95,84 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     y, yp : ndarray
         State there and its rate.
     """
-    h = t - m.work.exposure_time
-    if m.scene.kind != GEARS or m.work.exposure_begun == 0 or h <= 0.0:
+    exposing = m.work.exposing
+    before = exposing.time
+    if exposing.begun == 0 or t <= before:
         return
-    m.work.exposure_time = t
-    for k in range(m.scene.histories):
-        m.work.exposed[k].known = max(
-            m.work.exposed[k].known - 1, 0
-        )  # what is not near any more is forgotten
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair == pair:
-            _follow_pair(m, h, t, y, yp, coast, pair, k)
+    if m.work.notes.time != t or m.scene.nodes > 0:
+        _note_forces(m, t, y)
+    sliding = _sliding(m, y, yp[V], yp[W])
+    moved, steps, level = y[U] - m.work.notes.travel, MOST_STEPS, 0.0
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        k = noted.history
+        own = m.work.exposing.pair[k]
+        if own.known == 0 or own.pair != noted.pair or own.time < before:  # it has come near since
+            if m.state.history[k].pair != noted.pair:
+                continue
+            _begin_pair(m, before, k, noted.pair, noted.place)
+        widened = -moved if k < m.scene.slots else moved
+        gap = noted.gap + widened
+        if m.state.history[k].direction <= 0.0 and _joins(m, k, gap):
+            _join(m, y, k, gap, noted.place)
+        force = noted.force + noted.slope * widened
+        _slide(m, t, k, sliding, noted.place, (force, noted.slope * noted.gap_rate))
+        level = max(level, abs(own.power))
+        if own.adhesive != 0 or own.pull < -ADHESIVE * exposing.level:
+            steps = 1
+    exposing.time, exposing.level = t, max(level, FADING * exposing.level)
+    _wait(m, steps)
+
+
+@compiled(inline=True)
+def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Count an accepted step of rigid bodies, and follow the exposures where as many as wanted have been made."""
+    exposing = m.work.exposing
+    exposing.steps += 1
+    if exposing.steps >= exposing.wanted:
+        follow_exposures(m, t, y, yp)
+    m.work.notes.wanted = 1 if exposing.steps + 1 >= exposing.wanted else 0
+
+
+@compiled(inline=True)
+def _wait(m: Model, steps: int) -> None:
+    """Want to follow the exposures after some steps, and have the forces noted in the last of them."""
+    m.work.exposing.steps, m.work.exposing.wanted = 0, steps
+    m.work.notes.wanted = (
+        1 if steps == 1 and m.scene.nodes == 0 else 0
+    )  # those of elastic contacts are evaluated
 
 
 @compiled
 def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> None:
-    """Add what a contact has joined by its turning point, or note what is left of it, before the history takes that."""
-    own = m.work.exposed[k]
-    if own.known != SEEN or own.pair != pair:
+    """Add what a contact has been exposed to up to its turning point, before the history takes that.
+
+    The pressure is largest where the gap is least.
+    """
+    own = m.work.exposing.pair[k]
+    if own.known == 0 or own.pair != pair or own.time < m.work.exposing.time:
         return
     gap, _, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-    if gap < m.scene.cutoff:
-        length = contact_length(m, inside)
-        _join(m, y, coast, pair, k, gap, inside, 0.5 * (length + contact_length(m, own.place)))
+    if gap >= m.scene.cutoff:
+        return
+    if m.state.history[k].direction > 0.0:
+        own.turned = 1
+        for material in range(MATERIALS):
+            law = m.scene.material[material]
+            if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
+                own.front[material] = _front(m, y, k, gap, material)
+        return
+    _join(m, y, k, gap, inside)
+    own.adhesive = 1 if own.pull < -ADHESIVE * m.work.exposing.level else 0
+    own.pull = 0.0
+    if own.adhesive != 0 or gap < own.lowest:
+        own.lowest = min(own.lowest, gap)
         force, _ = _force(m, t, y, coast, pair, k)
-        _note_pressure(m, coast, pair, inside, force / length)
+        if own.adhesive != 0:  # the slope of the force has a jump here
+            point = m.work.track.point[m.work.track.last]
+            _slide(m, t, k, _sliding(m, y, point.travel_bend, point.speed_rate), inside, (force, 0.0))
+        elif force > 0.0:
+            _note_pressure(m, own.row + PRESSURE * m.scene.places, inside, force)
 
 
 @compiled
@@ -125,46 +183,108 @@ def close_exposures_at(place: int, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled
-def _follow_pair(m: Model, h: float, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int) -> None:
-    """Follow one pair over an interval, or begin with it if that has no length."""
-    own = m.work.exposed[k]
-    gap, _, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-    booked = h > 0.0
-    if gap >= m.scene.cutoff:
-        own.known = 0
-        return
-    if booked and (own.known != 1 or own.pair != pair):  # it has come near since: nothing was joined
-        for material in range(MATERIALS):
-            own.front[material] = 0.0
-        own.power = own.power_rate = 0.0
-        own.place = inside
-    if not booked:
-        own.place = inside
-    own.known, own.pair = SEEN, pair
-    length = contact_length(m, inside)
-    if booked:
-        _join(m, y, coast, pair, k, gap, inside, 0.5 * (length + contact_length(m, own.place)))
-    else:
-        _note_front(m, y, k, gap)
-    force, force_rate = _force(m, t, y, coast, pair, k)
-    speed, speed_rate = _sliding_speed(m, coast, y, yp, inside)
-    power = force * abs(speed)
-    power_rate = force_rate * abs(speed) + (force * speed_rate if speed > 0.0 else -force * speed_rate)
-    if booked:
-        work = _pushing(h, own.power, own.power_rate, power, power_rate)
-        if work != 0.0:
-            _spread(m, _row(m, coast, pair, SLIDING), own.place, inside, work)
-    _note_pressure(m, coast, pair, inside, force / length)
-    own.place, own.power, own.power_rate = inside, power, power_rate
+def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
+    """Begin with a pair in which nothing is in contact."""
+    own = m.work.exposing.pair[k]
+    own.known, own.pair, own.time, own.place = 1, pair, t, inside
+    own.turned, own.adhesive, own.lowest = 0, 0, m.scene.cutoff
+    own.power = own.power_rate = own.pull = 0.0
+    for material in range(MATERIALS):
+        own.front[material] = 0.0
+    coast = 0 if k < m.scene.slots else 1
+    teeth = int(m.scene.pinion_teeth)
+    tooth = (pair + int(m.state.turns)) % teeth
+    own.row = m.scene.exposures_at + (coast * teeth + tooth) * QUANTITIES * m.scene.places
 
 
 @compiled
+def _note_forces(m: Model, t: float, y: Floats) -> None:
+    """Evaluate the forces of all pairs that are near, where the last step did not end."""
+    begin_notes(m, t, y[U])
+    reach = pairs_near(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        k = history_of(m, coast, pair)
+        gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+        if gap < m.scene.cutoff and m.state.history[k].pair == pair:
+            note_force(m, k, pair, inside, (gap, rate), _force(m, t, y, coast, pair, k))
+
+
+@compiled
+def _force(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> tuple[float, float]:
+    """Force of a pair and its slope in the gap."""
+    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    if m.scene.nodes > 0:
+        note_shares(m, k, coast, pair, inside)
+        return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
+    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
+
+
+@compiled(inline=True)
+def _sliding(m: Model, y: Floats, v_rate: float, w_rate: float) -> tuple[float, float, float]:
+    """Sliding speed a pitch from the pitch point, its rate, and how fast a contact moves along the path."""
+    s = m.scene
+    turn, turn_rate = y[V] + y[W], v_rate + w_rate
+    if s.error_count != 0:
+        turn /= 1.0 - static_error(m, y[U], y[PHASE])[2]
+    speed = s.sliding_pinion * turn + s.sliding_gear * y[W]
+    return speed, s.sliding_pinion * turn_rate + s.sliding_gear * w_rate, s.phase_rate * y[W]
+
+
+@compiled(inline=True)
+def _slide(
+    m: Model,
+    t: float,
+    k: int,
+    sliding: tuple[float, float, float],
+    inside: float,
+    force: tuple[float, float],
+) -> None:
+    """Add the sliding work of a pair up to a time, note its pressure, and go on from there.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    k : int
+        Index of the pair's history.
+    sliding : tuple of float
+        See `_sliding`.
+    inside : float
+        Place on the path of contact, in pitches.
+    force : tuple of float
+        And its rate.
+    """
+    own, away = m.work.exposing.pair[k], inside - m.scene.pitch_point
+    speed, speed_rate = sliding[0] * away, sliding[1] * away
+    if 0.0 < inside < m.scene.contact_ratio:
+        speed_rate += sliding[0] * (sliding[2] if k < m.scene.slots else -sliding[2])
+    if speed < 0.0:
+        speed, speed_rate = -speed, -speed_rate
+    power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
+    if power > 0.0 or own.power > 0.0 or own.power_rate > 0.0 > power_rate:
+        work = _pushing(t - own.time, own.power, own.power_rate, power, power_rate)
+        _spread(m, own.row + SLIDING * m.scene.places, own.place, inside, work)
+        if force[0] > 0.0:
+            _note_pressure(m, own.row + PRESSURE * m.scene.places, inside, force[0])
+    if int(m.scene.places_per_pitch * inside) != int(m.scene.places_per_pitch * own.place):
+        own.lowest = m.scene.cutoff  # another place
+    own.time, own.place, own.power, own.power_rate = t, inside, power, power_rate
+    own.pull = min(own.pull, power)
+
+
+@compiled(inline=True)
 def _pushing(h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
-    """Sliding work over an interval of a contact while it pushes: of the power's cubic, what is above zero."""
-    if power0 > 0.0 and power1 > 0.0:
+    """Sliding work over an interval of a contact while it pushes."""
+    if power0 >= 0.0 and power1 >= 0.0:
         return max(integral(h, power0, power1, rate0, rate1), 0.0)
-    if power0 <= 0.0 and power1 <= 0.0 and not (rate0 > 0.0 and rate1 < 0.0):
-        return 0.0
+    return _pushing_partly(h, power0, rate0, power1, rate1)
+
+
+@compiled
+def _pushing_partly(h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
+    """Do the same where it begins or ceases to push: of the power's cubic, what is above zero."""
     rise, slope0, slope1 = power1 - power0, h * rate0, h * rate1
     a, b = slope0 + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope0 - slope1
     total = 0.0
@@ -172,18 +292,6 @@ def _pushing(h: float, power0: float, rate0: float, power1: float, rate1: float)
         s = (part + 0.5) / PARTS
         total += max(power0 + s * (slope0 + s * (b + s * a)), 0.0)
     return h * total / PARTS
-
-
-@compiled
-def _force(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> tuple[float, float]:
-    """Force of a pair and its rate along the gap."""
-    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-    if m.scene.nodes > 0:
-        note_shares(m, k, coast, pair, inside)
-        force, stiffness = node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
-    else:
-        force, stiffness = pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
-    return force, stiffness * rate
 
 
 @compiled
@@ -196,75 +304,64 @@ def _front(m: Model, y: Floats, k: int, gap: float, material: int) -> float:
     return loading_value(m.tables, own.number_at, height + own.gap_offset)[0]
 
 
-@compiled
-def _note_front(m: Model, y: Floats, k: int, gap: float) -> None:
-    """Note what is in contact."""
+@compiled(inline=True)
+def _joins(m: Model, k: int, gap: float) -> bool:
+    """Whether asperities of a closing contact join: below what has joined before."""
+    h, joins = m.state.history[k], m.scene.nodes > 0
     for material in range(MATERIALS):
-        if m.scene.material[material].force_scale > 0.0:
-            m.work.exposed[k].front[material] = _front(m, y, k, gap, material)
+        own = m.scene.material[material]
+        joins |= own.force_scale > 0.0 and (gap < h.joined[material] or own.stretch_limit == 0.0)
+    return joins
 
 
 @compiled
-def _join(
-    m: Model, y: Floats, coast: int, pair: int, k: int, gap: float, inside: float, length: float
-) -> None:
+def _join(m: Model, y: Floats, k: int, gap: float, inside: float) -> None:
     """Add what has come into contact since that was last noted."""
-    own = m.work.exposed[k]
+    own, h = m.work.exposing.pair[k], m.state.history[k]
     for material in range(MATERIALS):
         law = m.scene.material[material]
         if law.force_scale <= 0.0:
             continue
+        if own.turned != 0 and law.stretch_limit > 0.0 and m.scene.nodes == 0:  # what is left of the contact
+            own.front[material] = -h.adhered_energy[material] / law.joining_energy
         front = _front(m, y, k, gap, material)
-        more = length * (front - own.front[material])
+        joined = front - own.front[material]
+        if joined <= 0.0:
+            continue
         own.front[material] = front
-        if more > 0.0:
-            _spread(m, _row(m, coast, pair, material), own.place, inside, more)
-            if law.stretch_limit > 0.0:
-                lost = law.joining_energy * law.force_scale * more
-                _spread(m, _row(m, coast, pair, MATERIALS + material), own.place, inside, lost)
+        more = 0.5 * (contact_length(m, inside) + contact_length(m, own.place)) * joined
+        _spread(m, own.row + material * m.scene.places, own.place, inside, more)
+        if law.stretch_limit > 0.0:
+            lost = law.joining_energy * law.force_scale * more
+            _spread(m, own.row + (MATERIALS + material) * m.scene.places, own.place, inside, lost)
+    own.turned = 0
 
 
-@compiled
-def _sliding_speed(m: Model, coast: int, y: Floats, yp: Floats, inside: float) -> tuple[float, float]:
-    """Sliding speed of a contact, in the unit of speed, and its rate."""
-    s = m.scene
-    turn, turn_rate = y[V] + y[W], yp[V] + yp[W]
-    if s.error_count != 0:
-        turn /= 1.0 - static_error(m, y[U], y[PHASE])[2]
-    unit = s.length_unit
-    together = unit * (turn / s.pinion_radius + y[W] / s.gear_radius)
-    together_rate = unit * (turn_rate / s.pinion_radius + yp[W] / s.gear_radius)
-    away = (inside - 0.5 * (s.coast_phase - 0.5)) / s.phase_rate
-    moving = y[W] if coast == 0 else -y[W]
-    return together * away, together_rate * away + together * moving
-
-
-@compiled
-def _row(m: Model, coast: int, pair: int, quantity: int) -> int:
-    """Where a quantity of the pair's tooth begins among the rows."""
-    teeth = int(m.scene.pinion_teeth)
-    tooth = (pair + int(m.state.turns)) % teeth
-    return m.scene.exposures_at + ((coast * teeth + tooth) * QUANTITIES + quantity) * m.scene.places
-
-
-@compiled
+@compiled(inline=True)
 def _spread(m: Model, row: int, before: float, after: float, amount: float) -> None:
     """Add an amount to the places that a contact has passed, in proportion to the way in each."""
-    places = m.scene.places
-    low = places * min(before, after) / m.scene.contact_ratio
-    high = places * max(before, after) / m.scene.contact_ratio
-    first, last = min(int(low), places - 1), min(int(high), places - 1)
+    places, scale = m.scene.places, m.scene.places_per_pitch
+    first, last = min(int(scale * before), places - 1), min(int(scale * after), places - 1)
     if first == last:
         m.rows[row + first] += amount
-        return
-    for place in range(first, last + 1):
+    else:
+        _divide(m, row, scale * min(before, after), scale * max(before, after), amount)
+
+
+@compiled
+def _divide(m: Model, row: int, low: float, high: float, amount: float) -> None:
+    """Divide an amount between places, from one edge to another, in places."""
+    places = m.scene.places
+    for place in range(min(int(low), places - 1), min(int(high), places - 1) + 1):
         way = min(high, place + 1.0) - max(low, float(place))
         m.rows[row + place] += amount * way / (high - low)
 
 
-@compiled
-def _note_pressure(m: Model, coast: int, pair: int, inside: float, pressure: float) -> None:
+@compiled(inline=True)
+def _note_pressure(m: Model, row: int, inside: float, force: float) -> None:
     """Note the pressure of a contact where it is the largest so far."""
-    place = min(int(m.scene.places * inside / m.scene.contact_ratio), m.scene.places - 1)
-    at = _row(m, coast, pair, PRESSURE) + place
-    m.rows[at] = max(m.rows[at], pressure)
+    at = row + min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
+    radius = m.scene.start_radius + inside
+    # of squares: a root only where there is something to note
+    if force * force > m.rows[at] * m.rows[at] * (radius - radius * radius * m.scene.sum_curvature):
+        m.rows[at] = force / contact_length(m, inside)

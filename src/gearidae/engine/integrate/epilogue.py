@@ -5,7 +5,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.energy.adhesion import follow_joining
 from gearidae.engine.energy.balance import accumulate_energy, close_balance
-from gearidae.engine.energy.exposures import follow_exposures
+from gearidae.engine.energy.exposures import expose_step, follow_exposures
 from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
@@ -108,8 +108,12 @@ def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floa
             time, state, rates = start + (t - start) * part / parts, between[0], between[1]
             adams.between(a, time, state, rates)
         accumulate_energy(m, time, state, rates, now or part < parts)
-    if m.scene.places > 0 and m.work.quadrature.time == t:
-        follow_exposures(m, t, y, yp)
+    if m.scene.places > 0:
+        if m.scene.nodes == 0:
+            if flag != ROOT:
+                expose_step(m, t, y, yp)
+        elif m.work.quadrature.time == t:  # forces have to be evaluated for it
+            follow_exposures(m, t, y, yp)
 
 
 @compiled

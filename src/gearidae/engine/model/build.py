@@ -114,6 +114,12 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     _set_geometry(s, geometry, mesh.tip_relief_radius)
     s.half_backlash = 0.5 * mesh.backlash / sigma
     s.places = scene.run.exposures
+    s.places_per_pitch = scene.run.exposures / float(s.contact_ratio)
+    s.pitch_point = 0.5 * (float(s.coast_phase) - 0.5)
+    s.sliding_pinion, s.sliding_gear = (
+        geometry.base_pitch / float(s.pinion_radius),
+        geometry.base_pitch / float(s.gear_radius),
+    )
     s.radius_force = int(mesh.radius_force)
     s.damping = mesh.damping * speed / float(s.force_unit)
     s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)

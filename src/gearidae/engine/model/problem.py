@@ -164,10 +164,12 @@ class Problem:
         if m.scene.places == 0:
             return balance, self.extremes(time, state)
         # intervals are not to be split by a look at what they have added up to
-        rows, exposed, begun = exposures_of(m).copy(), m.work.exposed.copy(), float(m.work.exposure_time)
+        rows, exposing, notes = exposures_of(m).copy(), m.work.exposing.copy(), m.work.notes.copy()
         close_exposures_at(self.located.place, time, state, rates)
         found = self.extremes(time, state)
-        exposures_of(m)[:], m.work.exposed[:], m.work.exposure_time = rows, exposed, begun
+        exposures_of(m)[:] = rows
+        assign(m.work.exposing, exposing)
+        assign(m.work.notes, notes)
         return balance, found
 
     def extremes(self, time: float, state: Floats) -> Extremes:

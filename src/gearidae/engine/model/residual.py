@@ -17,6 +17,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.calls import node_force, node_residual
 from gearidae.engine.elastic.nodes import mark_out_of_reach
+from gearidae.engine.energy.noted_force import begin_notes, note_force
 from gearidae.engine.energy.radius import radius_force
 from gearidae.engine.model.coverage import WHOLE, note_shares, shares_of
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
@@ -66,6 +67,8 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
     elastic = m.scene.nodes > 0
     if elastic:
         mark_out_of_reach(m)
+    if m.work.notes.wanted != 0:
+        begin_notes(m, t, u)
     reach = pairs_touching(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -81,6 +84,8 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
         else:
             shares = shares_of(m, k, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
+            if m.work.notes.wanted != 0:
+                note_force(m, k, pair, inside, (gap, rate), (load, stiffness))
         load *= sign
         # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair
         # backwards along its path

@@ -124,6 +124,10 @@ SCENE: Final = record_type(
     ("node_row_length", INT),  # numbers of one pair's nodes there
     # what flanks are exposed to
     ("places", INT),  # along the path of contact; 0 if it is not asked for
+    ("places_per_pitch", REAL),
+    ("pitch_point", REAL),  # on the path of contact, in pitches
+    ("sliding_pinion", REAL),  # sliding speed a pitch from there, over either gear's surface velocity
+    ("sliding_gear", REAL),
     ("exposures_at", INT),  # among the rows
     ("exposures", INT),  # numbers there
     # the run

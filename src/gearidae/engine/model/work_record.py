@@ -20,6 +20,9 @@ __all__ = [
     "CELL",
     "DRIVER",
     "EXPOSED",
+    "EXPOSING",
+    "NOTED",
+    "NOTES",
     "POINT",
     "QUADRATURE",
     "RESISTANCE",
@@ -128,13 +131,48 @@ TRACK: Final = record_type(  # of the extremes
     ("next_part", REAL),  # time at which the coming part of the run begins
 )
 
-EXPOSED: Final = record_type(  # a pair at the end of the last interval of the exposures
-    ("known", INT),  # whether it was near: see `gearidae.engine.energy.exposures`
+EXPOSED: Final = record_type(  # a pair where its exposures have last been added up
+    ("known", INT),  # whether it was within the cut-off there
     ("pair", INT),
+    ("row", INT),  # where its tooth begins among the rows
+    ("time", REAL),
     ("place", REAL),  # along the path of contact, in pitches
+    ("turned", INT),  # 1 from where it began to close until something joins
+    ("lowest", REAL),  # least gap at a turning point in this place
     ("front", REAL, (MATERIALS,)),  # asperities in contact, over their density
     ("power", REAL),  # force times sliding speed, and its rate
     ("power_rate", REAL),
+    ("pull", REAL),  # least power since the gap has last turned round from closing to opening
+    ("adhesive", INT),  # whether it was a considerable part of the level before that
+)
+
+EXPOSING: Final = record_type(
+    ("time", REAL),  # when the exposures of all pairs have last been added up
+    ("begun", INT),  # 0 before the first start
+    ("steps", INT),  # accepted since then
+    ("wanted", INT),  # steps after which they are added up again
+    ("level", REAL),  # largest power of a pair in the last of these times
+    ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
+)
+
+NOTED: Final = record_type(  # a pair where its force was evaluated
+    ("history", INT),  # index of its history
+    ("pair", INT),
+    ("place", REAL),  # along the path of contact, in pitches
+    ("gap", REAL),  # and its rate
+    ("gap_rate", REAL),
+    ("force", REAL),  # and its slope in the gap
+    ("slope", REAL),
+)
+
+NOTES: Final = (
+    record_type(  # the last evaluation of all forces at the end of a step whose exposures are added up
+        ("wanted", INT),  # whether the coming step's is
+        ("time", REAL),
+        ("travel", REAL),  # transmission error
+        ("count", INT),
+        ("pair", NOTED, (2 * SLOTS_HIGH,)),
+    )
 )
 
 PART: Final = (
@@ -160,9 +198,8 @@ WORK: Final = record_type(
     ("resistance", RESISTANCE),
     ("track", TRACK),
     ("lag_time", REAL),  # by tooth and place: time to which the lags of joining are followed
-    ("exposure_time", REAL),  # end of the last interval of the exposures
-    ("exposure_begun", INT),  # 0 before the first
-    ("exposed", EXPOSED, (2 * SLOTS_HIGH,)),
+    ("exposing", EXPOSING),
+    ("notes", NOTES),
     ("cell", CELL, (2 * SLOTS_HIGH,)),
     (
         "shares",

@@ -1,0 +1,132 @@
+"""The report on the life of a coating: its steps, and a viewer with a slider over passages."""
+
+from __future__ import annotations
+
+import base64
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae import plot
+from gearidae.report import html
+from gearidae.report.pictures import figures
+from gearidae.report.tables import law_table
+from gearidae.scene.prefixes import with_prefix
+
+__all__ = ["is_life", "life_headline", "life_pictures", "life_table", "life_viewer", "pack_life"]
+
+_ENDINGS = {
+    "coverage": "the coverage asked for is reached",
+    "passages": "the passages asked for are reached",
+    "interrupted": "the study was interrupted",
+}
+
+
+def is_life(ds: xr.Dataset) -> bool:
+    """Whether a dataset is the life of a coating."""
+    return "passages" in ds.dims and {"coverage", "verdict"} <= set(map(str, ds.data_vars))
+
+
+def life_headline(ds: xr.Dataset) -> str:
+    """Say in one sentence how the life ends."""
+    last = _count(ds["passages"].values[-1])
+    ending = str(ds.attrs.get("ending", ""))
+    if ending == "sticks":
+        return (
+            f"The gear sticks by {_count(ds.attrs.get('passages_to_sticking', math.nan))} passages of each tooth of "
+            f"the pinion; after {last} it still turns."
+        )
+    return f"After {last} passages of each tooth of the pinion {_ENDINGS.get(ending, 'the life ends')}."
+
+
+def life_table(ds: xr.Dataset) -> str:
+    """List the steps of a life."""
+    sides = [str(each) for each in ds["side"].values]
+    headings = ["passages", *(f"coverage, {side} (%)" for side in sides), "verdict"]
+    headings += ["mean speed (rad/s)", "smallest speed (rad/s)"]
+    if "characteristic_frequency" in ds:
+        headings.append("ring frequency")
+    rows = []
+    for number in range(ds.sizes["passages"]):
+        one = ds.isel(passages=number)
+        row = [_count(one["passages"]), *(f"{100.0 * share:.4g}" for share in one["coverage"].values)]
+        row += [str(one["verdict"].values), f"{float(one['mean_gear_speed']):.5g}"]
+        row.append(f"{float(one['min_gear_speed']):.5g}")
+        if "characteristic_frequency" in ds:
+            rings = float(one["characteristic_frequency"])
+            row.append("-" if math.isnan(rings) else with_prefix(rings, "Hz", 4))
+        rows.append(row)
+    numeric = [place for place in range(len(headings)) if place != 1 + len(sides)]
+    return html.table(headings, rows, caption="Steps of the life", numeric=numeric) + law_table(ds)
+
+
+def life_viewer(ds: xr.Dataset) -> str:
+    """Place the viewer and its data."""
+    return (
+        '<div id="life-viewer"><p class="hint">Move the slider over the passages; between two steps of the life '
+        "coverage and frequency are interpolated.</p></div>\n"
+        "<noscript><p>The viewer needs JavaScript; the pictures below do not.</p></noscript>\n"
+        + html.json_block("life-data", pack_life(ds))
+    )
+
+
+def life_pictures(ds: xr.Dataset) -> str:
+    """Draw the life, and the coverage along the flank where it is resolved."""
+    wanted = [(plot.life, "Coverage and frequency of the impact response over passages")]
+    if "coverage_by_place" in ds:
+        wanted.append((plot.coverage_along_flank, "Coverage along the path of contact"))
+    return figures(ds, wanted)
+
+
+def pack_life(ds: xr.Dataset) -> dict[str, Any]:
+    """Pack a life for its viewer.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.life`.
+
+    Returns
+    -------
+    dict
+        ``passages``, ``sides``, and a number for each step: ``coverage`` of each side, ``verdict``, ``mean`` and
+        ``smallest`` speed [rad/s], ``frequency`` [Hz] or null; ``sticksBy`` or null; with a resolved coverage
+        ``places`` [m], ``teeth``, ``low``, ``high`` and ``tables``: for each side base64 text of little-endian float32
+        numbers over passages, tooth and place.
+    """
+    data: dict[str, Any] = {
+        "passages": ds["passages"].values.tolist(),
+        "sides": [str(each) for each in ds["side"].values],
+        "coverage": [_numbers(ds["coverage"].sel(side=side).values) for side in ds["side"].values],
+        "verdict": [str(each) for each in ds["verdict"].values],
+        "mean": _numbers(ds["mean_gear_speed"].values),
+        "smallest": _numbers(ds["min_gear_speed"].values),
+        "frequency": None,
+        "sticksBy": None,
+    }
+    if "characteristic_frequency" in ds:
+        data["frequency"] = _numbers(ds["characteristic_frequency"].values)
+    if ds.attrs.get("ending") == "sticks":
+        data["sticksBy"] = float(ds.attrs["passages_to_sticking"])
+    if "coverage_by_place" in ds:
+        tables = ds["coverage_by_place"].transpose("side", "passages", "tooth", "place").values
+        data |= {
+            "places": ds["place"].values.tolist(),
+            "teeth": int(ds.sizes["tooth"]),
+            "low": float(tables.min()),
+            "high": float(tables.max()),
+            "tables": [base64.b64encode(each.astype("<f4").tobytes()).decode("ascii") for each in tables],
+        }
+    return data
+
+
+def _numbers(values: NDArray[np.float64]) -> list[float | None]:
+    """Numbers as JSON knows them."""
+    return [float(value) if np.isfinite(value) else None for value in values]
+
+
+def _count(passages: Any) -> str:
+    return f"{float(passages):.4g}"

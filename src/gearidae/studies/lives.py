@@ -1,0 +1,338 @@
+"""Lives of an ensemble: how long coatings last where the scene is known as distributions."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive import check_target, dimension_names, save
+from gearidae.archive.provenance import provenance
+from gearidae.errors import Interrupted, SceneError, SolverError
+from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.runs.executors import check_executor, check_jobs, own_executor
+from gearidae.runs.running import prepare, runs_in_threads
+from gearidae.scene.group import did_you_mean
+from gearidae.studies.design import check_design, plain_design
+from gearidae.studies.distributions import read_distributions
+from gearidae.studies.life import life
+from gearidae.studies.life_file import open_life
+from gearidae.studies.members import member_plan, names_of
+from gearidae.wear import LossLaw
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["lives"]
+
+_SETTINGS: Final = (
+    "passages",
+    "fraction",
+    "resolved",
+    "places",
+    "cycles",
+    "settle",
+    "starts",
+    "tolerance",
+    "bracket",
+)
+"""Arguments of `life` that hold for all members."""
+_COLUMNS: Final = {
+    "passages_to_sticking": ("1", "passages of each tooth of the pinion by which the gear sticks"),
+    "passages_turning": ("1", "passages up to which it turns, as far as it was followed"),
+    "final_coverage": ("1", "mean coverage there"),
+    "windows": ("1", "windows that were simulated"),
+    "sticks": ("1", "whether the gear sticks at the end of its life; NaN if the life is unfinished"),
+}
+
+
+def lives(
+    scene: Scene,
+    law: LossLaw,
+    vary: Mapping[str, Any],
+    size: int,
+    design: str = "sobol",
+    *,
+    seed: int = 0,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    backend: str = "auto",
+    progress: bool | SweepProgress = False,
+    archive: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+    **settings: Any,
+) -> xr.Dataset:
+    """Follow the coatings of gears whose keys are drawn from distributions, each until its gear sticks.
+
+    Parameters
+    ----------
+    scene : Scene
+        What the members have in common.
+    law : LossLaw
+        How coverage is lost, from `gearidae.wear`.
+    vary : mapping of str to object
+        Keys and their distributions, as for `gearidae.studies.ensemble`.
+    size : int
+        Number of members.
+    design, seed
+        As for `gearidae.studies.ensemble`.
+    executor, jobs, backend, progress, overwrite, resume
+        As for `gearidae.sweep`; members are followed side by side. With `archive`, the lives so far and their finished
+        windows are kept beside it, in ``OUT.nc.lives``, until it is written.
+    archive : path, optional
+        netCDF file to write.
+    **settings
+        ``passages``, ``fraction``, ``resolved``, ``places``, ``cycles``, ``settle``, ``starts``, ``tolerance`` and
+        ``bracket`` of `gearidae.studies.life`.
+
+    Returns
+    -------
+    Dataset
+        Along ``member``: the keys' values as coordinates (SI), ``ending``, ``passages_to_sticking`` (NaN if the life
+        has another ending), ``passages_turning``, ``final_coverage``, ``windows``, ``sticks``, ``status``, ``message``.
+        `gearidae.studies.surviving_share` says how many still turn after some passages.
+
+    Raises
+    ------
+    SceneError
+        If a key, a distribution or a setting is not allowed; nothing has been run then.
+    Interrupted
+        On Ctrl-C; the lives so far are kept beside `archive`.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> scene = gd.preset("teodorescu2009_low_speed")
+    >>> law = gd.wear.loss_law("adhesion_work", energy="10 J/m^2")
+    >>> vary = {"drive.torque": "normal(4.5e-18, 2e-19)"}
+    >>> found = gd.studies.lives(scene, law, vary, 16)  # doctest: +SKIP
+    >>> gd.studies.surviving_share(found)  # doctest: +SKIP
+    """
+    base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
+    check_design(size, design, seed, indices=False)
+    check_executor(executor)
+    workers = check_jobs(jobs)
+    _check_settings(law, settings)
+    distributions = read_distributions(base, vary)
+    texts = names_of(distributions)
+    drawn = plain_design(distributions, int(size), design, int(seed)).values
+    values = {each.key: drawn[:, number] for number, each in enumerate(distributions)}
+    scenes = member_plan(base, values, texts).scenes
+    folder = _folder(archive, overwrite=overwrite, resume=resume)
+    about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
+    common = _Common(law, settings, backend, folder)
+    paths = [common.path(each) for each in scenes]
+    with (
+        sweep_progress(progress, len(scenes)) as report,
+        own_executor(
+            workers if executor is None else 1, len(scenes), releases_gil=runs_in_threads(backend)
+        ) as own,
+        _halting(own is not None and runs_in_threads(backend)) as halted,
+    ):
+        try:
+            found = _followed(common, scenes, executor or own, halted, report)
+        except KeyboardInterrupt:
+            where = (
+                "" if archive is None else "the lives so far are kept beside the archive; go on with --resume"
+            )
+            raise Interrupted(where, xr.Dataset()) from None
+    ds = _dataset(base, law, values, found).assign_attrs(ensemble=json.dumps(about))
+    if archive is not None and folder is not None:
+        save(ds, archive, overwrite=overwrite or resume)
+        for path in paths:
+            assert path is not None
+            path.unlink(missing_ok=True)
+        if folder.is_dir() and not any(folder.iterdir()):
+            folder.rmdir()
+    return ds
+
+
+@dataclass(frozen=True)
+class _Common:
+    """What the members have in common besides their scene."""
+
+    law: LossLaw
+    settings: dict[str, Any]
+    backend: str
+    folder: Path | None
+
+    def path(self, scene: Scene) -> Path | None:
+        """Where the life of a member is kept: a hash of all that it depends on."""
+        if self.folder is None:
+            return None
+        text = json.dumps(
+            [
+                scene.to_dict(),
+                self.law.describe(),
+                self.settings,
+                self.backend,
+                provenance(scene, "")["source"],
+            ],
+            sort_keys=True,
+            allow_nan=False,
+        )
+        return self.folder / f"{hashlib.sha256(text.encode()).hexdigest()}.nc"
+
+
+@dataclass(frozen=True)
+class _Member:
+    """What has come of a member."""
+
+    ending: str
+    sticks_by: float
+    turning: float
+    coverage: float
+    windows: int
+    status: str = "finished"
+    message: str = ""
+
+
+def _follow(scene: Scene, common: _Common, halted: Callable[[], bool] | None) -> _Member:
+    """Follow the life of a member, or read it where it is kept."""
+    path = common.path(scene)
+    try:
+        if path is not None and path.is_file():
+            ds = open_life(path)
+            if ds.attrs["ending"] != "interrupted":
+                return _member(ds)
+        ds = life(
+            scene,
+            common.law,
+            **common.settings,
+            frequency=False,
+            jobs=1,
+            backend=common.backend,
+            progress=False if halted is None else partial(_halt, halted),
+            archive=path,
+            resume=path is not None,
+        )
+    except SolverError as error:
+        return _Member("unfinished", np.nan, np.nan, np.nan, 0, "failed", str(error))
+    return _member(ds)
+
+
+def _halt(halted: Callable[[], bool], done: float, of: int) -> None:
+    """End a life in a thread, which Ctrl-C does not reach, between two of its states."""
+    if halted():
+        raise KeyboardInterrupt
+
+
+def _member(ds: xr.Dataset) -> _Member:
+    last = ds.isel(passages=-1)
+    turning = 0.0 if str(last["verdict"].values) == "sticks" else float(last["passages"])
+    return _Member(
+        str(ds.attrs["ending"]),
+        float(ds.attrs.get("passages_to_sticking", np.nan)),
+        turning,
+        float(last["coverage"].mean()),
+        int(ds.attrs["windows"]),
+    )
+
+
+def _followed(
+    common: _Common,
+    scenes: Sequence[Scene],
+    executor: Executor | None,
+    halted: Callable[[], bool] | None,
+    report: SweepProgress,
+) -> list[_Member]:
+    """Follow all members, side by side where there is an executor."""
+    run = map if executor is None else executor.map
+    found = []
+    for each in run(_follow, scenes, [common] * len(scenes), [halted] * len(scenes)):
+        found.append(each)
+        report(float(len(found)), len(scenes))
+    return found
+
+
+@contextmanager
+def _halting(in_threads: bool) -> Iterator[Callable[[], bool] | None]:
+    """Tell the lives in our threads to end where this is left by an exception."""
+    if not in_threads:
+        yield None
+        return
+    event = threading.Event()
+    try:
+        yield event.is_set
+    except BaseException:
+        event.set()
+        raise
+
+
+def _folder(archive: str | os.PathLike[str] | None, *, overwrite: bool, resume: bool) -> Path | None:
+    """Where the members' lives are kept: ``OUT.nc.lives``."""
+    if archive is None:
+        if resume:
+            raise SceneError("resume", resume, "needs an archive: the lives to go on from are kept beside it")
+        return None
+    target = check_target(archive, overwrite=overwrite or resume)
+    folder = target.with_name(f"{target.name}.lives")
+    if folder.is_dir() and any(folder.iterdir()) and not (overwrite or resume):
+        allowed = (
+            f"was cut off, its lives so far are in {folder.name}: go on with --resume (resume=True), or start anew "
+            "with --overwrite (overwrite=True)"
+        )
+        raise SceneError("archive", archive, allowed)
+    if overwrite and not resume and folder.is_dir():
+        for path in folder.glob("[0-9a-f]*.nc"):
+            path.unlink()
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+def _check_settings(law: LossLaw, settings: Mapping[str, Any]) -> None:
+    if not isinstance(law, LossLaw):
+        raise SceneError("law", type(law).__name__, "must be a loss law, see gearidae.wear.loss_law")
+    for name, value in settings.items():
+        if name not in _SETTINGS:
+            meant = did_you_mean(name, _SETTINGS)
+            allowed = f"must be one of {', '.join(_SETTINGS)}{'; ' if meant else ''}{meant}"
+            raise SceneError(name, value, allowed)
+
+
+def _dataset(
+    base: Scene, law: LossLaw, values: Mapping[str, np.ndarray[Any, Any]], found: Sequence[_Member]
+) -> xr.Dataset:
+    """Put the members along one dimension."""
+    columns = {
+        "passages_to_sticking": [each.sticks_by for each in found],
+        "passages_turning": [each.turning for each in found],
+        "final_coverage": [each.coverage for each in found],
+        "windows": [each.windows for each in found],
+        "sticks": [np.nan if each.status == "failed" else float(each.ending == "sticks") for each in found],
+    }
+    variables: dict[str, Any] = {
+        name: ("member", np.array(columns[name]), {"units": units, "long_name": words})
+        for name, (units, words) in _COLUMNS.items()
+    }
+    for name, words in (("ending", "what ended the life"), ("status", ""), ("message", "")):
+        about = {"units": "1", "long_name": words or f"{name} of the member"}
+        variables[name] = ("member", [getattr(each, name) for each in found], about)
+    names = dimension_names(values)
+    coords: dict[str, Any] = {names[key]: ("member", column) for key, column in values.items()}
+    coords["member"] = ("member", np.arange(len(found)), {"units": "1", "long_name": "number of the member"})
+    about = provenance(base, f"followed {len(found)} lives", swept=tuple(values))
+    return xr.Dataset(
+        variables,
+        coords=coords,
+        attrs={
+            **about,
+            "title": f"{base.name}: lives of {len(found)} coatings",
+            "summary": "Passages until gears stick whose keys were drawn from distributions, by cycle jump.",
+            "swept": json.dumps({key: column.tolist() for key, column in values.items()}, allow_nan=False),
+            "law": json.dumps(law.describe()),
+            "law_source": law.source,
+        },
+    )

@@ -1,0 +1,87 @@
+"""Lives of an ensemble: each as if it were alone, resumed, and the share of gears that still turn."""
+
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearidae as gd
+
+LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.7})
+LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)
+SHORT = {"cycles": 2, "settle": 0, "starts": 1, "places": 2, "fraction": 0.68, "tolerance": 1e-2}
+VARY = {"drive.torque": "uniform(4e-18, 5e-18)"}
+
+
+def test_members_are_followed_kept_and_resumed(tmp_path, monkeypatch):
+    path = tmp_path / "lives.nc"
+    module, done = sys.modules[gd.studies.lives.__module__], []
+    real = module.life
+
+    def cut(scene, *args, **options):
+        if len(done) == 2:
+            raise KeyboardInterrupt
+        done.append(scene)
+        return real(scene, *args, **options)
+
+    monkeypatch.setattr(module, "life", cut)
+    with pytest.raises(gd.Interrupted, match="resume"):
+        gd.studies.lives(LOW, LAW, VARY, 3, seed=1, archive=path, jobs=1, **SHORT)
+    with pytest.raises(gd.SceneError, match="cut off"):
+        gd.studies.lives(LOW, LAW, VARY, 3, seed=1, archive=path, jobs=1, **SHORT)
+    monkeypatch.setattr(module, "life", lambda scene, *a, **o: done.append(scene) or real(scene, *a, **o))
+    found = gd.studies.lives(LOW, LAW, VARY, 3, seed=1, archive=path, resume=True, **SHORT)
+    assert len(done) == 3  # the two that were whole are read
+    assert not path.with_name("lives.nc.lives").exists()
+    assert found.torque.dims == ("member",)
+    assert set(found.ending.values) == {"coverage"}
+    assert np.isnan(found.passages_to_sticking).all()
+    np.testing.assert_allclose(found.final_coverage, 0.68, rtol=1e-6)
+    one = gd.studies.life(
+        LOW.replace({"drive.torque": float(found.torque[1])}), LAW, frequency=False, **SHORT
+    )
+    assert float(found.passages_turning[1]) == float(one.passages[-1])
+    with xr.open_dataset(path) as kept:
+        xr.testing.assert_equal(kept.load().drop_vars("message"), found.drop_vars("message"))
+
+
+def test_a_setting_that_there_is_not():
+    with pytest.raises(gd.SceneError, match="tolerance") as error:
+        gd.studies.lives(LOW, LAW, VARY, 2, tolerence=1e-3)
+    assert error.value.key == "tolerence"
+
+
+@pytest.fixture
+def known():
+    """Three gears that stick, one that was followed until 2.5, and one that failed."""
+    return xr.Dataset(
+        {
+            "passages_to_sticking": ("member", [1.0, 2.0, 3.0, np.nan, np.nan]),
+            "passages_turning": ("member", [0.9, 1.9, 2.9, 2.5, np.nan]),
+            "sticks": ("member", [1.0, 1.0, 1.0, 0.0, np.nan]),
+        }
+    )
+
+
+def test_the_share_that_still_turns(known):
+    """Kaplan and Meier: 3/4 of four, 2/3 of these three, none of the one that is left."""
+    found = gd.studies.surviving_share(known)
+    np.testing.assert_array_equal(found.passages, [0.0, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(found.share, [1.0, 0.75, 0.5, 0.0])
+    np.testing.assert_array_equal(found.followed, [4, 4, 3, 1])
+    # Greenwood: var(log S) = 1/(4*3) + 1/(3*2) = 1/4 at 2, divided by log(S)^2 for log(-log S)
+    spread = 1.959964 * 0.5 / np.log(0.5)
+    expected = sorted(0.5 ** np.exp([spread, -spread]))
+    np.testing.assert_allclose([found.low[2], found.high[2]], expected, rtol=1e-6)
+    none = gd.studies.surviving_share(known.isel(member=[3]))
+    assert none.share.values.tolist() == [1.0]
+
+
+def test_the_picture(known):
+    ax = gd.plot.lives(known)
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), [1.0, 0.75, 0.5, 0.0, 0.0])
+    assert ax.lines[1].get_xydata().tolist() == [[2.5, 0.5]]
+    for wrong in (known.isel(member=[4]), known.drop_vars("passages_turning")):
+        with pytest.raises(gd.SceneError):
+            gd.plot.lives(wrong)
