@@ -223,7 +223,6 @@ def _add_coating(draw: _Draw, tables: dict[str, Any]) -> None:
         coating["pinion_fraction"], coating["gear_fraction"] = draw.rng.choice([0.0, 0.3, 1.0], 2).tolist()
     if "gears" in tables and draw.often(0.15):
         coating.pop("pinion_fraction", None)
-        tables["contact"]["model"] = "asperity"
         teeth = tables["gears"]["pinion_teeth"] if draw.often(0.5) else 1
         places = int(draw.rng.choice([1, 2, 7, MOST_PLACES]))
         coating["pinion_table"] = draw.rng.choice([0.0, 0.5, 1.0], (teeth, places)).tolist()
