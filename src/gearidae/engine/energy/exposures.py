@@ -165,7 +165,8 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     _join(m, y, k, gap, inside)
     own.adhesive = 1 if own.pull < -ADHESIVE * m.work.exposing.level else 0
     own.pull = 0.0
-    if own.adhesive != 0 or gap < own.lowest:
+    scale = m.scene.places_per_pitch
+    if own.adhesive != 0 or gap < own.lowest or int(scale * inside) != int(scale * own.place):
         own.lowest = min(own.lowest, gap)
         force, _ = _force(m, t, y, coast, pair, k)
         if own.adhesive != 0:  # the slope of the force has a jump here
