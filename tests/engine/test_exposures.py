@@ -199,10 +199,9 @@ def test_a_table_of_one_fraction_is_that_fraction(worn):
     plain, table = gd.simulate(scene), gd.simulate(scene.replace({"coating.pinion_table": [[0.5]]}))
     for name in NAMES:
         ours, other = plain[name].values, table[name].values
-        # sums in another order take other steps: what falls into one that crosses from place to place is divided in
-        # proportion, and pressures are looked at at their ends
-        closeness = 5e-2 if name == "largest_pressure" else 3e-4
-        np.testing.assert_allclose(ours, other, rtol=0, atol=closeness * np.abs(ours).max())
+        # the runs take other steps: a pressure that is largest at the edge of a place is that of the last look before
+        share = 1e-2 if name == "largest_pressure" else 1e-4
+        np.testing.assert_allclose(ours, other, rtol=0, atol=share * np.abs(ours).max())
 
 
 def test_an_archive_and_a_resumed_run_have_them(worn, tmp_path, monkeypatch):
