@@ -15,7 +15,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.interrupts import uninterrupted
+from gearidae.archive.library import uninterrupted
 
 __all__ = ["CHUNK", "chunked", "define", "offsets"]
 

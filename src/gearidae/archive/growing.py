@@ -27,6 +27,7 @@ from gearidae.archive.disk import commit, disk_errors, open_file, read_at, sync,
 from gearidae.archive.growing_layout import COPIED, lay_out
 from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import HEADER, Checkpoint, newest
+from gearidae.archive.library import LIBRARY
 from gearidae.archive.lock import WriterLock, take_or_refuse
 from gearidae.archive.variables import EVENTS
 from gearidae.records import Block, Statistics
@@ -236,7 +237,7 @@ class GrowingArchive:
 
     def _compact(self, template: xr.Dataset, part: Path) -> None:
         define(with_checksums(template), part, {"time": self.samples, "event": self.events})
-        with netCDF4.Dataset(part, "a") as file:
+        with LIBRARY, netCDF4.Dataset(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():
                 if set(variable.dimensions) & {"time", "event"} and variable.size:
@@ -248,7 +249,7 @@ class GrowingArchive:
         descriptor = open_file(path)
         try:
             self._places = offsets(path)
-            with netCDF4.Dataset(path) as file:
+            with LIBRARY, netCDF4.Dataset(path) as file:
                 self._sizes = {name: len(dimension) for name, dimension in file.dimensions.items()}
                 self._types = {name: variable.dtype for name, variable in file.variables.items()}
         except BaseException:
@@ -299,7 +300,7 @@ class GrowingArchive:
     def _copy_all(self, part: Path) -> None:
         """Copy everything that is committed into another file of this kind."""
         places, slots = offsets(part), [self._slot(k) for k in (0, 1)]
-        with netCDF4.Dataset(part) as file:
+        with LIBRARY, netCDF4.Dataset(part) as file:
             slot_size = 8 * len(file.dimensions["checkpoint_word"])
         descriptor = open_file(part)
         try:

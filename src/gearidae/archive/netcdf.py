@@ -16,8 +16,8 @@ from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import sync
 from gearidae.archive.growing_layout import is_growing, trimmed
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
-from gearidae.archive.interrupts import uninterrupted
 from gearidae.archive.keep import kept_in
+from gearidae.archive.library import uninterrupted
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times

@@ -17,6 +17,7 @@ import netCDF4
 import numpy as np
 
 from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.library import LIBRARY
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
 from gearidae.archive.variables import VERDICT
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
@@ -163,7 +164,7 @@ def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> 
         },
         default=int,  # numpy's integers
     )
-    with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
+    with LIBRARY, netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
         file.set_fill_off()
         for name, table in (("samples", samples), ("events", events)):
             if not table.size:  # the classic format has no dimensions of length zero
@@ -188,7 +189,7 @@ def _numbers(record: EnergyBalance | Extremes) -> dict[str, float]:
 
 def _read(path: Path, key: str) -> tuple[Solution, dict[str, Any]]:
     """Rebuild what `_write` wrote; ValueError if the file is another's or damaged."""
-    with netCDF4.Dataset(path, "r") as file:
+    with LIBRARY, netCDF4.Dataset(path, "r") as file:
         file.set_auto_maskandscale(False)
         text = str(file.getncattr("header"))
         header: dict[str, Any] = json.loads(text)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -11,7 +13,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive.integrity import CheckedStore
-from gearidae.archive.interrupts import uninterrupted
+from gearidae.archive.library import uninterrupted
 
 
 @pytest.fixture(scope="module")
@@ -88,3 +90,30 @@ def test_other_threads_and_ignored_interrupts_are_left_alone():
             assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
     finally:
         signal.signal(signal.SIGINT, usual)
+
+
+THREADS = """
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import gearidae as gd
+
+scene = gd.preset("roller_slow")
+ds = gd.simulate(scene, samples=11)
+
+def work(number):
+    for _ in range(8):
+        path = gd.save(ds, Path(sys.argv[1]) / f"{number}.nc", overwrite=True)
+        assert gd.open_archive(path).identical(ds)
+        gd.simulate(scene, samples=11, archive=path, overwrite=True)
+
+with ThreadPoolExecutor(4) as executor:
+    list(executor.map(work, range(4)))
+"""
+
+
+def test_threads_write_and_read_archives_side_by_side(tmp_path):
+    """In a process of its own: netCDF's library ended it by a signal, each time."""
+    done = subprocess.run([sys.executable, "-c", THREADS, str(tmp_path)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
