@@ -14,6 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.analysis.signal import signals, to_si
+from gearidae.archive.library import uninterrupted
 from gearidae.errors import SceneError
 
 __all__ = ["read_signal"]
@@ -66,7 +67,7 @@ def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
 
 def _from_netcdf(source: Path) -> xr.Dataset:
     try:
-        with xr.open_dataset(source, decode_times=False) as opened:
+        with uninterrupted(), xr.open_dataset(source, decode_times=False) as opened:
             ds = opened.load()
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         raise SceneError("signal", source, f"is damaged or not a netCDF file ({error})") from error

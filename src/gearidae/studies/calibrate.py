@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gearidae.archive import save
 from gearidae.archive.dataset import dimension_names
-from gearidae.archive.library import LIBRARY
+from gearidae.archive.library import uninterrupted
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
@@ -217,7 +217,7 @@ def _attributes(
 def _whole(path: Path, about: Mapping[str, Any]) -> xr.Dataset:
     """Return the posterior in a file if it is this one."""
     try:
-        with LIBRARY, xr.open_dataset(path) as opened:
+        with uninterrupted(), xr.open_dataset(path) as opened:
             ds = opened.load()
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         raise SceneError("archive", path, f"cannot be read ({type(error).__name__})") from None

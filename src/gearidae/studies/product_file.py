@@ -8,7 +8,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearidae.archive.library import LIBRARY
+from gearidae.archive.library import uninterrupted
 from gearidae.errors import SceneError
 
 __all__ = ["read_product"]
@@ -57,7 +57,7 @@ def read_product(
     if not head.startswith(_HEADERS):
         raise SceneError(name, path, f"is no {what} but another kind of file; make one with {command}")
     try:
-        with LIBRARY, xr.open_dataset(source, decode_times=False) as opened:
+        with uninterrupted(), xr.open_dataset(source, decode_times=False) as opened:
             found = opened.load()
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         raise SceneError(name, path, f"is damaged ({type(error).__name__})") from error

@@ -46,6 +46,11 @@ class _Lanes:
         """``low + high * by``."""
         return self._builder.fadd(low, self._builder.fmul(high, by))
 
+    def powers(self, u: Any) -> tuple[Any, Any, Any]:
+        """First, second and fourth power of a number, in all lanes."""
+        square = self._builder.fmul(u, u)
+        return self.spread(u), self.spread(square), self.spread(self._builder.fmul(square, square))
+
     def parts(self, vector: Any, count: int) -> list[Any]:
         """Return the numbers of the first lanes."""
         return [self._builder.extract_element(vector, ir.Constant(ir.IntType(32), k)) for k in range(count)]
@@ -56,9 +61,7 @@ def _eight_powers(typing: Any, table: Any, start: Any, u: Any) -> Any:
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], _LANES)
-        once = values[2]
-        square = builder.fmul(once, once)
-        u1, u2, u4 = lanes.spread(once), lanes.spread(square), lanes.spread(builder.fmul(square, square))
+        u1, u2, u4 = lanes.powers(values[2])
 
         def line(power: int) -> Any:
             return lanes.line(lanes.power(power), lanes.power(power + 1), u1)
@@ -80,9 +83,7 @@ def _three_slopes(typing: Any, table: Any, start: Any, u: Any) -> Any:
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], BESIDE)
-        once = values[2]
-        square = builder.fmul(once, once)
-        u1, u2, u4 = lanes.spread(once), lanes.spread(square), lanes.spread(builder.fmul(square, square))
+        u1, u2, u4 = lanes.powers(values[2])
         c = [lanes.power(k) for k in range(8)]
         n = [
             builder.fmul(lanes.spread(ir.Constant(ir.DoubleType(), float(k))), c[k]) if k > 1 else c[k]
