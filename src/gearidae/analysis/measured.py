@@ -14,6 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.analysis.signal import signals, to_si
+from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import uninterrupted
 from gearidae.errors import SceneError
 
@@ -66,6 +67,7 @@ def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
 
 
 def _from_netcdf(source: Path) -> xr.Dataset:
+    check_heaps("signal", source)
     try:
         with uninterrupted(), xr.open_dataset(source, decode_times=False) as opened:
             ds = opened.load()

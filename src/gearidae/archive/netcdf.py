@@ -15,6 +15,7 @@ from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import sync
 from gearidae.archive.growing_layout import is_growing, trimmed
+from gearidae.archive.heaps import check_heaps
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import uninterrupted
@@ -143,6 +144,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, f"cannot be read ({error.strerror})") from error
     if signature != _HDF5_SIGNATURE:
         raise SceneError("archive", path, "is not a netCDF4 file")
+    check_heaps("archive", source)
     running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
         ds = _opened(source)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import uninterrupted
 from gearidae.errors import SceneError
 
@@ -56,6 +57,7 @@ def read_product(
         raise SceneError(name, path, f"cannot be read ({error.strerror})") from error
     if not head.startswith(_HEADERS):
         raise SceneError(name, path, f"is no {what} but another kind of file; make one with {command}")
+    check_heaps(name, source)
     try:
         with uninterrupted(), xr.open_dataset(source, decode_times=False) as opened:
             found = opened.load()
