@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
-from gearidae.contact.tip import asperity_of
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.scene import Scene
 

@@ -36,9 +36,7 @@ log = logging.getLogger(__name__)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-COMPILED_PACKAGES: Final = ("contact", "engine", "compiled.py", "records")
-PLAIN_FOLDERS: Final = {"asperities"}
-"""Folders within them of code that enters compiled code as numbers in tables alone."""
+COMPILED_PACKAGES: Final = ("asperities/ranges.py", "contact", "engine", "compiled.py", "records")
 PLAIN: Final = "GEARIDAE_PLAIN_NUMBA"
 """Environment variable that makes gearidae do without numba's undocumented options."""
 
@@ -69,9 +67,8 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
             digest.update(f"{name}={value}".encode())
     for path in (*(_ROOT / package for package in COMPILED_PACKAGES), *sources):
         for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
-            if PLAIN_FOLDERS.isdisjoint(source.parts[len(_ROOT.parts) :]):
-                digest.update(source.relative_to(path.parent).as_posix().encode())
-                digest.update(source.read_bytes())
+            digest.update(source.relative_to(path.parent).as_posix().encode())
+            digest.update(source.read_bytes())
     base = os.environ.get("NUMBA_CACHE_DIR")
     folder = Path(base) / "gearidae" if base else user_cache_path("gearidae")
     return folder / digest.hexdigest()[:16]

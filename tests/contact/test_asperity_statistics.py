@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
-from gearidae.contact.asperities.jkr import jkr_root
+from gearidae.asperities.jkr import jkr_root
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.asperity_statistics import (
     density_product,
     expected_asperities,
     half_spacing,
     zero_load_radius,
 )
-from gearidae.contact.tip import asperity_of
 from reference.surface import PlainSurface
 
 RADIUS, WIDTH = 1.01e-5, 2e-6

@@ -7,11 +7,11 @@ import pytest
 from scipy import integrate, optimize, special
 from scipy.interpolate import make_interp_spline
 
+from gearidae.asperities.tip import asperity_of, contact_modulus
 from gearidae.contact.bulk import strip_deflection
 from gearidae.contact.elastic import ElasticFoldError, elastic_grid, elastic_line_curve, elastic_line_force
 from gearidae.contact.line import line_force
 from gearidae.contact.rough import adhesion_loss_per_asperity, rough_pressure
-from gearidae.contact.tip import asperity_of, contact_modulus
 from gearidae.errors import SceneError, SolverError
 
 R, L = 5e-6, 2e-6

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from gearidae.contact.asperities.dmt import Dmt
-from gearidae.contact.asperities.hertz import Hertz
-from gearidae.contact.asperities.jkr import JOINING, S_FOLD, Jkr, jkr_load, jkr_root
+from gearidae.asperities.dmt import Dmt
+from gearidae.asperities.hertz import Hertz
+from gearidae.asperities.jkr import JOINING, S_FOLD, Jkr, jkr_load, jkr_root
 from gearidae.contact.kernels.energy import (
     energy_table,
     joining_energy,

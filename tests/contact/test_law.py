@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.contact.asperities.dmt import Dmt
-from gearidae.contact.asperities.hertz import Hertz
-from gearidae.contact.asperities.jkr import Jkr
+from gearidae.asperities.dmt import Dmt
+from gearidae.asperities.hertz import Hertz
+from gearidae.asperities.jkr import Jkr
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels import law
 from gearidae.contact.line import line_force
 from gearidae.contact.rough import rough_pressure
-from gearidae.contact.tip import asperity_of
 from reference.surface import PlainSurface
 
 RADIUS, WIDTH = 10e-6, 2e-6

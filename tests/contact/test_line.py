@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy import integrate, special
 
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
 from gearidae.contact.rough import adhesion_loss_per_asperity, rough_pressure
-from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from reference import heights as brute
 

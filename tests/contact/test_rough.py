@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize, special
 
-from gearidae.contact.asperities.jkr import JOINING
+from gearidae.asperities.jkr import JOINING
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.rough import (
     adhesion_loss_per_asperity,
     maximum_tension,
     rough_pressure,
     rough_pressure_slopes,
 )
-from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from reference import heights as brute
 

@@ -16,8 +16,8 @@ from scipy import special
 
 import gearidae as gd
 from gearidae.archive.energy import balance_of
+from gearidae.asperities import law_names
 from gearidae.contact import asperity_of, register, rough_pressure, unregister
-from gearidae.contact.asperities import law_names
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "extending.md"

@@ -8,9 +8,9 @@ from scipy.integrate import quad
 
 import gearidae as gd
 from balances import assert_closes
+from gearidae.asperities import law_of
+from gearidae.asperities.jkr import JOINING
 from gearidae.contact import asperity_of
-from gearidae.contact.asperities import law_of
-from gearidae.contact.asperities.jkr import JOINING
 from gearidae.contact.kernels.energy import loading_pieces
 from gearidae.contact.kernels.evaluate import loading_value
 from gearidae.contact.psi import psi

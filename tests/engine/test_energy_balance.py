@@ -11,8 +11,8 @@ import pytest
 import gearidae as gd
 from balances import assert_balanced
 from gearidae import engine
+from gearidae.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact import asperity_of
-from gearidae.contact.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
 from gearidae.engine.energy.quadrature import Ends, integral_of_cube, torque_work

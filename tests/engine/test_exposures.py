@@ -8,8 +8,8 @@ import pytest
 
 import gearidae as gd
 from gearidae.archive.exposures import flank_areas
+from gearidae.asperities.jkr import JOINING
 from gearidae.contact import asperity_of, line_force
-from gearidae.contact.asperities.jkr import JOINING
 from gearidae.engine import solve
 
 LOW = gd.preset("teodorescu2009_low_speed")

@@ -11,8 +11,8 @@ import pytest
 import gearidae as gd
 from balances import assert_balanced
 from gearidae import engine
+from gearidae.asperities.registry import law_of_tip
 from gearidae.contact import asperity_of
-from gearidae.contact.asperities.registry import law_of_tip
 from gearidae.contact.psi import psi
 from gearidae.contact.rough import adhesion_loss_per_asperity
 from gearidae.mesh import curvature_radii

@@ -28,7 +28,7 @@ class Mutant:
     tests: tuple[str, ...]
 
 
-JKR, TIP = ("contact/asperities/test_jkr.py",), ("contact/test_tip.py",)
+JKR, TIP = ("asperities/test_jkr.py",), ("asperities/test_tip.py",)
 HISTORY, LAW = ("contact/test_history.py",), ("contact/test_law.py",)
 IMPACT = ("engine/test_closed_forms.py::test_an_impact_loses_the_adhesion_energy",)
 SHAFTS = ("properties/test_gears_without_adhesion.py",)
@@ -37,7 +37,7 @@ MESH = ("properties/test_mesh.py",)
 SHORT = (
     Mutant(
         "pull-off load with DMT's factor 2 in place of 1.5",
-        "contact/tip.py",
+        "asperities/tip.py",
         "pull_off = 1.5 * math.pi",
         "pull_off = 2.0 * math.pi",
         TIP,
@@ -63,35 +63,35 @@ MUTANTS = (
     *SHORT,
     Mutant(
         "wrong constant in the displacement of an asperity (12^(1/3))",
-        "contact/asperities/jkr.py",
+        "asperities/jkr.py",
         "return np.asarray(t * (t**3 - 4.0) / 3.0)",
         "return np.asarray(t * (t**3 - 4.0) / 2.9)",
         JKR,
     ),
     Mutant(
         "wrong constant in the measure of an asperity's quadrature (12^(1/3))",
-        "contact/asperities/jkr.py",
+        "asperities/jkr.py",
         "rate = 4.0 * 12.0 ** (1 / 3) * s**3",
         "rate = 4.0 * 12.0 ** (1 / 3.01) * s**3",
         JKR,
     ),
     Mutant(
         "fold at another radius (a^3 = 1/18)",
-        "contact/asperities/jkr.py",
+        "asperities/jkr.py",
         "S_FOLD = (1.0 / 18.0)",
         "S_FOLD = (1.0 / 18.1)",
         JKR,
     ),
     Mutant(
         "work of adhesion of one surface in place of two",
-        "contact/tip.py",
+        "asperities/tip.py",
         "adhesion = 2.0 * surface.energy",
         "adhesion = surface.energy",
         TIP,
     ),
     Mutant(
         "modulus of one body in place of two",
-        "contact/tip.py",
+        "asperities/tip.py",
         "youngs_modulus / (2.0 * (1.0",
         "youngs_modulus / (1.0 * (1.0",
         TIP,

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.contact.ranges import GAP_LOW
+from gearidae.asperities.ranges import GAP_LOW
 from gearidae.engine.integrate.driver import Ending
 from gearidae.errors import SceneError
 from gearidae.scene.limits import MOST_PAIRS, check_reach, pairs_within_reach

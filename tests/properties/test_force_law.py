@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from gearidae.contact.asperities.hertz import Hertz
-from gearidae.contact.asperities.jkr import Jkr
+from gearidae.asperities.hertz import Hertz
+from gearidae.asperities.jkr import Jkr
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import law_table, law_value
 from gearidae.contact.line import line_force

@@ -11,8 +11,8 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
-from gearidae.contact.tip import asperity_of
 from gearidae.mesh import curvature_radii, separation
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 import gearidae
-from gearidae.contact.tip import tabor_parameter, tabor_regime
+from gearidae.asperities.tip import tabor_parameter, tabor_regime
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene

@@ -116,7 +116,7 @@ def _roller(scene: Scene) -> Rows:
 
 
 def _contact(scene: Scene) -> Rows:
-    from gearidae.contact.tip import asperity_of
+    from gearidae.asperities.tip import asperity_of
 
     yield "Contact", "", f"{scene.contact.model} model, {scene.contact.asperity} asperities"
     yield "contact modulus E*", f"{asperity_of(scene.surface).modulus * 1e-9:.5g} GPa", ""

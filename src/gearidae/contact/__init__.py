@@ -1,8 +1,9 @@
 """Physics of one contact, plain numbers in SI units in and out.
 
-`asperity` is the law of one asperity (`register` adds another), `rough_pressure` two rough planes, `line_force` two
-teeth of which only the asperities deform, `elastic_line_force` two teeth with elastic bodies. A surface is anything
-with the properties of `Surface`, such as ``scene.surface`` (bare) or ``scene.coated_surface``.
+`asperity` is the law of one asperity (`register` adds another; both are those of `gearidae.asperities`),
+`rough_pressure` two rough planes, `line_force` two teeth of which only the asperities deform, `elastic_line_force` two
+teeth with elastic bodies. A surface is anything with the properties of `Surface`, such as ``scene.surface`` (bare) or
+``scene.coated_surface``.
 
 Names are loaded on first use, so that a caller of one law does not pay for the others.
 """
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.contact.asperities import (
+    from gearidae.asperities import (
         AsperityLaw,
         asperity,
         asperity_load,
@@ -22,7 +23,15 @@ if TYPE_CHECKING:
         register,
         unregister,
     )
-    from gearidae.contact.asperities.jkr import jkr_load, jkr_slope
+    from gearidae.asperities.jkr import jkr_load, jkr_slope
+    from gearidae.asperities.tip import (
+        Asperity,
+        Surface,
+        asperity_of,
+        contact_modulus,
+        tabor_parameter,
+        tabor_regime,
+    )
     from gearidae.contact.bulk import bulk_influence
     from gearidae.contact.elastic import (
         ElasticCurve,
@@ -36,14 +45,6 @@ if TYPE_CHECKING:
         maximum_tension,
         rough_pressure,
         rough_pressure_slopes,
-    )
-    from gearidae.contact.tip import (
-        Asperity,
-        Surface,
-        asperity_of,
-        contact_modulus,
-        tabor_parameter,
-        tabor_regime,
     )
 
 __all__ = [
@@ -74,30 +75,30 @@ __all__ = [
 ]
 
 _HOME = {
-    "Asperity": "tip",
-    "AsperityLaw": "asperities",
+    "Asperity": "gearidae.asperities.tip",
+    "AsperityLaw": "gearidae.asperities",
     "ElasticCurve": "elastic",
     "ElasticFoldError": "elastic",
-    "Surface": "tip",
+    "Surface": "gearidae.asperities.tip",
     "adhesion_loss_per_asperity": "rough",
-    "asperity": "asperities",
-    "asperity_load": "asperities",
-    "asperity_of": "tip",
+    "asperity": "gearidae.asperities",
+    "asperity_load": "gearidae.asperities",
+    "asperity_of": "gearidae.asperities.tip",
     "bulk_influence": "bulk",
-    "contact_modulus": "tip",
+    "contact_modulus": "gearidae.asperities.tip",
     "elastic_line_curve": "elastic",
     "elastic_line_force": "elastic",
-    "jkr_load": "asperities.jkr",
-    "jkr_slope": "asperities.jkr",
-    "law_names": "asperities",
+    "jkr_load": "gearidae.asperities.jkr",
+    "jkr_slope": "gearidae.asperities.jkr",
+    "law_names": "gearidae.asperities",
     "line_force": "line",
     "maximum_tension": "rough",
-    "register": "asperities",
+    "register": "gearidae.asperities",
     "rough_pressure": "rough",
     "rough_pressure_slopes": "rough",
-    "tabor_parameter": "tip",
-    "tabor_regime": "tip",
-    "unregister": "asperities",
+    "tabor_parameter": "gearidae.asperities.tip",
+    "tabor_regime": "gearidae.asperities.tip",
+    "unregister": "gearidae.asperities",
 }
 
 __getattr__, __dir__ = lazy_names(globals(), _HOME)

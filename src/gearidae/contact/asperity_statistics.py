@@ -17,8 +17,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gearidae.asperities.tip import Surface, asperity_of
 from gearidae.contact.psi import psi_derivatives
-from gearidae.contact.tip import Surface, asperity_of
 
 __all__ = ["density_product", "expected_asperities", "half_spacing", "zero_load_radius"]
 

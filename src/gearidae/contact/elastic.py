@@ -27,9 +27,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gearidae.asperities.tip import Surface, contact_modulus
 from gearidae.contact.bulk import LineGrid, line_grid
 from gearidae.contact.heights import Heights, heights_of, normal_density, normal_density_slope
-from gearidae.contact.tip import Surface, contact_modulus
 from gearidae.errors import SceneError, SolverError
 
 __all__ = ["ElasticCurve", "ElasticFoldError", "elastic_grid", "elastic_line_curve", "elastic_line_force"]

@@ -1,7 +1,7 @@
 r"""The asperities' load added up over their heights.
 
 With lengths in units of the roughness and loads in units of ``4/3 E* sqrt(beta) sigma^1.5`` (the Hertz load at a
-compression of one roughness), a law of `gearidae.contact.asperities` gives the load P of an asperity at its
+compression of one roughness), a law of `gearidae.asperities` gives the load P of an asperity at its
 displacement, and heights add it up to
 
 .. math::
@@ -23,8 +23,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.contact.asperities import AsperityLaw, law_of
-from gearidae.contact.tip import Surface, asperity_of
+from gearidae.asperities import AsperityLaw, law_of
+from gearidae.asperities.tip import Surface, asperity_of
 from gearidae.errors import SceneError
 
 __all__ = ["Heights", "checked_gap_and_stretch", "heights_of", "normal_density", "normal_density_slope"]

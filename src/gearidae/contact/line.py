@@ -23,9 +23,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gearidae.asperities.tip import Surface
 from gearidae.contact.heights import checked_gap_and_stretch, heights_of
 from gearidae.contact.psi import psi
-from gearidae.contact.tip import Surface
 from gearidae.errors import SceneError
 
 __all__ = ["line_force"]

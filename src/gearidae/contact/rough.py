@@ -26,14 +26,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize
 
-from gearidae.contact.asperities import law_of_tip
+from gearidae.asperities import law_of_tip
+from gearidae.asperities.tip import Surface, asperity_of
 from gearidae.contact.heights import (
     checked_gap_and_stretch,
     heights_of,
     normal_density,
     normal_density_slope,
 )
-from gearidae.contact.tip import Surface, asperity_of
 
 __all__ = [
     "MaximumTension",

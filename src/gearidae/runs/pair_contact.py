@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 
-from gearidae.contact.asperities import law_of
+from gearidae.asperities import law_of
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
-from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 

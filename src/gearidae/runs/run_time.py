@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from gearidae.contact.tip import asperity_of
+from gearidae.asperities.tip import asperity_of
 from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
 from gearidae.runs.pair_contact import PairContact, pair_contact
 

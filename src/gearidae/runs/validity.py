@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
+from gearidae.asperities.tip import tabor_parameter
 from gearidae.contact.asperity_statistics import (
     density_product,
     expected_asperities,
@@ -24,7 +25,6 @@ from gearidae.contact.surroundings import (
     film_damping,
     thermal_amplitude,
 )
-from gearidae.contact.tip import tabor_parameter
 from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
 from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.scene.prefixes import with_prefix

@@ -6,9 +6,9 @@ import math
 import sys
 from typing import TYPE_CHECKING, Final
 
-from gearidae.contact.asperities import law_of
-from gearidae.contact.ranges import GAP_LOW
-from gearidae.contact.ranges import check_reach as check_asperity_reach
+from gearidae.asperities import law_of
+from gearidae.asperities.ranges import GAP_LOW
+from gearidae.asperities.ranges import check_reach as check_asperity_reach
 from gearidae.errors import SceneError
 from gearidae.scene.coating import THICKEST
 

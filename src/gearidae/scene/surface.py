@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
-from gearidae.contact.asperities import law_names
-from gearidae.contact.tip import INTERACTION_RANGE
+from gearidae.asperities import law_names
+from gearidae.asperities.tip import INTERACTION_RANGE
 from gearidae.scene.group import Group
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Quantity

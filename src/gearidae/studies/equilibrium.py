@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from gearidae.contact.asperities import law_of
+from gearidae.asperities import law_of
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_value
-from gearidae.contact.tip import asperity_of
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.runs.estimates import resting_gap

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearidae.contact.asperities import law_of_tip
-from gearidae.contact.tip import asperity_of
+from gearidae.asperities import law_of_tip
+from gearidae.asperities.tip import asperity_of
 from gearidae.studies.equilibrium import leaving_radii, nearest_gap, pair_law, settled_gap
 
 if TYPE_CHECKING:

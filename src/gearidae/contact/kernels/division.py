@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Self
 
+from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
-from gearidae.contact.asperities import AsperityLaw
 from gearidae.contact.kernels.layout import H_ABOVE, H_BEFORE, H_BELOW, H_KINK, H_PIECES, Floats
 
 __all__ = ["Division", "place_above", "place_of"]

@@ -38,8 +38,8 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
-from gearidae.contact.asperities import AsperityLaw
 from gearidae.contact.gauss import gauss_rule
 from gearidae.contact.kernels.densities import kernel_at_knots
 from gearidae.contact.kernels.division import Division

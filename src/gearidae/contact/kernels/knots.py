@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from gearidae.contact.asperities import AsperityLaw
+from gearidae.asperities import AsperityLaw
 from gearidae.contact.gauss import gauss_rule
 from gearidae.contact.kernels.densities import kernel_at
 from gearidae.contact.kernels.layout import KNOTS_PER_SIGMA, Floats, Kernel

@@ -8,7 +8,7 @@ pressure scale taken out, the force of Teodorescu et al. 2009 (Eqs. 12-15) on a 
     q(G, S) = \int_{-S}^{\infty} \hat p(\Delta)\, \psi(G + \Delta)\, d\Delta, \qquad
     W = L \sqrt{2 R \sigma}\; N\, \tfrac43 E^* \sqrt\beta\, \sigma^{3/2}\; q,
 
-with :math:`\hat p` one asperity's load, whichever its law (`gearidae.contact.asperities`), in the units in which
+with :math:`\hat p` one asperity's load, whichever its law (`gearidae.asperities`), in the units in which
 Hertz's is :math:`\Delta^{3/2}`. The law has three branches that join continuously: loading (S = 0), partly stretched
 (0 < S < D) and fully stretched (S = D).
 
@@ -42,8 +42,8 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
-from gearidae.contact.asperities import AsperityLaw
 from gearidae.contact.kernels.branches import B_PIECES, branch_length, branch_value, set_branch
 from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.evaluate import law_value, loading_value, stretched_value
@@ -127,7 +127,7 @@ def law_table(law: AsperityLaw, kernel: Kernel = "line") -> Floats:
     Parameters
     ----------
     law : AsperityLaw
-        Law of one asperity in units of the roughness, see `gearidae.contact.asperities.law_of`. Equal laws share a
+        Law of one asperity in units of the roughness, see `gearidae.asperities.law_of`. Equal laws share a
         table.
     kernel : {"line", "plane"}, optional
         Force on a parabolic gap, or pressure between planes: what the loads are integrated against, psi or the

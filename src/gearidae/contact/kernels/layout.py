@@ -12,7 +12,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.contact.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
+from gearidae.asperities.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
 
 __all__ = [
     "ASPERITY_PIECES",

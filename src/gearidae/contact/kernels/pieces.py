@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from gearidae.contact.asperities import AsperityLaw
+from gearidae.asperities import AsperityLaw
 from gearidae.contact.kernels.densities import kernel_at_knots
 from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.knots import stretched_derivatives

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.contact.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
+from gearidae.asperities.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
 from gearidae.engine.elastic.histories import LARGEST_SHARE, book_points
 from gearidae.engine.elastic.rows import (
     ADHERED_ENERGY,

@@ -14,11 +14,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.asperities import law_of
+from gearidae.asperities.tip import asperity_of, contact_modulus
 from gearidae.compiled import compiled
-from gearidae.contact.asperities import law_of
 from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_nodes
 from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_value, loading_table
-from gearidae.contact.tip import asperity_of, contact_modulus
 from gearidae.engine.elastic.rows import FINER, point_count
 from gearidae.scene import Material, Scene
 

@@ -6,8 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearidae.contact.asperities import law_of
-from gearidae.contact.asperities.base import AsperityLaw
+from gearidae.asperities import law_of
+from gearidae.asperities.base import AsperityLaw
+from gearidae.asperities.ranges import check_reach
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.energy import energy_table, joining_energy, loading_pieces, number_table
 from gearidae.contact.kernels.lanes import BESIDE
 from gearidae.contact.kernels.law import (
@@ -21,8 +23,6 @@ from gearidae.contact.kernels.law import (
     largest_forces,
     law_table,
 )
-from gearidae.contact.ranges import check_reach
-from gearidae.contact.tip import asperity_of
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
 from gearidae.engine.model.state import Record

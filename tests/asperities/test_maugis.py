@@ -10,13 +10,13 @@ from scipy import integrate, optimize
 
 import gearidae as gd
 from balances import assert_balanced
-from gearidae.contact.asperities.base import AsperityLaw
-from gearidae.contact.asperities.hertz import Hertz
-from gearidae.contact.asperities.maugis import Maugis
+from gearidae.asperities.base import AsperityLaw
+from gearidae.asperities.hertz import Hertz
+from gearidae.asperities.maugis import Maugis
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact.heights import Heights
 from gearidae.contact.kernels.law import law_table, law_value
 from gearidae.contact.psi import psi
-from gearidae.contact.tip import asperity_of
 from gearidae.engine import solve
 from gearidae.errors import SceneError
 from reference.surface import PlainSurface

@@ -12,8 +12,8 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearidae.contact.asperities.base import AsperityLaw, Floats
-from gearidae.contact.tip import Asperity, Surface, asperity_of, make_tip
+from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.asperities.tip import Asperity, Surface, asperity_of, make_tip
 from gearidae.errors import SceneError
 from gearidae.registry import Registry
 
@@ -21,7 +21,7 @@ __all__ = ["asperity", "asperity_load", "law_names", "law_of", "law_of_tip", "re
 
 Law = TypeVar("Law", bound=type[AsperityLaw])
 
-_LAWS: Final = Registry[type[AsperityLaw]]("gearidae.contact.asperities", "contact.asperity", "asperity law")
+_LAWS: Final = Registry[type[AsperityLaw]]("gearidae.asperities", "contact.asperity", "asperity law")
 
 
 def register(law: Law) -> Law:

@@ -30,10 +30,10 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.contact.asperities.base import AsperityLaw, Floats
-from gearidae.contact.asperities.hertz import Hertz
-from gearidae.contact.asperities.registry import register
-from gearidae.contact.tip import Asperity
+from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.asperities.hertz import Hertz
+from gearidae.asperities.registry import register
+from gearidae.asperities.tip import Asperity
 
 __all__ = [
     "JOINING",

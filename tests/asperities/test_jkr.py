@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.contact.asperities import AsperityLaw, asperity_load, jkr
-from gearidae.contact.tip import asperity_of
+from gearidae.asperities import AsperityLaw, asperity_load, jkr
+from gearidae.asperities.tip import asperity_of
 from reference import asperity as dimensional
 
 

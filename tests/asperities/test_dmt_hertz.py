@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from gearidae.contact.asperities import asperity_load, law_names
-from gearidae.contact.tip import Asperity, asperity_of
+from gearidae.asperities import asperity_load, law_names
+from gearidae.asperities.tip import Asperity, asperity_of
 
 
 def test_without_energy_an_asperity_is_hertzian(silicon):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gearidae.contact.asperities import AsperityLaw
+from gearidae.asperities import AsperityLaw
 from gearidae.errors import SceneError
 
 __all__ = ["GAP_HIGH", "GAP_LOW", "JOIN_HIGH", "STRETCH_HIGH", "check_reach"]

@@ -17,7 +17,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.contact.tip import Asperity
+from gearidae.asperities.tip import Asperity
 
 __all__ = ["AsperityLaw", "Floats"]
 

@@ -13,9 +13,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearidae.contact.asperities.base import AsperityLaw, Floats
-from gearidae.contact.asperities.registry import register
-from gearidae.contact.tip import Asperity
+from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.asperities.registry import register
+from gearidae.asperities.tip import Asperity
 
 __all__ = ["Hertz"]
 

@@ -10,8 +10,7 @@ from scipy import integrate, special
 
 import gearidae as gd
 from balances import assert_balanced
-from gearidae.compiled import cache_folder
-from gearidae.contact.asperities import (
+from gearidae.asperities import (
     AsperityLaw,
     asperity,
     asperity_load,
@@ -20,15 +19,16 @@ from gearidae.contact.asperities import (
     register,
     unregister,
 )
+from gearidae.asperities.ranges import check_reach
+from gearidae.asperities.tip import asperity_of
+from gearidae.compiled import cache_folder
 from gearidae.contact.elastic import elastic_grid, elastic_line_curve
 from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table, stretched_energy
 from gearidae.contact.kernels.law import HEADER, law_table, law_value, loading_value
 from gearidae.contact.kernels.layout import H_MODE, MODE_INTEGRATED, MODE_TABLE
 from gearidae.contact.line import line_force
 from gearidae.contact.psi import psi
-from gearidae.contact.ranges import check_reach
 from gearidae.contact.rough import adhesion_loss_per_asperity, rough_pressure
-from gearidae.contact.tip import asperity_of
 from gearidae.engine import solve
 from gearidae.errors import SceneError
 

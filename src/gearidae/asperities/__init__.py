@@ -5,8 +5,8 @@ decorated with `register`. Readable and compiled force laws, stored energy, loss
 follow from it.
 """
 
-from gearidae.contact.asperities.base import AsperityLaw
-from gearidae.contact.asperities.registry import (
+from gearidae.asperities.base import AsperityLaw
+from gearidae.asperities.registry import (
     asperity,
     asperity_load,
     law_names,

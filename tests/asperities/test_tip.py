@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from gearidae.contact.tip import asperity_of, tabor_parameter, tabor_regime
+from gearidae.asperities.tip import asperity_of, tabor_parameter, tabor_regime
 from reference import asperity as dimensional
 
 
