@@ -1,7 +1,7 @@
 """Mesh entries and exits along the phase: whatever rounding does, the phase lies between the two nearest."""
 
 import numpy as np
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, set_marks
@@ -19,12 +19,14 @@ PROBLEM = make_problem(SCENES["high_sam"].scene)
     start=st.floats(-20.0, 20.0),
     way=st.sampled_from([1.0, -1.0]),
 )
+@example(path=2.0, coast=0.0, start=-1.1e-171, way=-1.0)  # less a mark, this is a whole number
 def test_a_phase_that_has_crossed_a_mark_is_on_its_far_side(path, coast, start, way):
     """By one rounding error: else the guard would stay below zero and no further mark be seen."""
     m, y, events = PROBLEM.shortened(1.0).model, PROBLEM.start.copy(), np.empty((64, 5))
     m.scene.contact_ratio, m.scene.coast_phase = path, coast
     set_marks(m, start)
     y[PHASE] = start
+    assert m.state.mark_low <= start < m.state.mark_high
     for _ in range(90):
         phase = np.nextafter(m.state.mark_high if way > 0 else m.state.mark_low, way * np.inf)
         assert way * (phase - y[PHASE]) >= 0.0

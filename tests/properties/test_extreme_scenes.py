@@ -169,12 +169,18 @@ def fail(seed, number, budget, reports, trace):
 
 
 @pytest.mark.parametrize(
-    ("target", "status", "message"),
-    [(die, "killed", "SIGABRT"), (sleep, "silent", "no report for"), (fail, "raised", "KeyError")],
+    ("target", "patience", "status", "message"),
+    [
+        (die, 300.0, "killed", "SIGABRT"),
+        (sleep, 10.0, "silent", "no report for"),
+        (fail, 300.0, "raised", "KeyError"),
+    ],
 )
-def test_a_process_that_dies_or_hangs_is_a_fault(target, status, message):
+def test_a_process_that_dies_or_hangs_is_a_fault(target, patience, status, message):
     heard = []
-    outcomes = run_attack(range(2, 4), 1, 2, budget=1, patience=10.0, report=heard.append, target=target)
+    outcomes = run_attack(
+        range(2, 4), 1, 2, budget=1, patience=patience, report=heard.append, target=target
+    )
     assert [(o.number, o.status, o.sound) for o in outcomes] == [(2, status, False), (3, status, False)]
     assert all(message in o.message for o in outcomes)
     assert len(heard) == 2
