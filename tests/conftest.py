@@ -6,6 +6,7 @@ from hypothesis import settings
 
 from gearidae.engine import backend as backend_module
 from gearidae.records import Block, Ending
+from reference.surface import PlainSurface
 
 # Compilation, once per machine, falls into whichever example comes first.
 settings.register_profile("gearidae", deadline=None)
@@ -17,6 +18,16 @@ def _heed_interrupts():
     """Let tests send Ctrl-C to themselves and to programs of theirs also where a shell runs them in the background."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="session")
+def silicon() -> PlainSurface:
+    return PlainSurface()
+
+
+@pytest.fixture(scope="session")
+def coated() -> PlainSurface:
+    return PlainSurface(energy=0.1)
 
 
 @pytest.fixture
