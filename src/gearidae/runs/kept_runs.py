@@ -25,7 +25,7 @@ from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statisti
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["KeptRuns", "folder_beside"]
+__all__ = ["KeptRuns", "circumstances", "folder_beside", "name_of"]
 
 _LAYOUT = 4
 """Version of the files' layout."""
@@ -41,6 +41,36 @@ _STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not
 def folder_beside(archive: Path) -> Path:
     """Where the runs of an unfinished sweep are kept: ``OUT.nc.runs`` beside ``OUT.nc``."""
     return archive.with_name(f"{archive.name}.runs")
+
+
+def circumstances(scene: Scene, backend: str) -> dict[str, Any]:
+    """Return what a result depends on besides its scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any of a sweep.
+    backend : str
+        The driver that runs, ``native`` or ``sksundae``.
+    """
+    return {
+        "schema": SCHEMA_VERSION,
+        "software": provenance(scene, "")["source"],
+        "backend": backend,
+    }
+
+
+def name_of(scene: Scene, about: Mapping[str, Any]) -> str:
+    """Hash of a scene and of all else that a result depends on: what its file is called.
+
+    Parameters
+    ----------
+    scene : Scene
+    about : mapping
+        Ready for JSON; from `circumstances`, and more.
+    """
+    text = json.dumps({**about, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 class KeptRuns:
@@ -67,9 +97,7 @@ class KeptRuns:
         self.folder = folder_beside(archive)
         self._circumstances = {
             "layout": _LAYOUT,
-            "schema": SCHEMA_VERSION,
-            "software": provenance(scene, "")["source"],
-            "backend": backend,
+            **circumstances(scene, backend),
             **({} if keep.names is None else {"keep": keep.asked}),
         }
         self._warned = False
@@ -80,8 +108,7 @@ class KeptRuns:
 
     def key(self, scene: Scene) -> str:
         """Hash of a scene and of all else that its result depends on."""
-        text = json.dumps({**self._circumstances, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
-        return hashlib.sha256(text.encode()).hexdigest()
+        return name_of(scene, self._circumstances)
 
     def keep(self, scene: Scene, solution: Solution, judged: Mapping[str, str | int] | None = None) -> None:
         """Write a finished run, or what it leaves behind and how it was judged, a value for each of `VERDICT`.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -17,7 +18,9 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     from gearidae.studies.distributions import Distribution
 
-__all__ = ["along_members", "member_plan"]
+__all__ = ["along_members", "drawn_members", "member_plan", "names_of"]
+
+Made = TypeVar("Made")
 
 STICKS = {
     "long_name": "whether the gear sticks",
@@ -51,16 +54,45 @@ def member_plan(
         If values are not allowed: distributions are not cut off on their own, as the result would be that of others.
     """
     columns = {key: column.tolist() for key, column in values.items()}
-    scenes: list[Scene] = []
+    scenes = drawn_members(partial(_member, base), values, drawn_from)
+    return SweepPlan(base, (columns,), scenes)
+
+
+def drawn_members(
+    make: Callable[[dict[str, float]], Made],
+    values: Mapping[str, NDArray[np.float64]],
+    drawn_from: Mapping[str, str],
+) -> list[Made]:
+    """Make something of the values of each member.
+
+    Parameters
+    ----------
+    make : callable
+        Told the value of each key.
+    values : mapping of str to ndarray, shape (members,)
+        Of each key, in SI units.
+    drawn_from : mapping of str to str
+        The keys' distributions, for messages.
+
+    Returns
+    -------
+    list
+
+    Raises
+    ------
+    SceneError
+        If values are not allowed.
+    """
+    made: list[Made] = []
     refused: list[SceneError] = []
-    for row in zip(*columns.values(), strict=True):
+    for row in zip(*(column.tolist() for column in values.values()), strict=True):
         try:
-            scenes.append(_member(base, dict(zip(columns, row, strict=True))))
+            made.append(make(dict(zip(values, row, strict=True))))
         except SceneError as error:
             refused.append(error)
     if refused:
-        raise _refusal(refused, len(scenes) + len(refused), drawn_from)
-    return SweepPlan(base, (columns,), scenes)
+        raise _refusal(refused, len(made) + len(refused), drawn_from)
+    return made
 
 
 def _member(base: Scene, changes: Mapping[str, float]) -> Scene:
