@@ -14,8 +14,8 @@ import numpy as np
 import gearidae as gd
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import complain, is_quiet, say
-from gearidae.cli.tables import show_rows
+from gearidae.cli.output import is_quiet, say
+from gearidae.cli.tables import name_failures, show_rows
 from gearidae.cli.values import default_output, texts
 from gearidae.runs.executors import check_jobs, dask_executor, own_executor
 
@@ -27,8 +27,6 @@ __all__ = ["executor_for", "run_ensemble"]
 _SHOWN = ("min_gear_speed", "max_gear_speed", "largest_mesh_force", "smallest_mesh_force", "stick_time")
 _WORTH_PROCESSES = 64
 """Members from which on it is worth while to start processes, which takes some seconds."""
-_NAMED = 3
-"""Failed members that are named."""
 
 
 def run_ensemble(
@@ -88,13 +86,7 @@ def run_ensemble(
         )
     show_rows(_rows(ds))
     say(f"Ensemble: {target}")
-    failed = np.flatnonzero(ds["status"].values != "finished")
-    for number in failed[:_NAMED]:
-        one = ds.isel(member=number)
-        complain(f"member {number}: {one['message'].item() or one['status'].item()}")
-    if failed.size > _NAMED:
-        complain(f"{failed.size - _NAMED} more members could not be finished")
-    return UNFINISHED if failed.size else DONE
+    return UNFINISHED if name_failures(ds) else DONE
 
 
 @contextmanager

@@ -126,7 +126,11 @@ def _open(archive: Path) -> tuple[xr.Dataset, str]:
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return ds, "overview" if sampled or not swept_dims(ds) else "outcome"
     except SceneError:
-        for read, usual in ((gd.analysis.open_map, "coating_map"), (gd.studies.open_life, "life")):
+        for read, usual in (
+            (gd.analysis.open_map, "coating_map"),
+            (gd.studies.open_life, "life"),
+            (gd.studies.open_lives, "lives"),
+        ):
             try:
                 return read(archive), usual
             except SceneError:

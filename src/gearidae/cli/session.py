@@ -13,7 +13,7 @@ from typing import Annotated
 from cyclopts import CycloptsError, Parameter
 
 import gearidae
-from gearidae.cli import study_commands  # noqa: F401, which declares more commands
+from gearidae.cli import life_commands, study_commands  # noqa: F401, which declare more commands
 from gearidae.cli.app import app
 from gearidae.cli.examples import EXAMPLES
 from gearidae.cli.output import hushed

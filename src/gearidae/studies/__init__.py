@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gearidae.studies.ensemble import ensemble
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.life import life
-    from gearidae.studies.life_file import open_life
+    from gearidae.studies.life_file import open_life, open_lives
     from gearidae.studies.life_signals import assess_life
     from gearidae.studies.lives import lives
     from gearidae.studies.observations import Observation
@@ -47,6 +47,7 @@ __all__ = [
     "lives",
     "natural_frequency",
     "open_life",
+    "open_lives",
     "open_map",
     "operating_map",
     "predict",
@@ -76,6 +77,7 @@ _HOME = {
     "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
     "open_life": "life_file",
+    "open_lives": "life_file",
     "open_map": "coating_map",
     "operating_map": "operating_map",
     "predict": "predict",

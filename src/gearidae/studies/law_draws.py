@@ -40,12 +40,10 @@ def parameter_units(law: LossLaw) -> Callable[[str, Any], str | None]:
             return None
         name = key.removeprefix(_LAW)
         if name not in units:
-            meant = did_you_mean(name, units)
-            known = ", ".join(f"{_LAW}{each}" for each in units) or "none"
-            allowed = (
-                f"is no parameter of the loss law {law.name}; it has {known}{'; ' if meant else ''}{meant}"
-            )
-            raise SceneError(key, shorten(given), allowed)
+            known = [f"{_LAW}{each}" for each in units]
+            meant = did_you_mean(key, known)
+            allowed = f"is no parameter of the loss law {law.name}; it has {', '.join(known)}"
+            raise SceneError(key, shorten(given), f"{allowed}{'; ' if meant else ''}{meant}")
         return units[name]
 
     return unit_of

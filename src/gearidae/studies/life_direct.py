@@ -29,7 +29,7 @@ Floats: TypeAlias = NDArray[np.float64]
 _EVALUATIONS: Final = 3
 """Rates that a step of the integration asks for."""
 _PATIENCE: Final = 20.0
-"""Time that a cycle gets, over that of a window."""
+"""Time that a cycle gets, over its share of that of a window."""
 
 
 @dataclass
@@ -113,7 +113,7 @@ class DirectCycles:
             {
                 **windows.coverage.changes(state),
                 "run.stop": f"turns {1.0 / gears.gear_teeth!r}",
-                "run.duration": _PATIENCE * windows.scene.run.duration,
+                "run.duration": _PATIENCE * windows.scene.run.duration / windows.cycles.total,
             }
         )
         found = solved(scene, windows.backend, here.origin)

@@ -25,7 +25,17 @@ if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import Scene
 
-__all__ = ["Cycles", "Window", "gained", "run_window", "solved", "stands", "steady_window", "window_scene"]
+__all__ = [
+    "Cycles",
+    "Window",
+    "gained",
+    "run_window",
+    "solved",
+    "stands",
+    "steady_exposures",
+    "steady_window",
+    "window_scene",
+]
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -166,16 +176,23 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
             return Window(found)
         tables.append(gained(found, before, scene))
         origin = engine.end_of(block, found.checkpoint, 0.0 if origin is None else origin.time)
-        exposures = _steady(tables, cycles.tolerance)
+        exposures = steady_exposures(tables, cycles.tolerance)
         if exposures is not None:
             return Window(found, exposures, origin)
         before = found
 
 
-def _steady(blocks: Sequence[Floats], tolerance: float) -> Floats | None:
+def steady_exposures(blocks: Sequence[Floats], tolerance: float) -> Floats | None:
     """Exposures of a block where they no longer drift; None as long as they do.
 
     What is still to come of a drift is estimated by its last two changes, as of a geometric series.
+
+    Parameters
+    ----------
+    blocks : sequence of ndarray
+        Of all blocks so far, as `gained` has them.
+    tolerance : float
+        Of what is still to come, over the contacts made.
     """
     if tolerance == math.inf:
         return blocks[-1]
