@@ -125,6 +125,28 @@ def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
     assert not path.with_name("life.nc.runs").exists()
 
 
+def test_a_life_that_is_cut_off_in_its_last_cycles_is_resumed(tmp_path):
+    """The law is so fast that no jump is worth its windows: cycle by cycle, which is done again."""
+    law, path = gd.wear.loss_law("adhesion_work", energy=2e-10), tmp_path / "life.nc"
+    whole = gd.studies.life(LOW, law, **SHORT, fraction=0.65)
+    assert whole.attrs["mesh_cycles_direct"] > 10
+    said = []
+
+    def cut(done, of):
+        said.append(done)
+        if len(said) == 8:
+            raise KeyboardInterrupt
+
+    with pytest.raises(gd.Interrupted, match="resume"):
+        gd.studies.life(LOW, law, **SHORT, fraction=0.65, archive=path, progress=cut)
+    kept = gd.studies.open_life(path)
+    assert kept.attrs["ending"] == "interrupted"
+    np.testing.assert_array_equal(kept.coverage, whole.coverage[: kept.sizes["passages"]])
+    resumed = gd.studies.life(LOW, law, **SHORT, fraction=0.65, archive=path, resume=True)
+    for name in ("passages", "coverage", "coverage_loss", "passage_adhesion_work", "mean_gear_speed"):
+        np.testing.assert_array_equal(resumed[name], whole[name])
+
+
 def test_coverage_along_the_flank():
     scene = LOW.replace({"contact.model": "asperity"})
     found = gd.studies.life(scene, LAW, **SHORT, resolved="place", fraction=0.68)
