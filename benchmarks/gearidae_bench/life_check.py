@@ -175,7 +175,7 @@ def compared(
         return np.array([coverage.table(state) for state in np.array(columns).T])
 
     passages = found.passages.values
-    scale = brute.passages[-1] / (sticking[0] if brute.sticks else passages[-1])
+    scale = sticking[1] / sticking[0] if brute.sticks else 1.0
     theirs, by_share = at(passages), at(passages * scale)
     early = passages <= min(sticking[1], passages[-1]) - before if brute.sticks else passages >= 0.0
     table = np.array([passages, _means(ours), _means(theirs), np.abs(ours - theirs).max(axis=(1, 2, 3))])
@@ -208,10 +208,16 @@ def main() -> None:
     given = parser.parse_args()
     scene, law = fast_life(given.cycles, given.pairing)
     began = time.process_time()
-    brute = brute_force(scene, law, 3 * given.cycles, given.resolved)
+    brute = brute_force(scene, law, 4 * given.cycles, given.resolved)
     middle = time.process_time()
     found = gd.studies.life(
-        scene, law, tolerance=given.tolerance, places=PLACES, resolved=given.resolved, frequency=False
+        scene,
+        law,
+        tolerance=given.tolerance,
+        places=PLACES,
+        resolved=given.resolved,
+        frequency=False,
+        passages=1e12 if brute.sticks else float(brute.passages[-1]),
     )
     end = time.process_time()
     seen = compared(scene, given.resolved, found, brute)

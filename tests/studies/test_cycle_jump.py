@@ -78,6 +78,23 @@ def test_archard_ends_at_zero():
     assert min(state.min() for state in found.states) >= 0.0
 
 
+def test_no_rate_is_asked_for_where_nothing_is_left():
+    """A trial that loses more than there is costs a window of bare gears, which adhere most, and says nothing."""
+    asked = []
+
+    def rate(state):
+        asked.append(float(state.mean()))
+        if state.mean() < 0.3:
+            raise Sticks
+        return -1e-9 / (state - 0.29) ** 2
+
+    found = jump(rate, np.ones(1), passages=1e12, tolerance=0.03)
+    assert found.ending == "sticks"
+    # (f - 0.29)^3 / 3 falls evenly
+    assert found.sticks_by == pytest.approx(1e9 * (0.71**3 - 0.01**3) / 3.0, rel=0.02)
+    assert min(asked) > 0.0
+
+
 def test_what_an_exception_interrupts_is_kept():
     asked = []
 

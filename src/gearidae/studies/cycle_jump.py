@@ -32,6 +32,10 @@ class Sticks(Exception):  # noqa: N818  # it is no error
     """The gear sticks in this state, so that there is no rate; of cycles simulated one by one, with the passages."""
 
 
+class _TooFar(Exception):  # noqa: N818  # it is no error
+    """A trial of a step has lost more than there is: its rate says nothing."""
+
+
 class Direct(Protocol):
     """How to simulate cycle after cycle."""
 
@@ -118,6 +122,8 @@ def jump(
     life.add(0.0, start)
 
     def of(n: float, state: Floats) -> Floats:
+        if np.mean(state) < 0.0 and np.mean(life.states[-1]) > _FIRST:
+            raise _TooFar
         inside = np.clip(state, 0.0, 1.0)
         key = inside.tobytes()
         if key not in known:
@@ -166,6 +172,8 @@ def _integrate(
             continue
         try:
             step = _step(rate, life, limits, bound, step)
+        except _TooFar:
+            step *= 0.5
         except Sticks:
             upper = n + step
             if _sticks(

@@ -3,7 +3,8 @@
 A window is some mesh cycles at a coverage that does not change; what its flanks are exposed to
 (`gearidae.engine.energy.exposures`) gives, by a loss law, the rate at which coverage is lost. The rates are integrated
 over passages (`gearidae.studies.cycle_jump`) until the gear sticks in a window, a coverage or a number of passages is
-reached.
+reached. Passages in which the coverage changes too fast for that are simulated cycle by cycle
+(`gearidae.studies.life_direct`).
 """
 
 from __future__ import annotations
@@ -82,13 +83,14 @@ def life(
     places : int, optional
         Places along the flank.
     cycles, settle : int, optional
-        Mesh cycles of a window that count, and those before them. With ``resolved = "tooth"`` the first is rounded up
-        to whole turns of the pinion.
+        Mesh cycles of a block, and those before the first. Blocks follow each other until the contacts that they make
+        no longer drift by more than `tolerance`, at most eight; the last counts, or the last two where they fluctuate.
+        With ``resolved = "tooth"`` a block is rounded up to whole turns of the pinion.
     starts : int, optional
         Windows for each state, from as many phases of mesh; their rates are averaged, and the gear sticks if it does in
         one of them. They run side by side.
     tolerance : float, optional
-        Relative tolerance of each jump.
+        Relative tolerance of each jump, and of the drift of the rates.
     bracket : float, optional
         Relative width to which the passages to sticking are narrowed.
     frequency : bool, optional
@@ -104,7 +106,8 @@ def life(
         Along ``passages`` (the steps of the integration): ``coverage``, ``coverage_loss`` (in a passage),
         ``verdict``, ``mean_gear_speed``, ``min_gear_speed``, ``characteristic_frequency``, exposures of a passage and
         their sums, and with ``resolved`` ``coverage_by_place``. Attributes: ``ending`` (sticks, coverage or passages),
-        ``passages_to_sticking`` with its bracket, ``windows``, ``passages_simulated`` and ``passages_jumped``.
+        ``passages_to_sticking`` with its bracket, ``windows``, ``passages_simulated`` and ``passages_jumped``,
+        ``mesh_cycles_direct`` (those that were simulated one by one).
 
     Raises
     ------
@@ -119,7 +122,9 @@ def life(
     Notes
     -----
     Rates are those of the drive flank. A window begins where the scene does, and not with the state that an earlier
-    one has left: it has to be long enough for the start to be forgotten.
+    one has left. Where a jump would be shorter than the cycles of its windows, the cycles are simulated one by one
+    instead, each with the coverage and the motion that the one before has left; these are not kept, and done again by a
+    life that is resumed.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gearidae import engine
 from gearidae.studies.cycle_jump import Sticks
 from gearidae.studies.life_states import Seen, Windows
-from gearidae.studies.life_window import gained, solved, stands, steady_window
+from gearidae.studies.life_window import gained, part_of, solved, stands, steady_window
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -107,15 +107,8 @@ class DirectCycles:
     def _next(self, here: _Place) -> _Place:
         """Simulate a cycle."""
         windows, state = self.windows, here.state
-        gears = windows.scene.gears
-        assert gears is not None
-        scene = windows.scene.replace(
-            {
-                **windows.coverage.changes(state),
-                "run.stop": f"turns {1.0 / gears.gear_teeth!r}",
-                "run.duration": _PATIENCE * windows.scene.run.duration / windows.cycles.total,
-            }
-        )
+        changed = windows.scene.replace(windows.coverage.changes(state))
+        scene = part_of(changed, 1, windows.cycles.total, _PATIENCE)
         found = solved(scene, windows.backend, here.origin)
         if stands(found, scene) or found.checkpoint is None:
             raise Sticks(here.passages + self.cycle)

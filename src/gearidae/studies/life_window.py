@@ -29,6 +29,7 @@ __all__ = [
     "Cycles",
     "Window",
     "gained",
+    "part_of",
     "run_window",
     "solved",
     "stands",
@@ -39,7 +40,7 @@ __all__ = [
 
 Floats: TypeAlias = NDArray[np.float64]
 
-_PATIENCE: Final = 3.0
+_PATIENCE: Final = 4.0
 """Time that each part of a window gets, over that of its cycles at the steady speed."""
 _MOST_BLOCKS: Final = 8
 """Blocks after which a window is taken as it is."""
@@ -70,7 +71,7 @@ class Cycles:
 
 
 def window_scene(scene: Scene, cycles: Cycles, places: int) -> Scene:
-    """Return the scene of a window: it ends after its cycles, and keeps the exposures."""
+    """Return the scene of a window, with the time of all of it: it keeps the exposures."""
     assert scene.gears is not None
     assert scene.initial is not None
     speed = steady_speed(scene)
@@ -158,17 +159,15 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
     SolverError
         If a run could not be finished.
     """
-    assert scene.gears is not None
-    teeth = scene.gears.gear_teeth
     before: Solution | None = None
     origin: engine.Origin | None = None
     if cycles.settle:
-        first = scene.replace({"run.stop": f"turns {cycles.settle / teeth!r}"})
+        first = part_of(scene, cycles.settle, cycles.total)
         before = solved(first, backend)
         if stands(before, first) or before.checkpoint is None:
             return Window(before)
         origin = engine.end_of(first, before.checkpoint, 0.0)
-    block = scene.replace({"run.stop": f"turns {cycles.count / teeth!r}"})
+    block = part_of(scene, cycles.count, cycles.total)
     tables: list[Floats] = []
     while True:
         found = solved(block, backend, origin)
@@ -180,6 +179,27 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
         if exposures is not None:
             return Window(found, exposures, origin)
         before = found
+
+
+def part_of(scene: Scene, cycles: int, total: int, patience: float = 1.0) -> Scene:
+    """Return the scene of some of a window's mesh cycles, with their share of its time.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `window_scene`.
+    cycles, total : int
+        Mesh cycles of the part and of the window.
+    patience : float, optional
+        Times that share.
+    """
+    assert scene.gears is not None
+    return scene.replace(
+        {
+            "run.stop": f"turns {cycles / scene.gears.gear_teeth!r}",
+            "run.duration": patience * scene.run.duration * cycles / total,
+        }
+    )
 
 
 def steady_exposures(blocks: Sequence[Floats], tolerance: float) -> Floats | None:
