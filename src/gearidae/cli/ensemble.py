@@ -22,7 +22,7 @@ from gearidae.runs.executors import check_jobs, dask_executor, own_executor
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["executor_for", "run_ensemble"]
+__all__ = ["executor_for", "run_ensemble", "show_ensemble"]
 
 _SHOWN = ("min_gear_speed", "max_gear_speed", "largest_mesh_force", "smallest_mesh_force", "stick_time")
 _WORTH_PROCESSES = 64
@@ -86,8 +86,27 @@ def run_ensemble(
             overwrite=overwrite,
             resume=resume,
         )
+    return show_ensemble(ds, "Ensemble", target)
+
+
+def show_ensemble(ds: xr.Dataset, what: str, target: Path) -> int:
+    """Show what came of an ensemble.
+
+    Parameters
+    ----------
+    ds : Dataset
+    what : str
+        How to call it.
+    target : Path
+        Where it is.
+
+    Returns
+    -------
+    int
+        Exit code; `UNFINISHED` if any run did not reach its end.
+    """
     show_rows(_rows(ds))
-    say(f"Ensemble: {target}")
+    say(f"{what}: {target}")
     failed = np.flatnonzero(ds["status"].values != "finished")
     for number in failed[:_NAMED]:
         one = ds.isel(member=number)

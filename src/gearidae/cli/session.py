@@ -21,7 +21,9 @@ from gearidae.errors import GearidaeError, SceneError
 
 __all__ = ["app", "session"]
 
-_WRITERS = ("coating-map", "ensemble", "init", "operating-map", "plot", "report", "run", "sweep")
+_WRITERS = (
+    "calibrate", "coating-map", "ensemble", "init", "operating-map", "plot", "predict", "report", "run", "sweep"
+)  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
 log = logging.getLogger("gearidae")

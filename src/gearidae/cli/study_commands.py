@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
 from gearidae.cli import completing
 from gearidae.cli.app import Case, Dask, Output, Overwrite, Settings, app
 
-__all__ = ["coating_map", "ensemble", "life", "operating_map", "threshold"]
+__all__ = ["calibrate", "coating_map", "ensemble", "life", "operating_map", "predict", "threshold"]
 
 
 @app.command(name="coating-map")
@@ -130,6 +131,75 @@ def ensemble(
     drawn = {"size": size, "design": design, "seed": seed, "of": of}
     given = settings or []
     return run_ensemble(str(case), vary, drawn, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+
+
+@app.command
+def calibrate(
+    case: Case,
+    *,
+    vary: Annotated[
+        list[str],
+        Parameter(
+            help="Key and what was known of it, key=normal(450 nm, 50 nm), as for ensemble; repeatable.",
+            consume_multiple=False,
+            completer=completing.keys,
+        ),
+    ],
+    seen: Annotated[
+        list[str] | None,
+        Parameter(
+            help="Observation and its conditions: 'sticks=true; drive.torque=4.2e-18', "
+            "'ring_frequency=5.2 kHz +- 0.1 kHz'; repeatable.",
+            consume_multiple=False,
+        ),
+    ] = None,
+    observations: Annotated[Path | None, Parameter(help="File with more of them: .toml or .csv.")] = None,
+    method: Annotated[
+        Literal["auto", "grid", "emcee"], Parameter(help="By default a grid for up to two keys, else emcee.")
+    ] = "auto",
+    points: Annotated[int, Parameter(help="Cells a key of the grid.")] = 41,
+    steps: Annotated[int, Parameter(help="Steps of each of emcee's walkers.")] = 500,
+    seed: Annotated[int, Parameter(help="Seed of emcee.")] = 0,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    dask: Dask = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished calibration of the output file.")] = False,
+    overwrite: Overwrite = False,
+) -> int:
+    """Find out what observations of gears say about keys that are not known: their posterior.
+
+    Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
+    """
+    from gearidae.cli.calibrate import calibrate_case
+
+    options: dict[str, object] = {"method": method, "points": points, "steps": steps, "seed": seed}
+    options |= {"jobs": jobs, "resume": resume, "overwrite": overwrite}
+    return calibrate_case(str(case), vary, seen or [], observations, options, output, settings or [], dask)
+
+
+@app.command
+def predict(
+    case: Case,
+    *,
+    posterior: Annotated[Path, Parameter(help="Posterior, from gearidae calibrate.")],
+    size: Annotated[int, Parameter(help="Number of runs.")],
+    seed: Annotated[int, Parameter(help="Seed of the draws.")] = 0,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    dask: Dask = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished prediction in the output file.")] = False,
+    overwrite: Overwrite = False,
+) -> int:
+    """Run a scene with the keys that were calibrated drawn from their posterior: how often it sticks.
+
+    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+    """
+    from gearidae.cli.calibrate import predict_case
+
+    options = {"size": size, "seed": seed, "jobs": jobs, "resume": resume, "overwrite": overwrite}
+    return predict_case(str(case), posterior, options, output, settings or [], dask)
 
 
 @app.command

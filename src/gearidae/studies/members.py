@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, sticking, verdict_codes
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import SweepPlan
-from gearidae.scene import Scene
 
 if TYPE_CHECKING:
+    from gearidae.scene import Scene
     from gearidae.studies.distributions import Distribution
 
 __all__ = ["along_members", "member_plan"]
@@ -55,20 +55,12 @@ def member_plan(
     refused: list[SceneError] = []
     for row in zip(*columns.values(), strict=True):
         try:
-            scenes.append(_member(base, dict(zip(columns, row, strict=True))))
+            scenes.append(base.replace(dict(zip(columns, row, strict=True))))
         except SceneError as error:
             refused.append(error)
     if refused:
         raise _refusal(refused, len(scenes) + len(refused), drawn_from)
     return SweepPlan(base, (columns,), scenes)
-
-
-def _member(base: Scene, changes: Mapping[str, float]) -> Scene:
-    """Change some keys; tables that stay as they are are shared, so that a scene takes a few kilobytes."""
-    scene = base.replace(changes)
-    changed = {key.partition(".")[0] for key in changes}
-    shared = {name: getattr(base, name) for name in type(base).model_fields if name not in changed}
-    return scene.model_copy(update=shared)
 
 
 def _refusal(refused: Sequence[SceneError], count: int, drawn_from: Mapping[str, str]) -> SceneError:
