@@ -20,22 +20,20 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
 import xarray as xr
 
 import gearidae as gd
 from gearidae import engine
 from gearidae_bench.long import peak_memory
 
-__all__ = ["Cost", "cost_table", "dask_cost", "ensemble_cost", "same_runs"]
+__all__ = ["BEGUN", "VARY", "Cost", "Watch", "cost_row", "ensemble_cost", "same_runs"]
 
 VARY: Final = {"coating.sam_fraction": "uniform(0.5, 1)", "drive.torque": "normal(4.5e-18, 1e-19)"}
-_BEGUN: Final = 4
+BEGUN: Final = 4
 """Members of the ensemble that is not measured, for each run at a time."""
 
 
@@ -78,26 +76,33 @@ class Cost:
         return self.processor / self.wall
 
 
-class _Watch:
-    """Counts the processor time of the engine in the threads of this process."""
+class Watch:
+    """Counts the processor time of the engine in the threads of this process.
+
+    Attributes
+    ----------
+    spent : float
+        So far [s].
+    """
 
     def __init__(self) -> None:
         self.spent, self._busy, self._inner = 0.0, threading.Lock(), engine.solve
 
-    def __call__(self, *arguments: Any, **settings: Any) -> Any:
+    def begin(self) -> None:
+        """Stand in the engine's place."""
+        engine.solve = self._solve
+
+    def end(self) -> None:
+        """Give the place back."""
+        engine.solve = self._inner
+
+    def _solve(self, *arguments: Any, **settings: Any) -> Any:
         began = time.thread_time()
         try:
             return self._inner(*arguments, **settings)
         finally:
             with self._busy:
                 self.spent += time.thread_time() - began
-
-    def __enter__(self) -> _Watch:
-        engine.solve = self
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        engine.solve = self._inner
 
 
 def ensemble_cost(
@@ -130,64 +135,19 @@ def ensemble_cost(
         The ensemble.
     """
     settings: dict[str, Any] = {"jobs": jobs, "executor": executor, "archive": archive, "overwrite": True}
-    gd.studies.ensemble(scene, VARY, _BEGUN * jobs, **settings)
+    gd.studies.ensemble(scene, VARY, BEGUN * jobs, **settings)
     used, solved = elsewhere()
     began, processor = time.perf_counter(), time.process_time()
-    with _Watch() as watch:
+    watch = Watch()
+    watch.begin()
+    try:
         ds = gd.studies.ensemble(scene, VARY, members, **settings)
+    finally:
+        watch.end()
     wall, own = time.perf_counter() - began, time.process_time() - processor
     now_used, now_solved = elsewhere()
     solving = watch.spent + now_solved - solved
     return Cost(members, wall, own + now_used - used, solving, 1e-6 * peak_memory()), ds
-
-
-def dask_cost(
-    scene: gd.Scene, members: int, workers: int, archive: Path
-) -> tuple[Cost, xr.Dataset, list[float]]:
-    """Measure one ensemble on a Dask cluster of processes on this machine, each with one thread.
-
-    Returns
-    -------
-    Cost
-        With the largest resident memory of this process, which holds the scheduler too.
-    Dataset
-        The ensemble.
-    list of float
-        Largest resident memory of each worker [MB].
-    """
-    distributed: Any = import_module("distributed")
-    with (
-        distributed.LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster, set_as_default=False) as client,
-    ):
-        client.run(_begin, scene)
-        cost, ds = ensemble_cost(
-            scene,
-            members,
-            workers,
-            archive,
-            executor=client.get_executor(),
-            elsewhere=lambda: tuple(np.sum(list(client.run(_so_far).values()), axis=0).tolist()),
-        )
-        peaks = [1e-6 * peak for peak in client.run(peak_memory).values()]
-    return cost, ds, peaks
-
-
-def _begin(scene: gd.Scene) -> None:
-    """Let a worker make what its runs share, and watch its engine."""
-    from gearidae_bench import ensemble_cost
-
-    gd.studies.ensemble(scene, VARY, _BEGUN, jobs=1)
-    ensemble_cost._Watch().__enter__()
-
-
-def _so_far() -> tuple[float, float]:
-    """Processor time of a worker and of its engine so far [s]."""
-    from gearidae import engine
-
-    return time.process_time(), float(engine.solve.spent)  # type: ignore[attr-defined]
 
 
 def same_runs(one: xr.Dataset, other: xr.Dataset) -> bool:
@@ -197,27 +157,29 @@ def same_runs(one: xr.Dataset, other: xr.Dataset) -> bool:
     return bool(first.identical(second))
 
 
-def cost_table(costs: dict[str, Cost]) -> str:
-    """Write costs as lines of text.
+HEADINGS: Final = (
+    " " * 27 + "members    wall s   engine ms/run   beside ms/run   over solver   cores   peak MB"
+)
+"""Of `cost_row`."""
+
+
+def cost_row(name: str, cost: Cost) -> str:
+    """Write a cost as a line of text, below `HEADINGS`.
 
     Parameters
     ----------
-    costs : dict of str to Cost
+    name : str
+    cost : Cost
 
     Returns
     -------
     str
     """
-    lines = [
-        "                           members    wall s   engine ms/run   beside ms/run   over solver   cores   peak MB"
-    ]
-    for name, each in costs.items():
-        engine = 1e3 * each.solving / each.members
-        lines.append(
-            f"{name:26s} {each.members:7d} {each.wall:9.1f} {engine:15.2f} {1e3 * each.beside:15.2f} "
-            f"{each.over_solver:13.3f} {each.cores:7.2f} {each.peak:9.0f}"
-        )
-    return "\n".join(lines)
+    engine = 1e3 * cost.solving / cost.members
+    return (
+        f"{name:26s} {cost.members:7d} {cost.wall:9.1f} {engine:15.2f} {1e3 * cost.beside:15.2f} "
+        f"{cost.over_solver:13.3f} {cost.cores:7.2f} {cost.peak:9.0f}"
+    )
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -225,26 +187,29 @@ def main(arguments: Sequence[str]) -> int:
     members = int(arguments[0]) if arguments else 1000
     jobs = int(arguments[1]) if len(arguments) > 1 else 2
     scene = gd.preset("teodorescu2009_low_speed")
-    costs: dict[str, Cost] = {}
-    words = [f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start"]
+    costs: dict[int, Cost] = {}
+    _say(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start\n{HEADINGS}")
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "ensemble.nc"
-        costs[f"in memory, jobs {jobs}"], _ = ensemble_cost(scene, members, jobs)
+        _say(cost_row(f"in memory, jobs {jobs}", ensemble_cost(scene, members, jobs)[0]))
         for number in sorted({1, jobs}):
-            name = f"into an archive, jobs {number}"
-            costs[name], local = ensemble_cost(scene, members, number, target)
-        alone, together = costs["into an archive, jobs 1"], costs[f"into an archive, jobs {jobs}"]
-        words.append(f"efficiency of {jobs} threads: {alone.wall / (jobs * together.wall):.3f}")
+            costs[number], local = ensemble_cost(scene, members, number, target)
+            _say(cost_row(f"into an archive, jobs {number}", costs[number]))
+        _say(f"efficiency of {jobs} threads: {costs[1].wall / (jobs * costs[jobs].wall):.3f}")
         if find_spec("distributed") is not None:
-            name = f"Dask, {jobs} workers"
-            costs[name], remote, peaks = dask_cost(scene, members, jobs, target)
-            words += [
-                f"efficiency of {jobs} Dask workers: {alone.wall / (jobs * costs[name].wall):.3f}",
-                f"largest memory of a worker: {max(peaks):.0f} MB",
-                f"the cluster's runs are those of the threads to the last bit: {same_runs(local, remote)}",
-            ]
-    sys.stdout.write("\n".join([cost_table(costs), *words, ""]))
+            from gearidae_bench.ensemble_on_dask import dask_cost
+
+            cost, remote, peaks = dask_cost(scene, members, jobs, target)
+            _say(cost_row(f"Dask, {jobs} workers", cost))
+            _say(f"efficiency of {jobs} Dask workers: {costs[1].wall / (jobs * cost.wall):.3f}")
+            _say(f"largest memory of a worker: {max(peaks):.0f} MB")
+            _say(f"the cluster's runs are those of the threads to the last bit: {same_runs(local, remote)}")
     return 0
+
+
+def _say(text: str) -> None:
+    sys.stdout.write(f"{text}\n")
+    sys.stdout.flush()
 
 
 if __name__ == "__main__":

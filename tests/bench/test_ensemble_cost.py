@@ -6,7 +6,8 @@ import pytest
 
 import gearidae as gd
 from gearidae import engine
-from gearidae_bench.ensemble_cost import cost_table, dask_cost, ensemble_cost, same_runs
+from gearidae_bench.ensemble_cost import cost_row, ensemble_cost, same_runs
+from gearidae_bench.ensemble_on_dask import dask_cost
 
 SHORT = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3})
 
@@ -20,7 +21,7 @@ def test_parts_add_up_and_the_archive_is_written(tmp_path):
     assert 0.0 < cost.beside < cost.processor
     assert cost.over_solver == pytest.approx(1.0 + 6 * cost.beside / cost.solving)
     assert cost.cores <= 2.5  # threads of the linear algebra may help
-    assert f"{cost.peak:.0f}" in cost_table({"short": cost})
+    assert f"{cost.peak:.0f}" in cost_row("short", cost)
 
 
 def test_a_cluster_counts_the_solver_of_its_workers(tmp_path):

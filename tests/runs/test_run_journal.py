@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import gearidae as gd
+from gearidae import engine
 from gearidae.runs.kept_runs import KeptRuns, folder_beside
 from gearidae.runs.run_journal import RunJournal
 from sweeps import without_times
@@ -16,6 +20,21 @@ from sweeps import without_times
 KEYS = [f"{number:064x}" for number in range(4)]
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3})
 VARY = {"coating.sam_fraction": "uniform(0.4, 1)"}
+
+SHOT = """
+import os, pathlib, signal, sys
+import gearidae as gd
+
+low = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3})
+
+def shoot(done, total):
+    path = pathlib.Path(sys.argv[1] + ".runs", "runs.jsonl")
+    if path.exists() and len(path.read_text().splitlines()) >= 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+gd.studies.ensemble(low, {"coating.sam_fraction": "uniform(0.4, 1)"}, 8, jobs=int(sys.argv[2]),
+                    archive=sys.argv[1], progress=shoot)
+"""
 
 
 @pytest.fixture
@@ -114,6 +133,23 @@ def test_members_are_lines_of_one_file_and_damaged_ones_are_computed_again(cut_o
         ds = gd.studies.ensemble(LOW, VARY, 8, jobs=1, archive=cut_off, resume=True)
     xr.testing.assert_identical(without_times(ds), without_times(gd.studies.ensemble(LOW, VARY, 8, jobs=1)))
     assert list(cut_off.parent.iterdir()) == [cut_off]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_killed_ensemble_goes_on_and_equals_one_that_was_not(tmp_path, monkeypatch, jobs):
+    """The process shoots itself as soon as three members are kept; none of these is computed again."""
+    archive = tmp_path / "out.nc"
+    shot = subprocess.run([sys.executable, "-c", SHOT, archive, str(jobs)], capture_output=True, check=False)
+    assert shot.returncode == -signal.SIGKILL, shot.stderr
+    whole = gd.studies.ensemble(LOW, VARY, 8, jobs=1)
+    computed, solve = [], engine.solve
+    monkeypatch.setattr(
+        engine, "solve", lambda scene, **options: computed.append(1) or solve(scene, **options)
+    )
+    ds = gd.studies.ensemble(LOW, VARY, 8, jobs=1, archive=archive, resume=True)
+    assert len(computed) == 8 - 3
+    xr.testing.assert_identical(without_times(ds), without_times(whole))
+    assert list(tmp_path.iterdir()) == [archive]
 
 
 def test_members_of_others_stay(cut_off):
