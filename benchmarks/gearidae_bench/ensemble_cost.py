@@ -199,11 +199,17 @@ def main(arguments: Sequence[str]) -> int:
         if find_spec("distributed") is not None:
             from gearidae_bench.ensemble_on_dask import dask_cost
 
-            cost, remote, peaks = dask_cost(scene, members, jobs, target)
-            _say(cost_row(f"Dask, {jobs} workers", cost))
-            _say(f"efficiency of {jobs} Dask workers: {costs[1].wall / (jobs * cost.wall):.3f}")
-            _say(f"largest memory of a worker: {max(peaks):.0f} MB")
-            _say(f"the cluster's runs are those of the threads to the last bit: {same_runs(local, remote)}")
+            there = dask_cost(scene, members, jobs, target)
+            _say(cost_row(f"Dask, {jobs} workers", there.cost))
+            _say(f"efficiency of {jobs} Dask workers: {costs[1].wall / (jobs * there.cost.wall):.3f}")
+            _say(
+                f"the cluster takes {100.0 * there.idle:.1f} % of a core when idle; without that "
+                f"{1e3 * there.beside:.2f} ms beside the engine a run"
+            )
+            _say(f"largest memory of a worker: {there.worker_peak:.0f} MB")
+            _say(
+                f"the cluster's runs are those of the threads to the last bit: {same_runs(local, there.runs)}"
+            )
     return 0
 
 

@@ -27,8 +27,9 @@ def test_parts_add_up_and_the_archive_is_written(tmp_path):
 def test_a_cluster_counts_the_solver_of_its_workers(tmp_path):
     pytest.importorskip("distributed")
     _, local = ensemble_cost(SHORT, 6, 1)
-    cost, remote, peaks = dask_cost(SHORT, 6, 1, tmp_path / "out.nc")
-    assert same_runs(local, remote)
-    assert not same_runs(local, remote.isel(member=slice(None, None, -1)))
-    assert 0.0 < cost.solving < cost.processor
-    assert len(peaks) == 1
+    there = dask_cost(SHORT, 6, 1, tmp_path / "out.nc")
+    assert same_runs(local, there.runs)
+    assert not same_runs(local, there.runs.isel(member=slice(None, None, -1)))
+    assert 0.0 < there.cost.solving < there.cost.processor
+    assert 0.0 < there.idle < 1.0
+    assert there.beside == pytest.approx(there.cost.beside - there.idle * there.cost.wall / 6)
