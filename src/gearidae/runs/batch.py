@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import replace
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Batch"]
 
+_AHEAD: Final = 8
+"""Runs that wait for each thread: all at once would take more memory than what they leave behind."""
 _ALONE: Final = 16
 """Runs that are sent alone to other processes, before it is known how long they take."""
 _TOGETHER: Final = 0.5
@@ -84,14 +87,22 @@ class Batch:
                 self._store(number, Left(solution, **judged))
         self._tell()
 
-    def run(self, executor: Executor | None, *, in_process: bool) -> bool:
-        """Compute all runs; return whether Ctrl-C ended it early."""
+    def run(self, executor: Executor | None, *, threads: int = 0) -> bool:
+        """Compute all runs; return whether Ctrl-C ended it early.
+
+        Parameters
+        ----------
+        executor : Executor or None
+            None for one run after the other, here.
+        threads : int, optional
+            How many threads of this process the executor has; 0 if it is of other processes.
+        """
         try:
             if executor is None:
                 for number in self._missing():
                     self._finish(number, self._outcome_here(number))
             else:
-                self._submit(executor, in_process=in_process)
+                self._submit(executor, threads)
         except KeyboardInterrupt:
             self._cancelled.set()
             return True
@@ -114,31 +125,30 @@ class Batch:
     def _missing(self) -> list[int]:
         return [number for number in range(len(self._scenes)) if number not in self._done]
 
-    def _submit(self, executor: Executor, *, in_process: bool) -> None:
+    def _submit(self, executor: Executor, threads: int) -> None:
         pending: dict[Future[list[Left]], Sequence[int]] = {}
         ended: SimpleQueue[Future[list[Left]]] = SimpleQueue()
 
         def submit(numbers: Sequence[int]) -> None:
-            future = self._future(executor, numbers, in_process=in_process)
+            future = self._future(executor, numbers, in_process=threads > 0)
             pending[future] = numbers
             future.add_done_callback(ended.put)
 
-        missing = self._missing()
-        begun = len(missing) if in_process else _ALONE
-        waiting = missing[begun:]
+        waiting = deque(self._missing())
         try:
-            for number in missing[:begun]:
-                submit([number])
+            for _ in range(min(len(waiting), _AHEAD * threads or _ALONE)):
+                submit([waiting.popleft()])
             while pending:
                 future = ended.get()
                 for number, left in self._outcomes(future, pending[future], submit):
                     self._finish(number, left)
                 # only now: it holds the runs' samples, and Ctrl-C may have kept them from being stored
                 del pending[future]
-                if waiting and (size := self._group_size() or (0 if pending else 1)):
-                    for first in range(0, len(waiting), size):
-                        submit(waiting[first : first + size])
-                    waiting = []
+                if threads and waiting:
+                    submit([waiting.popleft()])
+                elif waiting and (size := self._group_size() or (0 if pending else 1)):
+                    while waiting:
+                        submit([waiting.popleft() for _ in range(min(size, len(waiting)))])
         except BaseException:
             self._cancelled.set()
             for future, numbers in pending.items():
