@@ -14,7 +14,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-__all__ = ["BESIDE", "eight_powers", "three_slopes"]
+__all__ = ["BESIDE", "eight_powers", "sum_and_slope", "three_slopes"]
 
 _LANES = 8
 BESIDE = 4
@@ -51,6 +51,18 @@ class _Lanes:
         square = self._builder.fmul(u, u)
         return self.spread(u), self.spread(square), self.spread(self._builder.fmul(square, square))
 
+    def beside(self, values: list[Any]) -> Any:
+        """Put numbers into the first lanes, and zeros into the others."""
+        result = ir.Constant(self._vector, [0.0] * self._count)
+        for k, value in enumerate(values):
+            result = self._builder.insert_element(result, value, ir.Constant(ir.IntType(32), k))
+        return result
+
+    def total(self, vector: Any) -> Any:
+        """Sum of the first three lanes."""
+        a, b, c = self.parts(vector, 3)
+        return self._builder.fadd(self._builder.fadd(a, b), c)
+
     def parts(self, vector: Any, count: int) -> list[Any]:
         """Return the numbers of the first lanes."""
         return [self._builder.extract_element(vector, ir.Constant(ir.IntType(32), k)) for k in range(count)]
@@ -78,23 +90,30 @@ eight_powers: Any = intrinsic(_eight_powers)
 """Eight polynomials of degree seven at u: their coefficients of u^0 lie at ``start``, those of u^1 after these, ..."""
 
 
+def _values_and_slopes(builder: Any, lanes: _Lanes, u: Any) -> tuple[Any, Any]:
+    """Values and derivatives of the lanes' polynomials of degree seven."""
+    u1, u2, u4 = lanes.powers(u)
+    c = [lanes.power(k) for k in range(8)]
+    n = [
+        builder.fmul(lanes.spread(ir.Constant(ir.DoubleType(), float(k))), c[k]) if k > 1 else c[k]
+        for k in range(8)
+    ]
+    low = lanes.line(lanes.line(c[0], c[1], u1), lanes.line(c[2], c[3], u1), u2)
+    high = lanes.line(lanes.line(c[4], c[5], u1), lanes.line(c[6], c[7], u1), u2)
+    slope = lanes.line(lanes.line(n[1], n[2], u1), lanes.line(n[3], n[4], u1), u2)
+    slope = lanes.line(slope, lanes.line(lanes.line(n[5], n[6], u1), n[7], u2), u4)
+    return lanes.line(low, high, u4), slope
+
+
 def _three_slopes(typing: Any, table: Any, start: Any, u: Any) -> Any:
     """Type and code of `three_slopes`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], BESIDE)
-        u1, u2, u4 = lanes.powers(values[2])
-        c = [lanes.power(k) for k in range(8)]
-        n = [
-            builder.fmul(lanes.spread(ir.Constant(ir.DoubleType(), float(k))), c[k]) if k > 1 else c[k]
-            for k in range(8)
-        ]
-        low = lanes.line(lanes.line(c[0], c[1], u1), lanes.line(c[2], c[3], u1), u2)
-        high = lanes.line(lanes.line(c[4], c[5], u1), lanes.line(c[6], c[7], u1), u2)
-        slope = lanes.line(lanes.line(n[1], n[2], u1), lanes.line(n[3], n[4], u1), u2)
-        slope = lanes.line(slope, lanes.line(lanes.line(n[5], n[6], u1), n[7], u2), u4)
-        parts = lanes.parts(lanes.line(low, high, u4), 3) + lanes.parts(slope, 3)
-        return context.make_tuple(builder, signature.return_type, parts)
+        value, slope = _values_and_slopes(builder, lanes, values[2])
+        return context.make_tuple(
+            builder, signature.return_type, lanes.parts(value, 3) + lanes.parts(slope, 3)
+        )
 
     result = types.UniTuple(types.float64, 6)  # type: ignore[no-untyped-call]
     return result(table, types.uintp, types.float64), evaluate
@@ -102,3 +121,21 @@ def _three_slopes(typing: Any, table: Any, start: Any, u: Any) -> Any:
 
 three_slopes: Any = intrinsic(_three_slopes)
 """Three polynomials of degree seven at u, then their derivatives: `BESIDE` coefficients of u^0 lie at ``start``, ..."""
+
+
+def _sum_and_slope(typing: Any, table: Any, start: Any, u: Any, shares: Any) -> Any:
+    """Type and code of `sum_and_slope`."""
+
+    def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], BESIDE)
+        shares = lanes.beside(cgutils.unpack_tuple(builder, values[3]))  # type: ignore[no-untyped-call]
+        both = _values_and_slopes(builder, lanes, values[2])
+        sums = [lanes.total(builder.fmul(shares, each)) for each in both]
+        return context.make_tuple(builder, signature.return_type, sums)
+
+    result = types.UniTuple(types.float64, 2)  # type: ignore[no-untyped-call]
+    return result(table, types.uintp, types.float64, shares), evaluate
+
+
+sum_and_slope: Any = intrinsic(_sum_and_slope)
+"""Sum of three polynomials, laid out as for `three_slopes`, times a share each at u, and its derivative."""

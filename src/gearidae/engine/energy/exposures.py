@@ -51,7 +51,8 @@ __all__ = [
 QUANTITIES = 2 * MATERIALS + 2
 """Sums of a place: contacts and adhesion work of each material, sliding work, largest pressure."""
 MOST_STEPS = 6
-"""Accepted steps over which sliding work is integrated at once; where adhesion matters, single ones are."""
+"""Accepted steps over which sliding work is integrated at once; where adhesion matters and the contact may push, single
+ones are."""
 ADHESIVE = 0.1
 """Power of a pair that pulls, over that of the pair that pushes most, from which on adhesion matters."""
 FADING = 0.9
@@ -67,7 +68,7 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if m.scene.places == 0:
         return
     m.work.exposing.time, m.work.exposing.begun = t, 1
-    _wait(m, 1)
+    _wait(m, 1, 1)
     for k in range(m.scene.histories):
         m.work.exposing.pair[k].known = 0
     _note_forces(m, t, y)
@@ -82,7 +83,7 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _slide(m, t, k, sliding, noted.place, (noted.force, noted.slope * noted.gap_rate))
 
 
-@compiled(inline=True)
+@compiled
 def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Add what the flanks have been exposed to since the last call, up to an accepted time.
 
@@ -103,6 +104,7 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _note_forces(m, t, y)
     sliding = _sliding(m, y, yp[V], yp[W])
     moved, steps, level = y[U] - m.work.notes.travel, MOST_STEPS, 0.0
+    adhesive = 0
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         k = noted.history
@@ -118,10 +120,13 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         force = noted.force + noted.slope * widened
         _slide(m, t, k, sliding, noted.place, (force, noted.slope * noted.gap_rate))
         level = max(level, abs(own.power))
-        if own.adhesive != 0 or own.pull < -ADHESIVE * exposing.level:
-            steps = 1
+        if _adheres(m, k):
+            adhesive = 1
+            # what pulls while it opens does not push before it has turned round
+            if own.power >= 0.0 or m.state.history[k].direction <= 0.0:
+                steps = 1
     exposing.time, exposing.level = t, max(level, FADING * exposing.level)
-    _wait(m, steps)
+    _wait(m, steps, adhesive)
 
 
 @compiled(inline=True)
@@ -131,16 +136,17 @@ def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
     exposing.steps += 1
     if exposing.steps >= exposing.wanted:
         follow_exposures(m, t, y, yp)
-    m.work.notes.wanted = 1 if exposing.steps + 1 >= exposing.wanted else 0
+    last = exposing.steps + 1 >= exposing.wanted
+    m.work.notes.wanted = 1 if last or exposing.adhesive != 0 else 0
 
 
 @compiled(inline=True)
-def _wait(m: Model, steps: int) -> None:
-    """Want to follow the exposures after some steps, and have the forces noted in the last of them."""
-    m.work.exposing.steps, m.work.exposing.wanted = 0, steps
-    m.work.notes.wanted = (
-        1 if steps == 1 and m.scene.nodes == 0 else 0
-    )  # those of elastic contacts are evaluated
+def _wait(m: Model, steps: int, adhesive: int) -> None:
+    """Want to follow the exposures after some steps, and have the forces noted in the last, or in all of them."""
+    exposing = m.work.exposing
+    exposing.steps, exposing.wanted, exposing.adhesive = 0, steps, adhesive
+    noted = (steps == 1 or adhesive != 0) and m.scene.nodes == 0  # those of elastic contacts are evaluated
+    m.work.notes.wanted = 1 if noted else 0
 
 
 @compiled
@@ -152,11 +158,13 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     own = m.work.exposing.pair[k]
     if own.known == 0 or own.pair != pair or own.time < m.work.exposing.time:
         return
-    gap, _, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     if gap >= m.scene.cutoff:
         return
     if m.state.history[k].direction > 0.0:
         own.turned = 1
+        if m.work.exposing.adhesive != 0:
+            m.work.exposing.wanted = 1
         for material in range(MATERIALS):
             law = m.scene.material[material]
             if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
@@ -165,15 +173,17 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     _join(m, y, k, gap, inside)
     own.adhesive = 1 if own.pull < -ADHESIVE * m.work.exposing.level else 0
     own.pull = 0.0
-    scale = m.scene.places_per_pitch
-    if own.adhesive != 0 or gap < own.lowest or int(scale * inside) != int(scale * own.place):
+    at = _place(m, inside)
+    if own.adhesive != 0 or gap < own.lowest or at != own.at:
         own.lowest = min(own.lowest, gap)
-        force, _ = _force(m, t, y, coast, pair, k)
+        if m.scene.nodes == 0:
+            rate = 0.0  # but for rounding, which is not to send the history through this point
+        force, _ = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
         if own.adhesive != 0:  # the slope of the force has a jump here
             point = m.work.track.point[m.work.track.last]
             _slide(m, t, k, _sliding(m, y, point.travel_bend, point.speed_rate), inside, (force, 0.0))
         elif force > 0.0:
-            _note_pressure(m, own.row + PRESSURE * m.scene.places, inside, force)
+            _note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force)
 
 
 @compiled
@@ -187,7 +197,8 @@ def close_exposures_at(place: int, t: float, y: Floats, yp: Floats) -> None:
 def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     """Begin with a pair in which nothing is in contact."""
     own = m.work.exposing.pair[k]
-    own.known, own.pair, own.time, own.place = 1, pair, t, inside
+    own.known, own.pair, own.time = 1, pair, t
+    own.place, own.at = inside, _place(m, inside)
     own.turned, own.adhesive, own.lowest = 0, 0, m.scene.cutoff
     own.power = own.power_rate = own.pull = 0.0
     for material in range(MATERIALS):
@@ -208,17 +219,27 @@ def _note_forces(m: Model, t: float, y: Floats) -> None:
         k = history_of(m, coast, pair)
         gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
         if gap < m.scene.cutoff and m.state.history[k].pair == pair:
-            note_force(m, k, pair, inside, (gap, rate), _force(m, t, y, coast, pair, k))
+            force = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
+            note_force(m, k, pair, inside, (gap, rate), force)
 
 
 @compiled
-def _force(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> tuple[float, float]:
-    """Force of a pair and its slope in the gap."""
-    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+def _force(
+    m: Model, t: float, y: Floats, which: tuple[int, int, int], at: tuple[float, float, float]
+) -> tuple[float, float]:
+    """Force of a pair, given by flank, number and history, with a gap, a gap rate and a place; slope in the gap."""
+    (coast, pair, k), (gap, rate, inside) = which, at
     if m.scene.nodes > 0:
         note_shares(m, k, coast, pair, inside)
         return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
     return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
+
+
+@compiled(inline=True)
+def _adheres(m: Model, k: int) -> bool:
+    """Whether a pair pulls, or has pulled before its last turning point, by what matters over the largest power."""
+    own = m.work.exposing.pair[k]
+    return bool(own.adhesive != 0 or own.pull < -ADHESIVE * m.work.exposing.level)
 
 
 @compiled(inline=True)
@@ -264,14 +285,24 @@ def _slide(
     if speed < 0.0:
         speed, speed_rate = -speed, -speed_rate
     power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
-    if power > 0.0 or own.power > 0.0 or own.power_rate > 0.0 > power_rate:
+    at, third = _place(m, inside), (t - own.time) / 3.0
+    # between ends that pull the power's cubic may rise above zero, but not above its control points
+    rises = (
+        own.power_rate > 0.0 > power_rate
+        and max(own.power + third * own.power_rate, power - third * power_rate) > 0.0
+    )
+    if power > 0.0 or own.power > 0.0 or rises:
         work = _pushing(t - own.time, own.power, own.power_rate, power, power_rate)
-        _spread(m, own.row + SLIDING * m.scene.places, own.place, inside, work)
+        row = own.row + SLIDING * m.scene.places
+        if at == own.at:
+            m.rows[row + at] += work
+        else:
+            _divide(m, row, own.place, inside, work)
         if force[0] > 0.0:
-            _note_pressure(m, own.row + PRESSURE * m.scene.places, inside, force[0])
-    if int(m.scene.places_per_pitch * inside) != int(m.scene.places_per_pitch * own.place):
+            _note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force[0])
+    if at != own.at:
         own.lowest = m.scene.cutoff  # another place
-    own.time, own.place, own.power, own.power_rate = t, inside, power, power_rate
+    own.time, own.place, own.at, own.power, own.power_rate = t, inside, at, power, power_rate
     own.pull = min(own.pull, power)
 
 
@@ -339,29 +370,34 @@ def _join(m: Model, y: Floats, k: int, gap: float, inside: float) -> None:
 
 
 @compiled(inline=True)
+def _place(m: Model, inside: float) -> int:
+    """Index of the place along the path of contact, whose end belongs to the last one."""
+    return min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
+
+
+@compiled(inline=True)
 def _spread(m: Model, row: int, before: float, after: float, amount: float) -> None:
     """Add an amount to the places that a contact has passed, in proportion to the way in each."""
-    places, scale = m.scene.places, m.scene.places_per_pitch
-    first, last = min(int(scale * before), places - 1), min(int(scale * after), places - 1)
-    if first == last:
-        m.rows[row + first] += amount
+    at = _place(m, after)
+    if at == _place(m, before):
+        m.rows[row + at] += amount
     else:
-        _divide(m, row, scale * min(before, after), scale * max(before, after), amount)
+        _divide(m, row, before, after, amount)
 
 
 @compiled
-def _divide(m: Model, row: int, low: float, high: float, amount: float) -> None:
-    """Divide an amount between places, from one edge to another, in places."""
-    places = m.scene.places
+def _divide(m: Model, row: int, before: float, after: float, amount: float) -> None:
+    """Divide an amount between places, by the way from one point of the path of contact to another."""
+    places, scale = m.scene.places, m.scene.places_per_pitch
+    low, high = scale * min(before, after), scale * max(before, after)
     for place in range(min(int(low), places - 1), min(int(high), places - 1) + 1):
         way = min(high, place + 1.0) - max(low, float(place))
         m.rows[row + place] += amount * way / (high - low)
 
 
 @compiled(inline=True)
-def _note_pressure(m: Model, row: int, inside: float, force: float) -> None:
-    """Note the pressure of a contact where it is the largest so far."""
-    at = row + min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
+def _note_pressure(m: Model, at: int, inside: float, force: float) -> None:
+    """Note the pressure of a contact in its place, among the rows, where it is the largest so far."""
     radius = m.scene.start_radius + inside
     # of squares: a root only where there is something to note
     if force * force > m.rows[at] * m.rows[at] * (radius - radius * radius * m.scene.sum_curvature):

@@ -136,7 +136,8 @@ EXPOSED: Final = record_type(  # a pair where its exposures have last been added
     ("pair", INT),
     ("row", INT),  # where its tooth begins among the rows
     ("time", REAL),
-    ("place", REAL),  # along the path of contact, in pitches
+    ("place", REAL),  # along the path of contact, in pitches,
+    ("at", INT),  # and the index of what it is divided into
     ("turned", INT),  # 1 from where it began to close until something joins
     ("lowest", REAL),  # least gap at a turning point in this place
     ("front", REAL, (MATERIALS,)),  # asperities in contact, over their density
@@ -151,6 +152,7 @@ EXPOSING: Final = record_type(
     ("begun", INT),  # 0 before the first start
     ("steps", INT),  # accepted since then
     ("wanted", INT),  # steps after which they are added up again
+    ("adhesive", INT),  # 1 where adhesion of a pair matters, and forces are noted in every step
     ("level", REAL),  # largest power of a pair in the last of these times
     ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
 )
