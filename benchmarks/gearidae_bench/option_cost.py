@@ -123,7 +123,8 @@ def measure_option(comparison: Comparison, pairs: int) -> Cost:
     steps = [_run(scene)[1] for scene in scenes]  # all is compiled and loaded
     spent = np.array([list(_turn(scenes, backwards=k % 2 == 1)) for k in range(pairs)]) / steps
     low, ratio, high = np.percentile(spent[:, 1] / spent[:, 0], [25, 50, 75])
-    return Cost(comparison.title, *steps, 1e9 * float(np.median(spent[:, 0])), ratio, low, high)
+    nanoseconds = 1e9 * float(np.median(spent[:, 0]))
+    return Cost(comparison.title, steps[0], steps[1], nanoseconds, ratio, low, high)
 
 
 def _turn(scenes: tuple[Scene, Scene], backwards: bool) -> Iterator[float]:

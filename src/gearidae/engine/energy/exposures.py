@@ -24,6 +24,7 @@ from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import node_force, nodes_number
 from gearidae.engine.energy.noted_force import begin_notes, note_force
+from gearidae.engine.energy.places import divide, note_pressure, place_at, spread
 from gearidae.engine.energy.quadrature import integral
 from gearidae.engine.model.coverage import note_shares, shares_of
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
@@ -51,8 +52,7 @@ __all__ = [
 QUANTITIES = 2 * MATERIALS + 2
 """Sums of a place: contacts and adhesion work of each material, sliding work, largest pressure."""
 MOST_STEPS = 6
-"""Accepted steps over which sliding work is integrated at once; where adhesion matters and the contact may push, single
-ones are."""
+"""Accepted steps over which sliding work is integrated at once; where adhesion matters, single ones are."""
 ADHESIVE = 0.1
 """Power of a pair that pulls, over that of the pair that pushes most, from which on adhesion matters."""
 FADING = 0.9
@@ -68,7 +68,7 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if m.scene.places == 0:
         return
     m.work.exposing.time, m.work.exposing.begun = t, 1
-    _wait(m, 1, 1)
+    _wait(m, 1)
     for k in range(m.scene.histories):
         m.work.exposing.pair[k].known = 0
     _note_forces(m, t, y)
@@ -104,7 +104,6 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _note_forces(m, t, y)
     sliding = _sliding(m, y, yp[V], yp[W])
     moved, steps, level = y[U] - m.work.notes.travel, MOST_STEPS, 0.0
-    adhesive = 0
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         k = noted.history
@@ -120,13 +119,10 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         force = noted.force + noted.slope * widened
         _slide(m, t, k, sliding, noted.place, (force, noted.slope * noted.gap_rate))
         level = max(level, abs(own.power))
-        if _adheres(m, k):
-            adhesive = 1
-            # what pulls while it opens does not push before it has turned round
-            if own.power >= 0.0 or m.state.history[k].direction <= 0.0:
-                steps = 1
+        if own.adhesive != 0 or own.pull < -ADHESIVE * exposing.level:
+            steps = 1
     exposing.time, exposing.level = t, max(level, FADING * exposing.level)
-    _wait(m, steps, adhesive)
+    _wait(m, steps)
 
 
 @compiled(inline=True)
@@ -136,17 +132,16 @@ def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
     exposing.steps += 1
     if exposing.steps >= exposing.wanted:
         follow_exposures(m, t, y, yp)
-    last = exposing.steps + 1 >= exposing.wanted
-    m.work.notes.wanted = 1 if last or exposing.adhesive != 0 else 0
+    m.work.notes.wanted = 1 if exposing.steps + 1 >= exposing.wanted else 0
 
 
 @compiled(inline=True)
-def _wait(m: Model, steps: int, adhesive: int) -> None:
-    """Want to follow the exposures after some steps, and have the forces noted in the last, or in all of them."""
-    exposing = m.work.exposing
-    exposing.steps, exposing.wanted, exposing.adhesive = 0, steps, adhesive
-    noted = (steps == 1 or adhesive != 0) and m.scene.nodes == 0  # those of elastic contacts are evaluated
-    m.work.notes.wanted = 1 if noted else 0
+def _wait(m: Model, steps: int) -> None:
+    """Want to follow the exposures after some steps, and have the forces noted in the last of them."""
+    m.work.exposing.steps, m.work.exposing.wanted = 0, steps
+    m.work.notes.wanted = (
+        1 if steps == 1 and m.scene.nodes == 0 else 0
+    )  # those of elastic contacts are evaluated
 
 
 @compiled
@@ -163,8 +158,6 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
         return
     if m.state.history[k].direction > 0.0:
         own.turned = 1
-        if m.work.exposing.adhesive != 0:
-            m.work.exposing.wanted = 1
         for material in range(MATERIALS):
             law = m.scene.material[material]
             if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
@@ -173,7 +166,7 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     _join(m, y, k, gap, inside)
     own.adhesive = 1 if own.pull < -ADHESIVE * m.work.exposing.level else 0
     own.pull = 0.0
-    at = _place(m, inside)
+    at = place_at(m, inside)
     if own.adhesive != 0 or gap < own.lowest or at != own.at:
         own.lowest = min(own.lowest, gap)
         if m.scene.nodes == 0:
@@ -183,7 +176,7 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
             point = m.work.track.point[m.work.track.last]
             _slide(m, t, k, _sliding(m, y, point.travel_bend, point.speed_rate), inside, (force, 0.0))
         elif force > 0.0:
-            _note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force)
+            note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force)
 
 
 @compiled
@@ -198,7 +191,7 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     """Begin with a pair in which nothing is in contact."""
     own = m.work.exposing.pair[k]
     own.known, own.pair, own.time = 1, pair, t
-    own.place, own.at = inside, _place(m, inside)
+    own.place, own.at = inside, place_at(m, inside)
     own.turned, own.adhesive, own.lowest = 0, 0, m.scene.cutoff
     own.power = own.power_rate = own.pull = 0.0
     for material in range(MATERIALS):
@@ -233,13 +226,6 @@ def _force(
         note_shares(m, k, coast, pair, inside)
         return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
     return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
-
-
-@compiled(inline=True)
-def _adheres(m: Model, k: int) -> bool:
-    """Whether a pair pulls, or has pulled before its last turning point, by what matters over the largest power."""
-    own = m.work.exposing.pair[k]
-    return bool(own.adhesive != 0 or own.pull < -ADHESIVE * m.work.exposing.level)
 
 
 @compiled(inline=True)
@@ -285,7 +271,7 @@ def _slide(
     if speed < 0.0:
         speed, speed_rate = -speed, -speed_rate
     power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
-    at, third = _place(m, inside), (t - own.time) / 3.0
+    at, third = place_at(m, inside), (t - own.time) / 3.0
     # between ends that pull the power's cubic may rise above zero, but not above its control points
     rises = (
         own.power_rate > 0.0 > power_rate
@@ -297,9 +283,9 @@ def _slide(
         if at == own.at:
             m.rows[row + at] += work
         else:
-            _divide(m, row, own.place, inside, work)
+            divide(m, row, own.place, inside, work)
         if force[0] > 0.0:
-            _note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force[0])
+            note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force[0])
     if at != own.at:
         own.lowest = m.scene.cutoff  # another place
     own.time, own.place, own.at, own.power, own.power_rate = t, inside, at, power, power_rate
@@ -362,43 +348,8 @@ def _join(m: Model, y: Floats, k: int, gap: float, inside: float) -> None:
             continue
         own.front[material] = front
         more = 0.5 * (contact_length(m, inside) + contact_length(m, own.place)) * joined
-        _spread(m, own.row + material * m.scene.places, own.place, inside, more)
+        spread(m, own.row + material * m.scene.places, own.place, inside, more)
         if law.stretch_limit > 0.0:
             lost = law.joining_energy * law.force_scale * more
-            _spread(m, own.row + (MATERIALS + material) * m.scene.places, own.place, inside, lost)
+            spread(m, own.row + (MATERIALS + material) * m.scene.places, own.place, inside, lost)
     own.turned = 0
-
-
-@compiled(inline=True)
-def _place(m: Model, inside: float) -> int:
-    """Index of the place along the path of contact, whose end belongs to the last one."""
-    return min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
-
-
-@compiled(inline=True)
-def _spread(m: Model, row: int, before: float, after: float, amount: float) -> None:
-    """Add an amount to the places that a contact has passed, in proportion to the way in each."""
-    at = _place(m, after)
-    if at == _place(m, before):
-        m.rows[row + at] += amount
-    else:
-        _divide(m, row, before, after, amount)
-
-
-@compiled
-def _divide(m: Model, row: int, before: float, after: float, amount: float) -> None:
-    """Divide an amount between places, by the way from one point of the path of contact to another."""
-    places, scale = m.scene.places, m.scene.places_per_pitch
-    low, high = scale * min(before, after), scale * max(before, after)
-    for place in range(min(int(low), places - 1), min(int(high), places - 1) + 1):
-        way = min(high, place + 1.0) - max(low, float(place))
-        m.rows[row + place] += amount * way / (high - low)
-
-
-@compiled(inline=True)
-def _note_pressure(m: Model, at: int, inside: float, force: float) -> None:
-    """Note the pressure of a contact in its place, among the rows, where it is the largest so far."""
-    radius = m.scene.start_radius + inside
-    # of squares: a root only where there is something to note
-    if force * force > m.rows[at] * m.rows[at] * (radius - radius * radius * m.scene.sum_curvature):
-        m.rows[at] = force / contact_length(m, inside)

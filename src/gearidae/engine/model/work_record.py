@@ -152,7 +152,6 @@ EXPOSING: Final = record_type(
     ("begun", INT),  # 0 before the first start
     ("steps", INT),  # accepted since then
     ("wanted", INT),  # steps after which they are added up again
-    ("adhesive", INT),  # 1 where adhesion of a pair matters, and forces are noted in every step
     ("level", REAL),  # largest power of a pair in the last of these times
     ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
 )
