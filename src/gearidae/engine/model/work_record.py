@@ -27,6 +27,7 @@ __all__ = [
     "QUADRATURE",
     "RESISTANCE",
     "SEARCH",
+    "SETTLING",
     "TRACK",
     "WORK",
 ]
@@ -175,6 +176,21 @@ NOTES: Final = (
     )
 )
 
+SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminated
+    ("evaluated", INT),  # since the last step's end,
+    ("known", INT),  # and then whether the history was about the pair, the time and the pair's gap
+    ("time", REAL),
+    ("gap", REAL),
+    ("last_known", INT),  # the end of the last step, and the pair's gap and gap rate there
+    ("last_time", REAL),
+    ("last_gap", REAL),
+    ("last_rate", REAL),
+    ("before_known", INT),  # and of the one before
+    ("before_time", REAL),
+    ("before_gap", REAL),
+    ("before_rate", REAL),
+)
+
 PART: Final = (
     record_type(  # of a cell, one side: before + change u^3 (10 - 15 u + 6 u^2), u = (place - origin) scale
         ("origin", REAL),
@@ -206,6 +222,8 @@ WORK: Final = record_type(
         REAL,
         (2 * SLOTS_HIGH, MATERIALS),
     ),  # by tooth and place, of elastic contacts as last asked for
+    ("settling", SETTLING, (2 * SLOTS_HIGH,)),
+    ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),
     ("search", SEARCH),
     ("driver", DRIVER),
