@@ -96,7 +96,7 @@ def _state_at(place, numbers, t):  # type: ignore[no-untyped-def]
     n, handles = m.scene.states, words(place, WORDS)[POINTERS:]
     a = carray(numbers, (VECTORS * n + 1,))
     y, yp, dky, spare = a[:n], a[n : 2 * n], a[2 * n : 3 * n], a[3 * n : 4 * n]
-    state_at(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), t)
+    state_at(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), t, False)
 
 
 def addresses() -> NDArray[np.int64]:

@@ -4,6 +4,9 @@
 
 The loss law is made so fast that the gear sticks after some thousand mesh cycles, which are all simulated: each goes
 on from the one before, with the coverage that its predecessor's exposures leave. The study jumps over the same life.
+
+Coverages are compared at the steps of the life, after as many passages, and after the same share of either life: the
+curve falls so steeply before the gear sticks that a part of a mesh cycle there is more than a percent of the flank.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ import argparse
 import math
 import sys
 import time
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -19,19 +23,67 @@ import xarray as xr
 import gearidae as gd
 from gearidae import engine
 from gearidae.studies.life_coverage import coverage_of
-from gearidae.studies.life_window import Cycles, window_scene
+from gearidae.studies.life_window import Cycles, gained, window_scene
 
-__all__ = ["brute_force", "main"]
+__all__ = ["BruteForce", "Comparison", "brute_force", "compared", "fast_life"]
 
 PLACES = 8
 START = 0.8
 LIFE = 1.06e11
 """Passages to sticking from `START` at a low speed, for each J/m^2 of the law."""
+PATIENCE = 20.0
+"""Time that a cycle gets, over that of a window."""
 
 
-def brute_force(
-    scene: gd.Scene, law: gd.wear.LossLaw, most: int, resolved: str
-) -> tuple[np.ndarray, np.ndarray, bool]:
+@dataclass(frozen=True)
+class BruteForce:
+    """A life all of whose mesh cycles were simulated.
+
+    Attributes
+    ----------
+    passages : ndarray, shape (n,)
+        Of each tooth of the pinion.
+    states : ndarray, shape (n, size)
+        Covered shares, as `gearidae.studies.life_coverage` has them.
+    sticks : bool
+    """
+
+    passages: np.ndarray
+    states: np.ndarray
+    sticks: bool
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A life by cycle jump and by brute force.
+
+    Attributes
+    ----------
+    table : ndarray, shape (steps, 4)
+        Passages, mean coverage by cycle jump and by brute force, largest difference of a place or side.
+    mean, place : float
+        Largest difference of the mean coverage, and of that of a place or side, until `before` passages before the end
+        [of the coverage there].
+    mean_by_share, place_by_share : float
+        The same over the whole life, compared after the same share of it.
+    sticking : tuple of float
+        Passages to sticking by cycle jump and by brute force.
+    """
+
+    table: np.ndarray
+    mean: float
+    place: float
+    mean_by_share: float
+    place_by_share: float
+    sticking: tuple[float, float]
+
+    @property
+    def ratio(self) -> float:
+        """Passages to sticking by cycle jump over those by brute force, less 1."""
+        return self.sticking[0] / self.sticking[1] - 1.0
+
+
+def brute_force(scene: gd.Scene, law: gd.wear.LossLaw, most: int, resolved: str) -> BruteForce:
     """Simulate every mesh cycle.
 
     Parameters
@@ -45,42 +97,105 @@ def brute_force(
 
     Returns
     -------
-    passages : ndarray, shape (n,)
-        Of each tooth.
-    states : ndarray, shape (n, size)
-        Covered shares, as `gearidae.studies.life_coverage` has them.
-    sticks : bool
+    BruteForce
     """
     assert scene.gears is not None
     teeth = scene.gears.pinion_teeth
     coverage = coverage_of(scene, resolved, PLACES)
     window = window_scene(scene, Cycles(0, 1), PLACES)
-    state, origin, kept = coverage.start.copy(), None, [coverage.start]
-    patience = 20.0
+    state, kept = coverage.start.copy(), [coverage.start]
+    origin: engine.Origin | None = None
+    before = None
     for _ in range(most):
-        own = window.replace({**coverage.changes(state), "run.duration": patience * window.run.duration})
+        own = window.replace({**coverage.changes(state), "run.duration": PATIENCE * window.run.duration})
         solution = engine.solve(own, origin=origin)
         if solution.extremes is None or not math.isnan(solution.extremes.stick_time):
-            return np.arange(len(kept)) / teeth, np.array(kept), True
-        seen = coverage.exposure(own, solution, 1, state)
+            return BruteForce(np.arange(len(kept)) / teeth, np.array(kept), True)
+        # exposures go on where the coating is the same as in the cycle before
+        exposures = gained(solution, before if origin and origin.scene.coating == own.coating else None, own)
+        extremes = replace(solution.extremes, exposures=tuple(exposures.ravel().tolist()))
+        seen = coverage.exposure(own, replace(solution, extremes=extremes), 1, state)
         state = np.clip(state + law.rate(state, seen) / teeth, 0.0, 1.0)
         kept.append(state)
-        began = 0.0 if origin is None else origin.time
+        began, before = 0.0 if origin is None else origin.time, solution
         assert solution.checkpoint is not None
         origin = engine.end_of(own, solution.checkpoint, began)
-    return np.arange(len(kept)) / teeth, np.array(kept), False
+    return BruteForce(np.arange(len(kept)) / teeth, np.array(kept), False)
 
 
-def _compared(
-    scene: gd.Scene, resolved: str, found: xr.Dataset, passages: np.ndarray, states: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Coverage by side, tooth and place at the steps of a life, of the life and of the states simulated."""
+def fast_life(cycles: int, pairing: str = "patches") -> tuple[gd.Scene, gd.wear.LossLaw]:
+    """Make gears whose coating lasts some mesh cycles.
+
+    Parameters
+    ----------
+    cycles : int
+        How many, about.
+    pairing : str
+        As ``coating.pairing``.
+
+    Returns
+    -------
+    scene : Scene
+    law : LossLaw
+    """
+    scene = gd.preset("teodorescu2009_low_speed").replace(
+        {"coating.sam_fraction": START, "coating.pairing": pairing, "run.samples": "off"}
+    )
+    assert scene.gears is not None
+    return scene, gd.wear.loss_law("adhesion_work", energy=cycles / scene.gears.pinion_teeth / LIFE)
+
+
+def compared(
+    scene: gd.Scene, resolved: str, found: xr.Dataset, brute: BruteForce, *, before: float = 1.0
+) -> Comparison:
+    """Compare a life with brute force.
+
+    Parameters
+    ----------
+    scene : Scene
+        That both began with.
+    resolved : str
+    found : Dataset
+        From `gearidae.studies.life`.
+    brute : BruteForce
+    before : float
+        Passages before the end of either from which on coverages after as many passages are not compared.
+
+    Returns
+    -------
+    Comparison
+    """
     coverage = coverage_of(scene, resolved, PLACES)
-    between = np.array([np.interp(found.passages, passages, column) for column in states.T]).T
-    theirs = np.array([coverage.table(state) for state in between])
-    if resolved == "uniform":
-        return found.coverage.values[:, :, None, None], theirs
-    return found.coverage_by_place.values, theirs
+    uniform = resolved == "uniform"
+    ours = found.coverage.values[:, :, None, None] if uniform else found.coverage_by_place.values
+    sticking = (float(found.attrs.get("passages_to_sticking", math.nan)), float(brute.passages[-1]))
+
+    def at(passages: np.ndarray) -> np.ndarray:
+        columns = [np.interp(passages, brute.passages, column) for column in brute.states.T]
+        return np.array([coverage.table(state) for state in np.array(columns).T])
+
+    passages = found.passages.values
+    scale = sticking[1] / sticking[0] if brute.sticks else 1.0
+    theirs, by_share = at(passages), at(passages * scale)
+    early = passages <= min(sticking[1], passages[-1]) - before if brute.sticks else passages >= 0.0
+    table = np.array([passages, _means(ours), _means(theirs), np.abs(ours - theirs).max(axis=(1, 2, 3))])
+    return Comparison(
+        table.T,
+        _relative(_means(ours), _means(theirs), early),
+        _relative(ours, theirs, early),
+        _relative(_means(ours), _means(by_share)),
+        _relative(ours, by_share),
+        sticking,
+    )
+
+
+def _means(tables: np.ndarray) -> np.ndarray:
+    return np.asarray(tables.mean(axis=(1, 2, 3)))
+
+
+def _relative(ours: np.ndarray, theirs: np.ndarray, chosen: np.ndarray | slice = slice(None)) -> float:
+    """Largest difference over the share that is there."""
+    return float((np.abs(ours - theirs) / theirs)[chosen].max())
 
 
 def main() -> None:
@@ -91,28 +206,31 @@ def main() -> None:
     parser.add_argument("--resolved", default="uniform")
     parser.add_argument("--pairing", default="patches")
     given = parser.parse_args()
-    scene = gd.preset("teodorescu2009_low_speed").replace(
-        {"coating.sam_fraction": START, "coating.pairing": given.pairing, "run.samples": "off"}
-    )
-    law = gd.wear.loss_law("adhesion_work", energy=given.cycles / 19 / LIFE)
-    began = time.perf_counter()
-    passages, states, sticks = brute_force(scene, law, 3 * given.cycles, given.resolved)
-    middle = time.perf_counter()
+    scene, law = fast_life(given.cycles, given.pairing)
+    began = time.process_time()
+    brute = brute_force(scene, law, 4 * given.cycles, given.resolved)
+    middle = time.process_time()
     found = gd.studies.life(
-        scene, law, tolerance=given.tolerance, places=PLACES, resolved=given.resolved, frequency=False
+        scene,
+        law,
+        tolerance=given.tolerance,
+        places=PLACES,
+        resolved=given.resolved,
+        frequency=False,
+        passages=1e12 if brute.sticks else float(brute.passages[-1]),
     )
-    end = time.perf_counter()
-    ours, theirs = _compared(scene, given.resolved, found, passages, states)
-    ending = found.attrs.get("passages_to_sticking", math.nan)
+    end = time.process_time()
+    seen = compared(scene, given.resolved, found, brute)
+    simulated, direct = (found.attrs[f"mesh_cycles_{name}"] for name in ("simulated", "direct"))
     lines = [
-        f"brute force: {len(passages) - 1} mesh cycles in {middle - began:.0f} s, sticks: {sticks}",
-        f"cycle jump: {found.attrs['windows']} windows in {end - middle:.0f} s",
-        f"passages to sticking: {passages[-1]:.2f} and {ending:.2f}",
-        "passages, mean coverage by cycle jump and by brute force, largest difference of a place:",
-        *(
-            f"{n:9.3f} {a.mean():.4f} {b.mean():.4f} {np.abs(a - b).max():.4f}"
-            for n, a, b in zip(found.passages.values, ours, theirs, strict=True)
-        ),
+        f"brute force: {len(brute.passages) - 1} mesh cycles, {middle - began:.0f} s, sticks: {brute.sticks}",
+        f"cycle jump: {simulated} mesh cycles, {direct} of them one by one, {end - middle:.0f} s",
+        f"passages to sticking: {seen.sticking[1]:.2f} and {seen.sticking[0]:.2f}, {100.0 * seen.ratio:.2f} %",
+        "largest difference of the coverage [% of it], mean and that of a place or side:",
+        f"  after as many passages, but in the last: {100.0 * seen.mean:.2f} {100.0 * seen.place:.2f}",
+        f"  after the same share of the life: {100.0 * seen.mean_by_share:.2f} {100.0 * seen.place_by_share:.2f}",
+        "passages, mean coverage by cycle jump and by brute force, largest difference of a place or side:",
+        *(f"{n:9.3f} {a:.4f} {b:.4f} {c:.4f}" for n, a, b, c in seen.table),
     ]
     sys.stdout.write("\n".join(lines) + "\n")
 

@@ -25,6 +25,10 @@ class _Door(ModuleType):
             return  # Python puts every module that is imported into its package, whoever asked for it
         super().__setattr__(name, value)
 
+    def __reduce__(self) -> tuple[Callable[[str], ModuleType], tuple[str]]:
+        """Let functions that use the package be sent to other processes, as Dask does; modules are sent by name."""
+        return import_module, (self.__name__,)
+
 
 def lazy_names(
     namespace: dict[str, Any], home: Mapping[str, str | None]

@@ -2,15 +2,34 @@
 
 from __future__ import annotations
 
+import pytest
+
 import gearidae as gd
-from gearidae_bench.ensemble_cost import cost_table, ensemble_cost
+from gearidae import engine
+from gearidae_bench.ensemble_cost import cost_row, ensemble_cost, same_runs
+from gearidae_bench.ensemble_on_dask import dask_cost
+
+SHORT = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3})
 
 
 def test_parts_add_up_and_the_archive_is_written(tmp_path):
-    scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3})
-    cost = ensemble_cost(scene, 6, 2, tmp_path / "out.nc")
-    assert cost.members == gd.open_archive(tmp_path / "out.nc").sizes["member"] == 6
+    solve = engine.solve
+    cost, ds = ensemble_cost(SHORT, 6, 2, tmp_path / "out.nc")
+    assert engine.solve is solve
+    assert cost.members == gd.open_archive(tmp_path / "out.nc").sizes["member"] == ds.sizes["member"] == 6
     assert 0.0 < cost.solving < cost.processor
     assert 0.0 < cost.beside < cost.processor
+    assert cost.over_solver == pytest.approx(1.0 + 6 * cost.beside / cost.solving)
     assert cost.cores <= 2.5  # threads of the linear algebra may help
-    assert f"{cost.peak:.0f}" in cost_table({"short": cost})
+    assert f"{cost.peak:.0f}" in cost_row("short", cost)
+
+
+def test_a_cluster_counts_the_solver_of_its_workers(tmp_path):
+    pytest.importorskip("distributed")
+    _, local = ensemble_cost(SHORT, 6, 1)
+    there = dask_cost(SHORT, 6, 1, tmp_path / "out.nc")
+    assert same_runs(local, there.runs)
+    assert not same_runs(local, there.runs.isel(member=slice(None, None, -1)))
+    assert 0.0 < there.cost.solving < there.cost.processor
+    assert 0.0 < there.idle < 1.0
+    assert there.beside == pytest.approx(there.cost.beside - there.idle * there.cost.wall / 6)

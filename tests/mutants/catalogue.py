@@ -272,6 +272,13 @@ MUTANTS = (
         ("engine/test_elastic.py",),
     ),
     Mutant(
+        "slope of an elastic contact's force as if the bodies did not follow",
+        "engine/elastic/elimination.py",
+        "slope += length * sums[i] * follow[i]",
+        "slope += 0.0 * sums[i] * follow[i]",
+        ("engine/test_elimination.py",),
+    ),
+    Mutant(
         "a branch of the stored energy kept beyond the turning point that ends it",
         "engine/model/tooth_pairs.py",
         "+ B_PIECES] = 0.0",

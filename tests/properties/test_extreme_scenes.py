@@ -178,9 +178,7 @@ def fail(seed, number, budget, reports, trace):
 )
 def test_a_process_that_dies_or_hangs_is_a_fault(target, patience, status, message):
     heard = []
-    outcomes = run_attack(
-        range(2, 4), 1, 2, budget=1, patience=patience, report=heard.append, target=target
-    )
+    outcomes = run_attack(range(2, 4), 1, 2, budget=1, patience=patience, report=heard.append, target=target)
     assert [(o.number, o.status, o.sound) for o in outcomes] == [(2, status, False), (3, status, False)]
     assert all(message in o.message for o in outcomes)
     assert len(heard) == 2

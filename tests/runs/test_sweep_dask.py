@@ -10,8 +10,8 @@ import xarray as xr
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.runs import batch
-from gearidae.runs.batch import solve_and_leave
 from gearidae.runs.executors import dask_executor
+from gearidae.runs.leaving import solve_group
 from sweeps import without_times
 
 distributed = pytest.importorskip("distributed")
@@ -45,12 +45,12 @@ def test_a_cluster_changes_nothing(cluster, expected):
 def test_one_lost_run_is_a_label_there_too(cluster, monkeypatch, expected):
     """The error comes back from another process, to which a function inside another one is sent as it is."""
 
-    def deed(scene, backend, keep):
-        if scene.coating.sam_fraction < 0.5:
+    def deed(scenes, backend, keep):
+        if any(scene.coating.sam_fraction < 0.5 for scene in scenes):
             raise MemoryError("too large")
-        return solve_and_leave(scene, backend, keep)
+        return solve_group(scenes, backend, keep)
 
-    monkeypatch.setattr(batch, "solve_and_leave", deed)
+    monkeypatch.setattr(batch, "solve_group", deed)
     with dask_executor(cluster.scheduler_address) as executor:
         ds = gd.sweep(LOW, {KEY: FRACTIONS}, executor)
     assert ds.status.values.tolist() == ["finished", "finished", "crashed", "crashed"]

@@ -78,6 +78,23 @@ def test_archard_ends_at_zero():
     assert min(state.min() for state in found.states) >= 0.0
 
 
+def test_no_rate_is_asked_for_where_nothing_is_left():
+    """A trial that loses more than there is costs a window of bare gears, which adhere most, and says nothing."""
+    asked = []
+
+    def rate(state):
+        asked.append(float(state.mean()))
+        if state.mean() < 0.3:
+            raise Sticks
+        return -1e-9 / (state - 0.29) ** 2
+
+    found = jump(rate, np.ones(1), passages=1e12, tolerance=0.03)
+    assert found.ending == "sticks"
+    # (f - 0.29)^3 / 3 falls evenly
+    assert found.sticks_by == pytest.approx(1e9 * (0.71**3 - 0.01**3) / 3.0, rel=0.02)
+    assert min(asked) > 0.0
+
+
 def test_what_an_exception_interrupts_is_kept():
     asked = []
 
@@ -94,3 +111,76 @@ def test_what_an_exception_interrupts_is_kept():
     assert life.ending == "interrupted"
     assert 2 < len(life.passages) < len(whole.passages)
     assert life.passages == whole.passages[: len(life.passages)]
+
+
+class Steps:
+    """Mesh cycles of a twentieth of a passage, of a rate that is known; the gear sticks below 0.3."""
+
+    worth = 5.0
+
+    def __init__(self, rate):
+        self.rate, self.run = rate, 0
+
+    def follow(self, n, state):
+        while True:
+            if state.mean() < 0.3:
+                raise Sticks(n + 0.05)
+            yield n, state
+            self.run += 1
+            n, state = n + 0.05, state + 0.05 * self.rate(state)
+
+
+def test_the_last_passages_are_followed_cycle_by_cycle():
+    """(f - 1/4)^2 falls evenly, by 1/250 in a passage, and f ever faster: it is 0.3 after 140 passages."""
+
+    def rate(state):
+        if state.mean() < 0.3:
+            raise Sticks
+        return -0.002 / (state - 0.25)
+
+    direct = Steps(rate)
+    found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-4, direct=direct)
+    assert found.ending == "sticks"
+    # steps of h lag behind the rates by h/2 log(their ratio): 0.07 passages; the bracket is two cycles
+    assert found.sticks_by == pytest.approx(140.0, abs=0.07 + 0.1)
+    assert found.sticks_by - found.passages[-1] == pytest.approx(0.1)
+    assert 100 < direct.run < 500  # 5 to 25 of 140 passages
+    n = np.array(found.passages)
+    truth = 0.25 + np.sqrt(0.5625 - 0.004 * n)
+    np.testing.assert_allclose(np.array(found.states)[:, 0], truth, rtol=0.01)
+    assert np.abs(np.diff(found.states, axis=0))[n[1:] > 135.0].max() < 0.012
+
+
+def test_a_loss_that_slows_down_is_jumped_over_again():
+    def rate(state):
+        return -0.1 * state
+
+    direct = Steps(rate)
+    found = jump(rate, np.ones(1), passages=8.0, tolerance=1e-5, direct=direct)
+    assert found.ending == "passages"
+    assert found.passages[-1] == pytest.approx(8.0)
+    assert found.states[-1][0] == pytest.approx(
+        math.exp(-0.8), rel=0.1 * 0.05 * 0.5 * 8.0 + 1e-4
+    )  # Euler's error
+    late = Steps(lambda state: -1e-3 * state)
+    found = jump(lambda state: -1e-3 * state, np.ones(1), passages=1e3, tolerance=1e-3, direct=late)
+    assert late.run == 0
+    slow = Steps(rate_that_fades)
+    found = jump(rate_that_fades, np.full(1, 0.9), passages=1e4, tolerance=1e-3, direct=slow)
+    assert found.passages[-1] == 1e4
+    assert 0 < slow.run < 2000  # of 200 000 cycles
+    assert found.states[-1][0] == pytest.approx(0.4, abs=1e-3)
+
+
+def rate_that_fades(state):
+    """Towards 0.4, at which nothing is lost any more."""
+    return -0.05 * (state - 0.4)
+
+
+@pytest.mark.parametrize("least", [0.6, 0.35])
+def test_a_coverage_ends_cycles_too(least):
+    direct = Steps(lambda state: -0.05 + 0.0 * state)
+    found = jump(direct.rate, np.ones(1), passages=1e12, tolerance=1e-3, least=least, direct=direct)
+    assert found.ending == "coverage"
+    assert found.states[-1][0] == pytest.approx(least, abs=1e-9)
+    assert found.passages[-1] == pytest.approx((1.0 - least) / 0.05, rel=1e-6)

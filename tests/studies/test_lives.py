@@ -10,7 +10,7 @@ import gearidae as gd
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.7})
 LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)
-SHORT = {"cycles": 2, "settle": 0, "starts": 1, "places": 2, "fraction": 0.68, "tolerance": 1e-2}
+SHORT = {"cycles": 3, "settle": 4, "starts": 1, "places": 2, "fraction": 0.68, "tolerance": 1e-2}
 VARY = {"drive.torque": "uniform(4e-18, 5e-18)"}
 
 
@@ -44,6 +44,45 @@ def test_members_are_followed_kept_and_resumed(tmp_path, monkeypatch):
     assert float(found.passages_turning[1]) == float(one.passages[-1])
     with xr.open_dataset(path) as kept:
         xr.testing.assert_equal(kept.load().drop_vars("message"), found.drop_vars("message"))
+
+
+def test_parameters_of_the_law_are_drawn(tmp_path):
+    """Of one scene lives last in proportion to the law's energy, and shorter by Arrhenius' factor."""
+    hot = gd.wear.Arrhenius(LAW, activation_energy="0.1 eV", activation_volume=0.0, temperature="300 K")
+    vary = {"law.energy": "uniform(1e-6, 3e-6)", "law.temperature": "uniform(280 K, 400 K)"}
+    path = tmp_path / "lives.nc"
+    found = gd.studies.lives(LOW, hot, vary, 2, archive=path, jobs=1, **SHORT)
+    assert found.energy.attrs == {"units": "J/m^2", "long_name": "law.energy"}
+    factor = np.exp(
+        -gd.wear.Arrhenius(LAW, "0.1 eV", 0.0, 1.0).activation_energy / (1.380649e-23 * found.temperature)
+    )
+    scaled = found.passages_turning / found.energy * factor
+    np.testing.assert_allclose(scaled, scaled[0], rtol=1e-4)  # last digits of the states
+    assert abs(float(found.energy[1] / found.energy[0]) - 1.0) > 0.1
+    xr.testing.assert_equal(gd.studies.open_lives(path).drop_vars("message"), found.drop_vars("message"))
+
+
+@pytest.mark.parametrize(
+    ("vary", "key", "words"),
+    [
+        ({"law.energie": "normal(1, 0.1)"}, "law.energie", "did you mean law.energy"),
+        ({"law.energy": "normal(1 m, 0.1)"}, "law.energy", "does not fit"),
+        ({"law.energy": "uniform(-1, 1)"}, "law.energy", "drawn from uniform"),
+        ({"law.name": "uniform(0, 1)"}, "law.name", "is no parameter"),
+        ({"law.energy": 3.0}, "law.energy", "scipy.stats"),
+    ],
+)
+def test_draws_of_the_law_are_checked(vary, key, words):
+    with pytest.raises(gd.SceneError, match=words) as error:
+        gd.studies.lives(LOW, LAW, vary, 4)
+    assert error.value.key == key
+
+
+def test_other_files_hold_no_lives(tmp_path, known):
+    path = tmp_path / "other.nc"
+    known.to_netcdf(path)
+    with pytest.raises(gd.SceneError, match=r"other\.nc.*holds no lives"):
+        gd.studies.open_lives(path)
 
 
 def test_a_setting_that_there_is_not():

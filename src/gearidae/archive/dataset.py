@@ -182,23 +182,28 @@ def combine(
 def _of_runs(
     scenes: Sequence[Scene], solutions: Sequence[Solution], keep: Keep
 ) -> dict[str, tuple[Variable, NDArray[Any]]]:
-    """One value a run: how it ended, its statistics, its input and its energy balance."""
+    """One value a run of what is kept: how it ended, its statistics, its input and its energy balance."""
     found: dict[str, tuple[Variable, NDArray[Any]]] = {}
     for name, variable in RUN.items():
+        if not keep.holds(name):
+            continue
         source = [s if name in ("status", "message") else s.statistics for s in solutions]
         found[name] = variable, np.array([getattr(each, name) for each in source], dtype=variable.dtype)
     found["reached"] = OF_SWEPT_RUN["reached"], np.array([reached(solution) for solution in solutions])
-    skipped = [json.dumps(solution.statistics.skipped, default=int) for solution in solutions]
-    found["skipped"] = OF_SWEPT_RUN["skipped"], np.array(skipped)
+    if keep.holds("skipped"):
+        skipped = [json.dumps(solution.statistics.skipped, default=int) for solution in solutions]
+        found["skipped"] = OF_SWEPT_RUN["skipped"], np.array(skipped)
     if keep.holds("scene"):
         inputs = np.empty(
             len(scenes), dtype=object
         )  # in an array of text every entry is as long as the longest
         inputs[:] = [json.dumps(each.to_dict(), allow_nan=False) for each in scenes]
         found["scene"] = OF_SWEPT_RUN["scene"], inputs
-    kept = [balance_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
-    for name, variable in ENERGY_BALANCE.items():
-        found[name] = variable, np.array([numbers.get(name, math.nan) for numbers in kept])
+    energies = {name: variable for name, variable in ENERGY_BALANCE.items() if keep.holds(name)}
+    if energies:
+        kept = [balance_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
+        for name, variable in energies.items():
+            found[name] = variable, np.array([numbers.get(name, math.nan) for numbers in kept])
     return found
 
 

@@ -21,7 +21,7 @@ from gearidae.archive.variables import (
     columns,
 )
 from gearidae.errors import SceneError
-from gearidae.records import Solution
+from gearidae.records import Events, Solution
 from gearidae.scene.group import did_you_mean, shorten
 
 if TYPE_CHECKING:
@@ -69,22 +69,19 @@ class Keep:
         if self.names is None:
             return solution
         samples = {name: values for name, values in solution.samples.items() if self.holds(name)}
-        time = solution.time if samples else solution.time[:0].copy()
+        time = solution.time if samples else _NO_TIMES
         reached = solution.reached
         if reached is None and len(solution.time):
             reached = float(solution.time[-1])
-        events = solution.events
-        if not self.events:
-            none = {
-                name: np.empty(0, getattr(events, name).dtype)
-                for name in ("time", "kind", "pair", "flank", "gap_rate")
-            }
-            events = replace(events, **none)
+        events = solution.events if self.events else _NO_EVENTS
         # the state at the end, of which a dataset of several runs has none, is most of what is left
         return replace(solution, time=time, samples=samples, events=events, reached=reached, checkpoint=None)
 
 
 EVERYTHING = Keep()
+_NO_TIMES = np.empty(0)
+_NO_EVENTS = Events(_NO_TIMES, np.empty(0, np.int8), np.empty(0, np.int64), np.empty(0, np.int8), _NO_TIMES)
+"""Shared by all runs that keep none."""
 
 
 def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:

@@ -12,6 +12,9 @@ from gearidae.records import Solution
 
 __all__ = ["SampleTable"]
 
+_NO_TIMES = np.empty(0)
+"""Shared by all runs."""
+
 
 class SampleTable:
     """Samples of runs that share one time axis, each kept once.
@@ -49,7 +52,7 @@ class SampleTable:
         reached = solution.reached
         if reached is None and len(solution.time):
             reached = float(solution.time[-1])
-        return replace(solution, time=np.empty(0), samples={}, reached=reached)
+        return replace(solution, time=_NO_TIMES, samples={}, reached=reached)
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
         """Return the tables, shape (runs, len(time)); NaN where a run did not get to."""

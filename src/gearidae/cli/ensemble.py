@@ -14,21 +14,19 @@ import numpy as np
 import gearidae as gd
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import complain, is_quiet, say
-from gearidae.cli.tables import show_rows
+from gearidae.cli.output import is_quiet, say
+from gearidae.cli.tables import name_failures, show_rows
 from gearidae.cli.values import default_output, texts
 from gearidae.runs.executors import check_jobs, dask_executor, own_executor
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["executor_for", "run_ensemble"]
+__all__ = ["executor_for", "run_ensemble", "show_ensemble"]
 
 _SHOWN = ("min_gear_speed", "max_gear_speed", "largest_mesh_force", "smallest_mesh_force", "stick_time")
 _WORTH_PROCESSES = 64
 """Members from which on it is worth while to start processes, which takes some seconds."""
-_NAMED = 3
-"""Failed members that are named."""
 
 
 def run_ensemble(
@@ -86,15 +84,28 @@ def run_ensemble(
             overwrite=overwrite,
             resume=resume,
         )
+    return show_ensemble(ds, "Ensemble", target)
+
+
+def show_ensemble(ds: xr.Dataset, what: str, target: Path) -> int:
+    """Show what came of an ensemble.
+
+    Parameters
+    ----------
+    ds : Dataset
+    what : str
+        How to call it.
+    target : Path
+        Where it is.
+
+    Returns
+    -------
+    int
+        Exit code; `UNFINISHED` if any run did not reach its end.
+    """
     show_rows(_rows(ds))
-    say(f"Ensemble: {target}")
-    failed = np.flatnonzero(ds["status"].values != "finished")
-    for number in failed[:_NAMED]:
-        one = ds.isel(member=number)
-        complain(f"member {number}: {one['message'].item() or one['status'].item()}")
-    if failed.size > _NAMED:
-        complain(f"{failed.size - _NAMED} more members could not be finished")
-    return UNFINISHED if failed.size else DONE
+    say(f"{what}: {target}")
+    return UNFINISHED if name_failures(ds) else DONE
 
 
 @contextmanager

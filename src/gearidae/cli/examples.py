@@ -30,9 +30,17 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "operating-map": (
         "gearidae operating-map mine.toml --over drive.torque=4e-18:5e-18:2e-19 coating.sam_fraction=1:0.4:-0.1",
     ),
+    "calibrate": (
+        'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
+        'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',
+    ),
+    "predict": ("gearidae predict mine.toml --posterior known.nc --size 64 --set drive.torque=6e-18",),
     "life": (
         'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
         'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',
+    ),
+    "lives": (
+        "gearidae lives mine.toml --law contacts --parameter area=1e-19 --size 64 --vary law.area=lognormal(1e-19,3)",
     ),
     "assess": (
         "gearidae assess signal.csv --map map.nc",

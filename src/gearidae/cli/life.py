@@ -1,4 +1,4 @@
-"""``gearidae life``."""
+"""``gearidae life``, and the loss law of the commands that follow lives."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from gearidae.wear import LossLaw
 
-__all__ = ["follow_life"]
+__all__ = ["follow_life", "read_law"]
 
 
 def follow_life(
@@ -59,7 +59,7 @@ def follow_life(
     check_target(target, overwrite=options["overwrite"] or options["resume"])
     found = gd.studies.life(
         read_scene(case, settings),
-        _law(law, parameters, arrhenius),
+        read_law(law, parameters, arrhenius),
         progress=not is_quiet(),
         archive=target,
         **options,
@@ -69,8 +69,24 @@ def follow_life(
     return DONE
 
 
-def _law(name: str, parameters: Sequence[str], arrhenius: Sequence[str]) -> LossLaw:
-    """Make the law."""
+def read_law(name: str, parameters: Sequence[str], arrhenius: Sequence[str]) -> LossLaw:
+    """Make the loss law of a command.
+
+    Parameters
+    ----------
+    name : str
+    parameters, arrhenius : sequence of str
+        ``name=value`` pairs of the law, and of Arrhenius' factor if there is one.
+
+    Returns
+    -------
+    LossLaw
+
+    Raises
+    ------
+    SceneError
+        If there is no such law, or its parameters are others.
+    """
     law = gd.wear.loss_law(name, **assignments(parameters, "--parameter", "energy=2 J/m^2"))
     if not arrhenius:
         return law

@@ -1,4 +1,4 @@
-"""``gearidae plot``: an archive or a coating map as a picture."""
+"""``gearidae plot``: an archive, a coating map, a life or a posterior as a picture."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def draw(
     frames: int | None,
     overwrite: bool,
 ) -> int:
-    """Draw an archive or a coating map into an image file.
+    """Draw an archive, or another file of the commands, into an image file.
 
     Parameters
     ----------
@@ -126,7 +126,13 @@ def _open(archive: Path) -> tuple[xr.Dataset, str]:
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return ds, "overview" if sampled or not swept_dims(ds) else "outcome"
     except SceneError:
-        for read, usual in ((gd.analysis.open_map, "coating_map"), (gd.studies.open_life, "life")):
+        others = (
+            (gd.analysis.open_map, "coating_map"),
+            (gd.studies.open_life, "life"),
+            (gd.studies.open_lives, "lives"),
+            (gd.studies.open_posterior, "posterior"),
+        )
+        for read, usual in others:
             try:
                 return read(archive), usual
             except SceneError:

@@ -13,7 +13,7 @@ from typing import Annotated
 from cyclopts import CycloptsError, Parameter
 
 import gearidae
-from gearidae.cli import study_commands  # noqa: F401, which declares more commands
+from gearidae.cli import life_commands, study_commands  # noqa: F401, which declare more commands
 from gearidae.cli.app import app
 from gearidae.cli.examples import EXAMPLES
 from gearidae.cli.output import hushed
@@ -21,7 +21,9 @@ from gearidae.errors import GearidaeError, SceneError
 
 __all__ = ["app", "session"]
 
-_WRITERS = ("coating-map", "ensemble", "init", "operating-map", "plot", "report", "run", "sweep")
+_WRITERS = (
+    "calibrate", "coating-map", "ensemble", "init", "operating-map", "plot", "predict", "report", "run", "sweep"
+)  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
 log = logging.getLogger("gearidae")

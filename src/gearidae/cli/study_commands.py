@@ -1,15 +1,43 @@
-"""The commands that run a study: many runs that answer one question. `gearidae.cli.app` has the others."""
+"""The commands that run a study: many runs that answer one question. `gearidae.cli.app` has the others.
+
+Those on the life of a coating are in `gearidae.cli.life_commands`.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
 from gearidae.cli import completing
 from gearidae.cli.app import Case, Dask, Output, Overwrite, Settings, app
 
-__all__ = ["coating_map", "ensemble", "life", "operating_map", "threshold"]
+__all__ = [
+    "Design",
+    "Jobs",
+    "Seed",
+    "Vary",
+    "calibrate",
+    "coating_map",
+    "ensemble",
+    "operating_map",
+    "predict",
+    "threshold",
+]
+
+Jobs = Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")]
+Vary = Annotated[
+    list[str],
+    Parameter(
+        help="Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
+        "uniform(lowest, highest), lognormal(median, geometric deviation); repeatable.",
+        consume_multiple=False,
+        completer=completing.keys,
+    ),
+]
+Design = Annotated[str, Parameter(help="sobol or random.")]
+Seed = Annotated[int, Parameter(help="Seed of the design.")]
 
 
 @app.command(name="coating-map")
@@ -26,7 +54,7 @@ def coating_map(
     ] = None,
     output: Output = None,
     settings: Settings = None,
-    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    jobs: Jobs = None,
     resume: Annotated[
         bool, Parameter(help="Resume an interrupted map; its finished runs are reused.")
     ] = False,
@@ -55,7 +83,7 @@ def threshold(
     exits: Annotated[int, Parameter(help="Mesh exits to wait for.")] = 100,
     output: Output = None,
     settings: Settings = None,
-    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    jobs: Jobs = None,
     overwrite: Overwrite = False,
     resume: Annotated[bool, Parameter(help="Resume the unfinished search in the output file.")] = False,
 ) -> int:
@@ -80,7 +108,7 @@ def operating_map(
     ],
     output: Output = None,
     settings: Settings = None,
-    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    jobs: Jobs = None,
     dask: Dask = None,
     resume: Annotated[bool, Parameter(help="Resume the unfinished map in the output file.")] = False,
     overwrite: Overwrite = False,
@@ -99,24 +127,16 @@ def operating_map(
 def ensemble(
     case: Case,
     *,
-    vary: Annotated[
-        list[str],
-        Parameter(
-            help="Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
-            "uniform(lowest, highest), lognormal(median, geometric deviation); repeatable.",
-            consume_multiple=False,
-            completer=completing.keys,
-        ),
-    ],
+    vary: Vary,
     size: Annotated[int, Parameter(help="Number of members; with --of, of rows, a power of 2.")],
     of: Annotated[
         str | None, Parameter(help="Figure whose Sobol indices are wanted: sticks, min_gear_speed and so on.")
     ] = None,
-    design: Annotated[str, Parameter(help="sobol or random.")] = "sobol",
-    seed: Annotated[int, Parameter(help="Seed of the design.")] = 0,
+    design: Design = "sobol",
+    seed: Seed = 0,
     output: Output = None,
     settings: Settings = None,
-    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    jobs: Jobs = None,
     dask: Dask = None,
     resume: Annotated[bool, Parameter(help="Resume the unfinished ensemble in the output file.")] = False,
     overwrite: Overwrite = False,
@@ -133,43 +153,69 @@ def ensemble(
 
 
 @app.command
-def life(
+def calibrate(
     case: Case,
     *,
-    law: Annotated[str, Parameter(help="Loss law: contacts, adhesion_work or sliding_work.")],
-    parameter: Annotated[
+    vary: Annotated[
         list[str],
-        Parameter(help="Parameter of the law, such as energy='2 J/m^2'; repeatable.", consume_multiple=False),
+        Parameter(
+            help="Key and what was known of it, key=normal(450 nm, 50 nm), as for ensemble; repeatable.",
+            consume_multiple=False,
+            completer=completing.keys,
+        ),
     ],
-    arrhenius: Annotated[
+    seen: Annotated[
         list[str] | None,
         Parameter(
-            help="Factor of Arrhenius: activation_energy, activation_volume and temperature; repeatable.",
+            help="Observation and its conditions: 'sticks=true; drive.torque=4.2e-18', "
+            "'ring_frequency=5.2 kHz +- 0.1 kHz'; repeatable.",
             consume_multiple=False,
         ),
     ] = None,
-    passages: Annotated[float, Parameter(help="Passages of each tooth of the pinion at most.")] = 1e12,
-    fraction: Annotated[float, Parameter(help="Mean coverage at which the life ends.")] = 0.0,
-    resolved: Annotated[
-        str, Parameter(help="Coverage: uniform, by place, or by tooth and place.")
-    ] = "uniform",
-    tolerance: Annotated[float, Parameter(help="Relative tolerance of each jump.")] = 3e-3,
+    observations: Annotated[Path | None, Parameter(help="File with more of them: .toml or .csv.")] = None,
+    method: Annotated[
+        Literal["auto", "grid", "emcee"], Parameter(help="By default a grid for up to two keys, else emcee.")
+    ] = "auto",
+    points: Annotated[int, Parameter(help="Cells a key of the grid.")] = 41,
+    steps: Annotated[int, Parameter(help="Steps of each of emcee's walkers.")] = 500,
+    seed: Annotated[int, Parameter(help="Seed of emcee.")] = 0,
     output: Output = None,
     settings: Settings = None,
-    jobs: Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")] = None,
+    jobs: Jobs = None,
+    dask: Dask = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished calibration of the output file.")] = False,
     overwrite: Overwrite = False,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished life in the output file.")] = False,
 ) -> int:
-    """Follow the coverage over the passages of the teeth until the gear sticks."""
-    from gearidae.cli.life import follow_life
+    """Find out what observations of gears say about keys that are not known: their posterior.
 
-    options = {
-        "passages": passages,
-        "fraction": fraction,
-        "resolved": resolved,
-        "tolerance": tolerance,
-        "jobs": jobs,
-        "overwrite": overwrite,
-        "resume": resume,
-    }
-    return follow_life(str(case), law, parameter, arrhenius or [], options, output, settings or [])
+    Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
+    """
+    from gearidae.cli.calibrate import calibrate_case
+
+    options: dict[str, object] = {"method": method, "points": points, "steps": steps, "seed": seed}
+    options |= {"jobs": jobs, "resume": resume, "overwrite": overwrite}
+    return calibrate_case(str(case), vary, seen or [], observations, options, output, settings or [], dask)
+
+
+@app.command
+def predict(
+    case: Case,
+    *,
+    posterior: Annotated[Path, Parameter(help="Posterior, from gearidae calibrate.")],
+    size: Annotated[int, Parameter(help="Number of runs.")],
+    seed: Annotated[int, Parameter(help="Seed of the draws.")] = 0,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Jobs = None,
+    dask: Dask = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished prediction in the output file.")] = False,
+    overwrite: Overwrite = False,
+) -> int:
+    """Run a scene with the keys that were calibrated drawn from their posterior: how often it sticks.
+
+    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+    """
+    from gearidae.cli.calibrate import predict_case
+
+    options = {"size": size, "seed": seed, "jobs": jobs, "resume": resume, "overwrite": overwrite}
+    return predict_case(str(case), posterior, options, output, settings or [], dask)

@@ -15,13 +15,15 @@ from rich.text import Text
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.select import swept_dims
-from gearidae.cli.output import show
+from gearidae.cli.output import complain, show
 from gearidae.scene.prefixes import with_prefix
 
-__all__ = ["label_text", "show_account", "show_outcomes", "show_rows"]
+__all__ = ["label_text", "name_failures", "show_account", "show_outcomes", "show_rows"]
 
 _GEAR_HEADINGS = ("outcome", "min rad/s", "max rad/s", "impacts", "wall s")
 _ROLLER_HEADINGS = ("outcome", "peak", "pull-off", "restitution", "impacts", "wall s")
+_NAMED = 3
+"""Failed members that are named."""
 
 
 _BALANCE_ROWS = (
@@ -110,6 +112,28 @@ def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:
     for name, value, remark in rows:
         table.add_row(Text(f"  {name}") if value else Text(name, style="bold"), Text(value), Text(remark))
     show(table)
+
+
+def name_failures(ds: xr.Dataset) -> int:
+    """Say which members of an ensemble could not be finished, and why.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        With ``status`` and ``message`` along ``member``.
+
+    Returns
+    -------
+    int
+        How many.
+    """
+    failed = [number for number, word in enumerate(ds["status"].values.tolist()) if word != "finished"]
+    for number in failed[:_NAMED]:
+        one = ds.isel(member=number)
+        complain(f"member {number}: {one['message'].item() or one['status'].item()}")
+    if len(failed) > _NAMED:
+        complain(f"{len(failed) - _NAMED} more members could not be finished")
+    return len(failed)
 
 
 def label_text(label: Mapping[str, Any]) -> str:

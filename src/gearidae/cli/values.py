@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from decimal import Decimal, DecimalException
 from pathlib import Path
 from typing import Any
 
 from gearidae.errors import SceneError
+from gearidae.scene.literal import literal
 from gearidae.scene.units import from_text
 
 __all__ = ["assignments", "default_output", "quantity", "spread", "sweep_values", "texts"]
 
 _LONGEST_RANGE = 100_000
-_TAKES_PAIRS = ("--set", "--over", "--vary", "--select", "--line")
+_TAKES_PAIRS = ("--set", "--over", "--vary", "--seen", "--select", "--line")
 
 
 def spread(arguments: Sequence[str]) -> list[str]:
@@ -65,7 +65,7 @@ def assignments(
     SceneError
         If a pair has no ``=`` or a key stands twice.
     """
-    return {key: _literal(text) for key, text in texts(pairs, option, example).items()}
+    return {key: literal(text) for key, text in texts(pairs, option, example).items()}
 
 
 def texts(pairs: Sequence[str], option: str, example: str) -> dict[str, str]:
@@ -168,17 +168,9 @@ def _listed(key: str, text: str) -> list[Any]:
     if ":" in text:
         return _range(key, text)
     if text.startswith("["):
-        listed = _literal(text)
+        listed = literal(text)
         return listed if isinstance(listed, list) else [listed]
-    return [_literal(part.strip()) for part in text.split(",")]
-
-
-def _literal(text: str) -> Any:
-    """Read a value as TOML would; what TOML does not know is a text, such as a number with a unit."""
-    try:
-        return tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
-    except tomllib.TOMLDecodeError:
-        return text
+    return [literal(part.strip()) for part in text.split(",")]
 
 
 def _range(key: str, text: str) -> list[float]:

@@ -64,9 +64,9 @@ _NAMES = {ADAMS: "Adams' formulas", BDF: "IDA's own formulas"}
 def formulas(problem: Problem, backend: str) -> str:
     """Name the formulas that a run of this problem begins with, `ADAMS` or `BDF`.
 
-    Elastic contacts are stiff, and left to IDA's own. So is everything by the portable driver.
+    The portable driver leaves everything to IDA's own.
     """
-    if backend != "native" or problem.model.scene.nodes > 0:
+    if backend != "native":
         return BDF
     return native_formulas(problem.method) or BDF
 

@@ -17,6 +17,7 @@ from gearidae.plot.lives import lives
 from gearidae.plot.outcome import outcome
 from gearidae.plot.outcome_map import outcome_map
 from gearidae.plot.overview import overview
+from gearidae.plot.posterior import posterior
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
 from gearidae.plot.surface import surface
@@ -40,6 +41,7 @@ __all__ = [
     "outcome",
     "outcome_map",
     "overview",
+    "posterior",
     "power_spectrum",
     "roller_force",
     "roller_gap",

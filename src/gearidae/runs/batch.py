@@ -3,79 +3,37 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
-from concurrent.futures import Executor, Future, as_completed
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
+from dataclasses import replace
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearidae.archive.keep import Keep
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.variables import VERDICT
-from gearidae.archive.verdict import verdict_of
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress
-from gearidae.records import Solution
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.running import solve, unsolved
+from gearidae.runs.leaving import Left, crashed, solve_and_leave, solve_group
+from gearidae.runs.running import unsolved
 from gearidae.runs.sweep_plan import SweepPlan
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from gearidae.scene import Scene
+__all__ = ["Batch"]
 
-__all__ = ["Batch", "Left", "solve_and_leave"]
-
-
-@dataclass(frozen=True, slots=True)
-class Left:
-    """What a run leaves behind.
-
-    Attributes
-    ----------
-    solution : Solution
-        Without the parts that are not kept.
-    verdict : str
-        Its outcome in one word, if parts are not kept; empty if all are.
-    impacts, flank_changes : int
-        Contacts made, and how often contact went over to the other flank, likewise.
-    """
-
-    solution: Solution
-    verdict: str = ""
-    impacts: int = 0
-    flank_changes: int = 0
-
-
-def solve_and_leave(
-    scene: Scene, backend: str, keep: Keep, on_progress: Callable[[float, int], None] | None = None
-) -> Left:
-    """Run a scene, judge it, and drop what is not kept, where it was run.
-
-    Parameters
-    ----------
-    scene : Scene
-    backend : str
-        As for `gearidae.simulate`.
-    keep : Keep
-    on_progress : callable, optional
-        As for `gearidae.runs.running.solve`.
-
-    Returns
-    -------
-    Left
-    """
-    return leave(scene, solve(scene, backend, on_progress), keep)
-
-
-def leave(scene: Scene, solution: Solution, keep: Keep) -> Left:
-    """Judge a run and drop what is not kept of it."""
-    if keep.names is None:
-        return Left(solution)
-    return Left(keep.thinned(solution), *verdict_of(scene, solution))
+_AHEAD: Final = 8
+"""Runs that wait for each thread: all at once would take more memory than what they leave behind."""
+_ALONE: Final = 16
+"""Runs that are sent alone to other processes, before it is known how long they take."""
+_TOGETHER: Final = 0.5
+"""About how long runs that are sent together shall take [s]: what it costs to send them is little beside that."""
+_MOST_TOGETHER: Final = 64
 
 
 class Batch:
@@ -111,7 +69,8 @@ class Batch:
         # samples go to where the dataset has them as soon as they are there: they are in memory once
         self._samples = SampleTable(keep.columns(plan.base), len(plan.scenes), plan.base.run.sample_count)
         self._done: dict[int, Left] = {}
-        self._reached = [0.0] * len(plan.scenes)
+        self._under_way: dict[int, float] = {}  # share that is done of the runs that have begun
+        self._counting = threading.Lock()
         self._cancelled = threading.Event()
 
     @property
@@ -126,17 +85,24 @@ class Batch:
             if taken is not None:
                 solution, judged = taken
                 self._store(number, Left(solution, **judged))
-                self._reached[number] = 1.0
-        self._report(sum(self._reached), len(self._scenes))
+        self._tell()
 
-    def run(self, executor: Executor | None, *, in_process: bool) -> bool:
-        """Compute all runs; return whether Ctrl-C ended it early."""
+    def run(self, executor: Executor | None, *, threads: int = 0) -> bool:
+        """Compute all runs; return whether Ctrl-C ended it early.
+
+        Parameters
+        ----------
+        executor : Executor or None
+            None for one run after the other, here.
+        threads : int, optional
+            How many threads of this process the executor has; 0 if it is of other processes.
+        """
         try:
             if executor is None:
                 for number in self._missing():
-                    self._finish(number, self._outcome(number, partial(self._solve_here, number)))
+                    self._finish(number, self._outcome_here(number))
             else:
-                self._submit(executor, in_process=in_process)
+                self._submit(executor, threads)
         except KeyboardInterrupt:
             self._cancelled.set()
             return True
@@ -159,47 +125,103 @@ class Batch:
     def _missing(self) -> list[int]:
         return [number for number in range(len(self._scenes)) if number not in self._done]
 
-    def _submit(self, executor: Executor, *, in_process: bool) -> None:
-        futures: dict[Future[Left], int] = {}
+    def _submit(self, executor: Executor, threads: int) -> None:
+        pending: dict[Future[list[Left]], Sequence[int]] = {}
+        ended: SimpleQueue[Future[list[Left]]] = SimpleQueue()
+
+        def submit(numbers: Sequence[int]) -> None:
+            future = self._future(executor, numbers, in_process=threads > 0)
+            pending[future] = numbers
+            future.add_done_callback(ended.put)
+
+        waiting = deque(self._missing())
         try:
-            for number in self._missing():
-                if in_process:
-                    future = executor.submit(self._solve_here, number)
-                else:
-                    future = executor.submit(solve_and_leave, self._scenes[number], self._backend, self._keep)
-                futures[future] = number
-            for future in as_completed(list(futures)):
-                number = futures[future]
-                self._finish(number, self._outcome(number, future.result))
-                del futures[
-                    future
-                ]  # which holds the run's samples; after it was stored, which Ctrl-C may prevent
+            for _ in range(min(len(waiting), _AHEAD * threads or _ALONE)):
+                submit([waiting.popleft()])
+            while pending:
+                future = ended.get()
+                for number, left in self._outcomes(future, pending[future], submit):
+                    self._finish(number, left)
+                # only now: it holds the runs' samples, and Ctrl-C may have kept them from being stored
+                del pending[future]
+                if threads and waiting:
+                    submit([waiting.popleft()])
+                elif waiting and (size := self._group_size() or (0 if pending else 1)):
+                    while waiting:
+                        submit([waiting.popleft() for _ in range(min(size, len(waiting)))])
         except BaseException:
             self._cancelled.set()
-            for future, number in futures.items():
+            for future, numbers in pending.items():
                 if not future.cancel() and future.done() and future.exception() is None:
-                    left = future.result()
-                    if left.solution.status != "interrupted":
-                        self._note(number, left)
+                    for number, left in zip(numbers, future.result(), strict=False):
+                        if left.solution.status != "interrupted":
+                            self._note(number, left)
             raise
 
-    def _solve_here(self, number: int) -> Left:
+    def _future(self, executor: Executor, numbers: Sequence[int], *, in_process: bool) -> Future[list[Left]]:
+        """Hand runs to an executor."""
+        scenes = [self._scenes[number] for number in numbers]
+        try:
+            if in_process:
+                return executor.submit(self._solve_here, *numbers)
+            return executor.submit(solve_group, scenes, self._backend, self._keep)
+        except BrokenExecutor as error:  # a process of it has died: none of its runs will be finished
+            future: Future[list[Left]] = Future()
+            future.set_exception(error)
+            return future
+
+    def _outcomes(
+        self, future: Future[list[Left]], numbers: Sequence[int], submit: Callable[[Sequence[int]], None]
+    ) -> list[tuple[int, Left]]:
+        """Return what runs have left; those that were together when a worker died are begun again, each alone."""
+        try:
+            return list(zip(numbers, future.result(), strict=False))
+        except SceneError:
+            raise
+        except Exception as error:
+            if len(numbers) == 1:
+                return [(numbers[0], crashed(self._scenes[numbers[0]], error, self._keep))]
+            for number in numbers:
+                submit([number])
+            return []
+
+    def _group_size(self) -> int:
+        """How many runs to send together, by how long those took that are there; 0 if that is not known."""
+        longest = max((each.solution.statistics.wall_time for each in self._done.values()), default=0.0)
+        return min(max(int(_TOGETHER / longest), 1), _MOST_TOGETHER) if longest > 0.0 else 0
+
+    def _solve_here(self, number: int) -> list[Left]:
         duration = self._scenes[number].run.duration
 
         def on_progress(time: float, events: int) -> None:
             if self._cancelled.is_set():
                 raise KeyboardInterrupt  # the only way to end a thread's run is from inside
-            self._reached[number] = time / duration
-            self._report(sum(self._reached), len(self._scenes))
+            with self._counting:
+                self._under_way[number] = time / duration
+            self._tell()
 
-        return solve_and_leave(self._scenes[number], self._backend, self._keep, on_progress)
+        return [solve_and_leave(self._scenes[number], self._backend, self._keep, on_progress)]
+
+    def _outcome_here(self, number: int) -> Left:
+        """Run a scene; one that dies (of memory that ran out) must not take the others along."""
+        try:
+            return self._solve_here(number)[0]
+        except SceneError:
+            raise
+        except Exception as error:
+            return crashed(self._scenes[number], error, self._keep)
 
     def _finish(self, number: int, left: Left) -> None:
         if left.solution.status == "interrupted":
             raise KeyboardInterrupt
         self._note(number, left)
-        self._reached[number] = 1.0
-        self._report(sum(self._reached), len(self._scenes))
+        self._tell()
+
+    def _tell(self) -> None:
+        """Report how many runs are done, those under way in part."""
+        with self._counting:
+            done = len(self._done) + sum(self._under_way.values())
+        self._report(done, len(self._scenes))
 
     def _note(self, number: int, left: Left) -> None:
         if number not in self._done:
@@ -210,15 +232,6 @@ class Batch:
 
     def _store(self, number: int, left: Left) -> None:
         slim = self._samples.take(number, left.solution)
-        self._done[number] = replace(left, solution=slim)
-
-    def _outcome(self, number: int, result: Callable[[], Left]) -> Left:
-        """Return a run's result; one that died with its worker (out of memory) must not take the others along."""
-        try:
-            return result()
-        except SceneError:
-            raise
-        except Exception as error:
-            return leave(
-                self._scenes[number], unsolved("crashed", f"{type(error).__name__}: {error}"), self._keep
-            )
+        with self._counting:
+            self._done[number] = replace(left, solution=slim)
+            self._under_way.pop(number, None)

@@ -15,22 +15,28 @@ from typing import TYPE_CHECKING, Any
 
 import netCDF4
 import numpy as np
+from numpy.typing import NDArray
 
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.library import LIBRARY
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
 from gearidae.archive.variables import VERDICT
 from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
+from gearidae.runs.run_journal import RunJournal
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["KeptRuns", "folder_beside"]
+__all__ = ["KeptRuns", "circumstances", "folder_beside", "name_of"]
 
-_LAYOUT = 4
+Floats = NDArray[np.float64]
+
+_LAYOUT = 5
 """Version of the files' layout."""
-_OURS = re.compile(r"\.?[0-9a-f]{64}(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
-"""Names of our files, finished or cut off while they were written."""
+_JOURNAL = "runs.jsonl"
+"""Holds the runs without samples and events."""
+_OURS = re.compile(r"\.?([0-9a-f]{64}|runs\.jsonl)(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
+"""Names of our other files, finished or cut off while they were written."""
 _EVENTS = {"time": np.float64, "kind": np.int8, "pair": np.int64, "flank": np.int8, "gap_rate": np.float64}
 """Rows of the table of events, all of which double precision holds exactly, and their types in memory."""
 
@@ -43,13 +49,45 @@ def folder_beside(archive: Path) -> Path:
     return archive.with_name(f"{archive.name}.runs")
 
 
+def circumstances(scene: Scene, backend: str) -> dict[str, Any]:
+    """Return what a result depends on besides its scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any of a sweep.
+    backend : str
+        The driver that runs, ``native`` or ``sksundae``.
+    """
+    return {
+        "schema": SCHEMA_VERSION,
+        "software": provenance(scene, "")["source"],
+        "backend": backend,
+    }
+
+
+def name_of(scene: Scene, about: Mapping[str, Any]) -> str:
+    """Hash of a scene and of all else that a result depends on: what its file is called.
+
+    Parameters
+    ----------
+    scene : Scene
+    about : mapping
+        Ready for JSON; from `circumstances`, and more.
+    """
+    text = json.dumps({**about, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
 class KeptRuns:
     """The folder of finished runs of one sweep.
 
     Each run is a netCDF file named by the hash of all that its result depends on: the scene (with its
     duration, samples and tolerance), the driver of the solver, and the versions of the software. It appears
-    under its name only when it is complete. It is not forced onto the disk, which would take longer than many
-    a run; what a power failure leaves of it is found by its checksum. Nothing in a file is ever executed.
+    under its name only when it is complete. A run without samples and events is a line of the file ``runs.jsonl``
+    instead, under the same hash: a file of its own takes ten times as long. Runs are not forced onto the disk, which
+    would take longer than many a run; what a power failure leaves of them is found by checksums. Nothing in a file is
+    ever executed.
 
     Parameters
     ----------
@@ -65,23 +103,21 @@ class KeptRuns:
 
     def __init__(self, archive: Path, scene: Scene, backend: str, keep: Keep = EVERYTHING) -> None:
         self.folder = folder_beside(archive)
+        self._journal = RunJournal(self.folder / _JOURNAL)
         self._circumstances = {
             "layout": _LAYOUT,
-            "schema": SCHEMA_VERSION,
-            "software": provenance(scene, "")["source"],
-            "backend": backend,
+            **circumstances(scene, backend),
             **({} if keep.names is None else {"keep": keep.asked}),
         }
         self._warned = False
 
     def count(self) -> int:
         """Count the runs that are kept."""
-        return sum(path.suffix == ".nc" for path in self._files())
+        return sum(path.suffix == ".nc" for path in self._files()) + len(self._journal)
 
     def key(self, scene: Scene) -> str:
         """Hash of a scene and of all else that its result depends on."""
-        text = json.dumps({**self._circumstances, "scene": scene.to_dict()}, sort_keys=True, allow_nan=False)
-        return hashlib.sha256(text.encode()).hexdigest()
+        return name_of(scene, self._circumstances)
 
     def keep(self, scene: Scene, solution: Solution, judged: Mapping[str, str | int] | None = None) -> None:
         """Write a finished run, or what it leaves behind and how it was judged, a value for each of `VERDICT`.
@@ -89,14 +125,13 @@ class KeptRuns:
         A run that cannot be kept is no reason to stop; that is said in one warning for the sweep.
         """
         key = self.key(scene)
-        part = self.folder / f".{key}.{os.getpid()}-{secrets.token_hex(4)}.part"
+        header = _header(key, solution, {name: (judged or {}).get(name) for name in VERDICT})
         try:
             self.folder.mkdir(exist_ok=True)
-            try:
-                _write(part, key, solution, {name: (judged or {}).get(name) for name in VERDICT})
-                part.replace(self._path(key))
-            finally:
-                part.unlink(missing_ok=True)
+            if not len(solution.time) and not len(solution.events):
+                self._journal.append(key, header)
+            else:
+                self._write(key, header, solution)
         except (OSError, RuntimeError) as error:  # netCDF4 reports a full disk as either
             if not self._warned:
                 warnings.warn(f"finished runs cannot be kept in {self.folder} ({error})", stacklevel=2)
@@ -109,18 +144,21 @@ class KeptRuns:
         """
         key = self.key(scene)
         path = self._path(key)
-        if not path.is_file():
-            return None
         try:
-            return _read(path, key)
+            if path.is_file():
+                return _read(path, key)
+            path = self._journal.path
+            text = self._journal.read(key)
+            return None if text is None else _rebuilt(json.loads(text), key)
         except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
             warnings.warn(f"{path} is ignored and its run computed again ({error})", stacklevel=2)
             return None
 
     def note_strangers(self, scenes: Collection[Scene]) -> None:
         """Warn of kept runs that are none of these scenes."""
-        own = {self._path(self.key(scene)) for scene in scenes}
-        strangers = sum(path.suffix == ".nc" and path not in own for path in self._files())
+        own = {self.key(scene) for scene in scenes}
+        strangers = sum(path.suffix == ".nc" and path.stem not in own for path in self._files())
+        strangers += len(self._journal.keys() - own)
         if strangers:
             warnings.warn(
                 f"{strangers} of the runs kept in {self.folder} are of other scenes, settings or versions; "
@@ -130,12 +168,22 @@ class KeptRuns:
 
     def remove(self, scenes: Collection[Scene] | None = None) -> None:
         """Delete the kept runs of some scenes, or all of them, and the folder if nothing else is in it."""
-        own = None if scenes is None else {self._path(self.key(scene)) for scene in scenes}
+        own = None if scenes is None else {self.key(scene) for scene in scenes}
         for path in self._files():
-            if own is None or path in own or path.suffix == ".part":
+            if own is None or path.stem in own or path.suffix == ".part":
                 path.unlink(missing_ok=True)
+        self._journal.remove(self._journal.keys() if own is None else own)
         if self.folder.is_dir() and not any(self.folder.iterdir()):
             self.folder.rmdir()
+
+    def _write(self, key: str, header: str, solution: Solution) -> None:
+        """Write a run to a file of its own, which appears when it is whole."""
+        part = self.folder / f".{key}.{os.getpid()}-{secrets.token_hex(4)}.part"
+        try:
+            _write(part, header, solution)
+            part.replace(self._path(key))
+        finally:
+            part.unlink(missing_ok=True)
 
     def _path(self, key: str) -> Path:
         return self.folder / f"{key}.nc"
@@ -146,11 +194,9 @@ class KeptRuns:
         return [path for path in self.folder.iterdir() if _OURS.fullmatch(path.name)]
 
 
-def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> None:
-    """Two tables and a header in the classic format: a tenth of the time that an archive takes."""
-    samples = np.stack([solution.time, *solution.samples.values()])
-    events = np.stack([getattr(solution.events, name).astype(np.float64) for name in _EVENTS])
-    header = json.dumps(
+def _header(key: str, solution: Solution, judged: dict[str, Any]) -> str:
+    """All of a run but its samples and events."""
+    return json.dumps(
         {
             "key": key,
             "judged": judged,
@@ -164,6 +210,12 @@ def _write(path: Path, key: str, solution: Solution, judged: dict[str, Any]) -> 
         },
         default=int,  # numpy's integers
     )
+
+
+def _write(path: Path, header: str, solution: Solution) -> None:
+    """Two tables and a header in the classic format: a tenth of the time that an archive takes."""
+    samples = np.stack([solution.time, *solution.samples.values()])
+    events = np.stack([getattr(solution.events, name).astype(np.float64) for name in _EVENTS])
     with LIBRARY, netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
         file.set_fill_off()
         for name, table in (("samples", samples), ("events", events)):
@@ -199,6 +251,15 @@ def _read(path: Path, key: str) -> tuple[Solution, dict[str, Any]]:
         )
         if file.getncattr("checksum") != _checksum(text, samples, events):
             raise ValueError("its checksum does not agree")
+    return _rebuilt(header, key, samples, events)
+
+
+def _rebuilt(
+    header: dict[str, Any], key: str, samples: Floats | None = None, events: Floats | None = None
+) -> tuple[Solution, dict[str, Any]]:
+    """Make a run of its header and its tables, which may be empty; ValueError if it is another's."""
+    samples = np.empty((1 + len(header["columns"]), 0)) if samples is None else samples
+    events = np.empty((len(_EVENTS), 0)) if events is None else events
     if header["key"] != key:
         raise ValueError("it is of another scene, setting or version")
     columns = {name: row.copy() for name, row in zip(header["columns"], samples[1:], strict=True)}
@@ -226,7 +287,7 @@ def _extremes(numbers: dict[str, Any] | None) -> Extremes | None:
     return Extremes(**{**numbers, "exposures": tuple(numbers.get("exposures", ()))})
 
 
-def _checksum(header: str, *tables: np.ndarray[Any, np.dtype[np.float64]]) -> str:
+def _checksum(header: str, *tables: Floats) -> str:
     digest = hashlib.sha256(header.encode())
     for table in tables:
         digest.update(repr(table.shape).encode())

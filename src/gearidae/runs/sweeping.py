@@ -192,10 +192,10 @@ def run_plan(
         if former is not None:
             batch.take_kept(former)
         if executor is not None:
-            interrupted = batch.run(executor, in_process=False)
+            interrupted = batch.run(executor)
         else:
             with own_executor(workers, batch.left, releases_gil=releases_gil) as own:
-                interrupted = batch.run(own, in_process=releases_gil)
+                interrupted = batch.run(own, threads=workers if releases_gil else 0)
                 if interrupted and own is not None:
                     stop(own)
     return batch.dataset(), interrupted

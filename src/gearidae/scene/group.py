@@ -14,6 +14,8 @@ from gearidae.errors import SceneError
 __all__ = ["Group", "did_you_mean", "shorten"]
 
 _LONGEST_VALUE = 60
+_NOT_NOTED: set[str] = set()
+"""Shared by all tables, and never changed."""
 
 
 class Group(BaseModel):
@@ -39,6 +41,8 @@ class Group(BaseModel):
             super().__init__(**data)
         except ValidationError as error:
             raise _scene_error(error) from error
+        # pydantic notes which fields were given, which nobody asks: as sets of their own most of a scene's memory
+        object.__setattr__(self, "__pydantic_fields_set__", _NOT_NOTED)
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse: scenes are frozen."""

@@ -217,7 +217,12 @@ class Scene(Group):
                 raise SceneError(
                     key, shorten(changes[key]), f"cannot be given beside {other}: choose one of the two"
                 )
-        data = self.to_dict()
+        touched = {key.partition(".")[0] for key in changes if isinstance(key, str)}
+        # tables that stay are shared: they have been checked, and a scene of an ensemble takes few kilobytes
+        data: dict[str, Any] = {
+            name: table for name, table in self if name not in touched and table is not None
+        }
+        data |= self._plain(touched)
         for key, value in changes.items():
             put(type(self), data, key, value)
         return type(self).from_dict(data)
@@ -230,7 +235,11 @@ class Scene(Group):
         dict
             ``Scene.from_dict`` makes an equal scene of it, to the last bit.
         """
-        data: dict[str, Any] = self.model_dump(mode="json", exclude_none=True)
+        return self._plain(None)
+
+    def _plain(self, tables: set[str] | None) -> dict[str, Any]:
+        """Return some tables, or all, as `to_dict` does."""
+        data: dict[str, Any] = self.model_dump(mode="json", exclude_none=True, include=tables)
         for table, key in _NOTHING_IF_EMPTY:
             if table in data and not data[table][key]:
                 del data[table][key]

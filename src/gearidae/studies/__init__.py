@@ -21,11 +21,13 @@ if TYPE_CHECKING:
     from gearidae.studies.ensemble import ensemble
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.life import life
-    from gearidae.studies.life_file import open_life
+    from gearidae.studies.life_file import open_life, open_lives
     from gearidae.studies.life_signals import assess_life
     from gearidae.studies.lives import lives
+    from gearidae.studies.observation_files import read_observations
     from gearidae.studies.observations import Observation
     from gearidae.studies.operating_map import operating_map
+    from gearidae.studies.posterior_file import open_posterior
     from gearidae.studies.predict import predict
     from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
@@ -47,9 +49,12 @@ __all__ = [
     "lives",
     "natural_frequency",
     "open_life",
+    "open_lives",
     "open_map",
+    "open_posterior",
     "operating_map",
     "predict",
+    "read_observations",
     "resting_gap",
     "run_time",
     "sensitivity",
@@ -76,9 +81,12 @@ _HOME = {
     "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
     "open_life": "life_file",
+    "open_lives": "life_file",
     "open_map": "coating_map",
+    "open_posterior": "posterior_file",
     "operating_map": "operating_map",
     "predict": "predict",
+    "read_observations": "observation_files",
     "resting_gap": "gearidae.runs.estimates",
     "run_time": "gearidae.runs.run_time",
     "sensitivity": "sensitivity",

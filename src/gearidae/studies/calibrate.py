@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from gearidae.archive import save
 from gearidae.archive.dataset import dimension_names
-from gearidae.archive.library import uninterrupted
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
@@ -26,6 +25,7 @@ from gearidae.studies.ensemble import figure_names
 from gearidae.studies.observations import Observation
 from gearidae.studies.posterior import grid_posterior, sampled_posterior
 from gearidae.studies.predicting import Predictor
+from gearidae.studies.product_file import read_product
 from gearidae.studies.study_run import Execution
 
 if TYPE_CHECKING:
@@ -216,12 +216,11 @@ def _attributes(
 
 def _whole(path: Path, about: Mapping[str, Any]) -> xr.Dataset:
     """Return the posterior in a file if it is this one."""
-    try:
-        with uninterrupted(), xr.open_dataset(path) as opened:
-            ds = opened.load()
-    except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
-        raise SceneError("archive", path, f"cannot be read ({type(error).__name__})") from None
-    if any(ds.attrs.get(name) != about[name] for name in ("scene", "source", "calibration")):
-        allowed = "exists and is of something else: name another, or allow --overwrite (overwrite=True)"
-        raise SceneError("archive", path, allowed)
-    return ds
+
+    def check(ds: xr.Dataset) -> xr.Dataset:
+        if any(ds.attrs.get(name) != about[name] for name in ("scene", "source", "calibration")):
+            allowed = "exists and is of something else: name another, or allow --overwrite (overwrite=True)"
+            raise SceneError("archive", path, allowed)
+        return ds
+
+    return read_product(path, "archive", "posterior", "gearidae calibrate", check)

@@ -88,16 +88,19 @@ class Distribution:
     Attributes
     ----------
     key : str
-        Dotted key of the scene.
+        Dotted key of the scene, or parameter of a law.
     text : str
         The distribution in words.
     frozen : object
         Its quantiles are ``frozen.ppf(probability)``, in SI units.
+    unit : str
+        That SI unit.
     """
 
     key: str
     text: str
     frozen: Any
+    unit: str
 
     def quantiles(self, probability: Floats) -> Floats:
         """Values [SI] below which a share of the distribution lies.
@@ -143,7 +146,9 @@ class Distribution:
         return np.asarray(self.frozen.logpdf(values), dtype=np.float64)
 
 
-def read_distributions(scene: Scene, vary: Mapping[str, Any]) -> tuple[Distribution, ...]:
+def read_distributions(
+    scene: Scene, vary: Mapping[str, Any], others: Callable[[str, Any], str | None] | None = None
+) -> tuple[Distribution, ...]:
     """Read the distributions of some keys.
 
     Parameters
@@ -153,6 +158,8 @@ def read_distributions(scene: Scene, vary: Mapping[str, Any]) -> tuple[Distribut
     vary : mapping of str to object
         Dotted key to a frozen distribution of scipy.stats in SI units (anything with a method ``ppf``), or a text, see
         `KINDS`.
+    others : callable, optional
+        Told a key and what is given for it: the unit of what is no key of the scene, None of what may be one.
 
     Returns
     -------
@@ -166,21 +173,30 @@ def read_distributions(scene: Scene, vary: Mapping[str, Any]) -> tuple[Distribut
     if not isinstance(vary, Mapping) or not vary:
         allowed = 'must be a table of keys and distributions, {"surface.energy": "lognormal(1.5 J/m^2, 1.2)"}'
         raise SceneError("vary", shorten(vary), allowed)
-    return tuple(_read(scene, key, given) for key, given in vary.items())
+    found = []
+    for key, given in vary.items():
+        unit = None if others is None else others(key, given)
+        found.append(_read(key, given, _unit_of(scene, key, given) if unit is None else unit))
+    return tuple(found)
 
 
-def _read(scene: Scene, key: str, given: Any) -> Distribution:
+def _unit_of(scene: Scene, key: str, given: Any) -> str:
+    """Return the unit of a key of the scene that can be drawn."""
     info = find_key(type(scene), key, given)
     if not info.unit:
         raise SceneError(key, shorten(given), "is no key of a number: a distribution needs one")
     if key in _FIXED:
         raise SceneError(key, shorten(given), "cannot be drawn: all runs take the same time")
+    return info.unit
+
+
+def _read(key: str, given: Any, unit: str) -> Distribution:
     if isinstance(given, str):
-        return Distribution(key, " ".join(given.split()), _of_text(key, given, info.unit))
+        return Distribution(key, " ".join(given.split()), _of_text(key, given, unit), unit)
     if not callable(getattr(given, "ppf", None)):
         allowed = f"must be a frozen distribution of scipy.stats, or a text: {_known()}"
         raise SceneError(key, shorten(given), allowed)
-    return Distribution(key, _described(given), given)
+    return Distribution(key, _described(given), given, unit)
 
 
 def _of_text(key: str, text: str, unit: str) -> Any:

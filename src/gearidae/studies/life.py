@@ -3,7 +3,8 @@
 A window is some mesh cycles at a coverage that does not change; what its flanks are exposed to
 (`gearidae.engine.energy.exposures`) gives, by a loss law, the rate at which coverage is lost. The rates are integrated
 over passages (`gearidae.studies.cycle_jump`) until the gear sticks in a window, a coverage or a number of passages is
-reached.
+reached. Passages in which the coverage changes too fast for that are simulated cycle by cycle
+(`gearidae.studies.life_direct`).
 """
 
 from __future__ import annotations
@@ -11,10 +12,7 @@ from __future__ import annotations
 import json
 import math
 import os
-import time
-from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -23,29 +21,26 @@ from numpy.typing import NDArray
 
 from gearidae.archive import save
 from gearidae.archive.verdict import is_scheduled
-from gearidae.errors import Interrupted, SceneError, SolverError
+from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor
-from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import prepare, runs_in_threads
 from gearidae.runs.sweeping import kept_beside
-from gearidae.studies.cycle_jump import Life, Sticks, jump
-from gearidae.studies.life_coverage import Coverage, coverage_of
+from gearidae.studies.cycle_jump import Life, jump
+from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_dataset import life_dataset
-from gearidae.studies.life_window import Cycles, run_window, window_scene
+from gearidae.studies.life_direct import DirectCycles
+from gearidae.studies.life_states import MOST_STATES, Seen, Windows
+from gearidae.studies.life_window import Cycles, window_scene
 from gearidae.wear import LossLaw
 
 if TYPE_CHECKING:
-    from gearidae.records import Solution
     from gearidae.scene import Scene
-    from gearidae.wear import Exposure
 
 __all__ = ["life"]
 
 Floats: TypeAlias = NDArray[np.float64]
 
-_MOST_WINDOWS: Final = 1000
-"""States whose rate may be asked for."""
 _PLACES: Final = 8
 
 
@@ -88,13 +83,14 @@ def life(
     places : int, optional
         Places along the flank.
     cycles, settle : int, optional
-        Mesh cycles of a window that count, and those before them. With ``resolved = "tooth"`` the first is rounded up
-        to whole turns of the pinion.
+        Mesh cycles of a block, and those before the first. Blocks follow each other until the contacts that they make
+        no longer drift by more than `tolerance`, at most eight; the last counts, or the last two where they fluctuate.
+        With ``resolved = "tooth"`` a block is rounded up to whole turns of the pinion.
     starts : int, optional
         Windows for each state, from as many phases of mesh; their rates are averaged, and the gear sticks if it does in
         one of them. They run side by side.
     tolerance : float, optional
-        Relative tolerance of each jump.
+        Relative tolerance of each jump, and of the drift of the rates.
     bracket : float, optional
         Relative width to which the passages to sticking are narrowed.
     frequency : bool, optional
@@ -110,7 +106,8 @@ def life(
         Along ``passages`` (the steps of the integration): ``coverage``, ``coverage_loss`` (in a passage),
         ``verdict``, ``mean_gear_speed``, ``min_gear_speed``, ``characteristic_frequency``, exposures of a passage and
         their sums, and with ``resolved`` ``coverage_by_place``. Attributes: ``ending`` (sticks, coverage or passages),
-        ``passages_to_sticking`` with its bracket, ``windows``, ``passages_simulated`` and ``passages_jumped``.
+        ``passages_to_sticking`` with its bracket, ``windows``, ``passages_simulated`` and ``passages_jumped``,
+        ``mesh_cycles_direct`` (those that were simulated one by one).
 
     Raises
     ------
@@ -125,7 +122,9 @@ def life(
     Notes
     -----
     Rates are those of the drive flank. A window begins where the scene does, and not with the state that an earlier
-    one has left: it has to be long enough for the start to be forgotten.
+    one has left. Where a jump would be shorter than the cycles of its windows, the cycles are simulated one by one
+    instead, each with the coverage and the motion that the one before has left; these are not kept, and done again by a
+    life that is resumed.
 
     Examples
     --------
@@ -136,22 +135,22 @@ def life(
     >>> found.attrs["passages_to_sticking"]  # doctest: +SKIP
     """
     base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
-    cycles = _check(
+    count = _check(
         base, law, passages, fraction, (places, cycles, settle, starts), (tolerance, bracket), resolved
     )
     coverage = coverage_of(base, resolved, places)
-    window = window_scene(base, Cycles(settle, cycles), places)
+    length = Cycles(settle, count, tolerance)
+    window = window_scene(base, length, places)
     check_executor(executor)
     workers = check_jobs(jobs)
     kept = kept_beside(archive, window, backend, overwrite=overwrite, resume=resume)
     threads = runs_in_threads(backend)
     with (
-        sweep_progress(progress, _MOST_WINDOWS) as report,
+        sweep_progress(progress, MOST_STATES) as report,
         own_executor(min(workers, starts) if executor is None else 1, starts, releases_gil=threads) as own,
     ):
-        windows = _Windows(
-            window, coverage, law, Cycles(settle, cycles), starts, backend, executor or own, kept, report
-        )
+        windows = Windows(window, coverage, law, length, starts, backend, executor or own, kept, report)
+        direct = DirectCycles(windows)
         found = Life()
         try:
             jump(
@@ -161,11 +160,12 @@ def life(
                 tolerance=tolerance,
                 least=fraction,
                 bracket=bracket,
+                direct=direct,
                 life=found,
             )
-            ds = _dataset(scene, law, coverage, windows, found, frequency=frequency)
+            ds = _dataset(scene, direct, found, frequency=frequency)
         except KeyboardInterrupt:
-            ds = _so_far(scene, law, coverage, windows, found)
+            ds = _so_far(scene, direct, found)
             if archive is not None and ds.sizes:
                 save(ds, archive, overwrite=overwrite or resume)
             where = "" if archive is None else "the life so far is in the archive; go on with --resume"
@@ -177,129 +177,25 @@ def life(
     return ds
 
 
-@dataclass(frozen=True, slots=True)
-class _Seen:
-    """What the windows of a state have shown."""
-
-    sticks: bool
-    rate: Floats
-    exposures: tuple[Exposure, ...]
-    mean_speed: float
-    min_speed: float
-
-
-@dataclass
-class _Windows:
-    """The windows so far, and where more of them are computed."""
-
-    scene: Scene
-    coverage: Coverage
-    law: LossLaw
-    cycles: Cycles
-    starts: int
-    backend: str
-    executor: Executor | None
-    kept: KeptRuns | None
-    report: Callable[[float, int], None]
-    seen: dict[bytes, _Seen] = field(default_factory=dict)
-    run: int = 0
-    wall_time: float = 0.0
-
-    def rate(self, state: Floats) -> Floats:
-        """Change of a state in a passage; `Sticks` where the gear sticks."""
-        seen = self.of(state)
-        if seen.sticks:
-            raise Sticks
-        return seen.rate
-
-    def has(self, state: Floats) -> bool:
-        """Whether the windows of a state have been run."""
-        return np.clip(state, 0.0, 1.0).tobytes() in self.seen
-
-    def of(self, state: Floats) -> _Seen:
-        """Look a state up, or run its windows."""
-        key = np.clip(state, 0.0, 1.0).tobytes()
-        if key not in self.seen:
-            if len(self.seen) >= _MOST_WINDOWS:
-                raise SolverError(
-                    f"the life needs more than {_MOST_WINDOWS} states",
-                    time=0.0,
-                    state={},
-                    last_event="none",
-                    advice="loosen the tolerance, or make windows longer (cycles, settle, starts)",
-                )
-            self.seen[key] = self._run(np.clip(state, 0.0, 1.0))
-            self.report(float(len(self.seen)), _MOST_WINDOWS)
-        return self.seen[key]
-
-    def _run(self, state: Floats) -> _Seen:
-        assert self.scene.initial is not None
-        changed = self.scene.replace(self.coverage.changes(state))
-        phase = self.scene.initial.mesh_phase
-        scenes = [
-            changed.replace({"initial.mesh_phase": (phase + number / self.starts) % 1.0})
-            for number in range(self.starts)
-        ]
-        began = time.perf_counter()
-        found = self._solutions(scenes)
-        self.wall_time += time.perf_counter() - began
-        stuck = any(sticks for _, sticks in found)
-        if stuck:
-            exposures: tuple[Exposure, ...] = ()
-            rate = np.full_like(state, math.nan)
-        else:
-            exposures = tuple(
-                self.coverage.exposure(scene, solution, self.cycles.count, state)
-                for scene, (solution, _) in zip(scenes, found, strict=True)
-            )
-            rate = np.mean([self.law.rate(state, each) for each in exposures], axis=0)
-        extremes = [solution.extremes for solution, _ in found if solution.extremes is not None]
-        return _Seen(
-            stuck,
-            rate,
-            exposures,
-            float(np.mean([each.settled_gear_speed for each in extremes])),
-            min(each.min_gear_speed for each in extremes),
-        )
-
-    def _solutions(self, scenes: Sequence[Scene]) -> list[tuple[Solution, bool]]:
-        """Take windows that are kept, and run the others."""
-        taken = [None if self.kept is None else self.kept.take(each) for each in scenes]
-        left = [each for each, one in zip(scenes, taken, strict=True) if one is None]
-        run = map if self.executor is None else self.executor.map
-        fresh = run(run_window, left, [self.cycles] * len(left), [self.backend] * len(left))
-        found: list[tuple[Solution, bool]] = []
-        for scene, one in zip(scenes, taken, strict=True):
-            if one is not None:
-                found.append((one[0], one[1].get("verdict") == "sticks"))
-                continue
-            solution, stuck = next(fresh)
-            if self.kept is not None:
-                self.kept.keep(scene, solution, {"verdict": "sticks" if stuck else "turns"})
-            found.append((solution, stuck))
-        self.run += len(scenes)
-        return found
-
-
-def _dataset(
-    scene: Scene, law: LossLaw, coverage: Coverage, windows: _Windows, found: Life, *, frequency: bool
-) -> xr.Dataset:
+def _dataset(scene: Scene, direct: DirectCycles, found: Life, *, frequency: bool) -> xr.Dataset:
     """Make the dataset of a life, with the state at which it sticks as its last if there is one."""
-    seen = [windows.of(state) for state in found.states]
-    ds = life_dataset(scene, coverage, found, seen, frequency=frequency)
-    simulated = windows.run * windows.cycles.total
+    windows = direct.windows
+    seen = [_seen(direct, state) for state in found.states]
+    ds = life_dataset(scene, windows.coverage, found, seen, frequency=frequency)
+    simulated = windows.mesh_cycles + direct.run
     teeth = scene.gears.pinion_teeth if scene.gears is not None else 1
     whole = found.passages[-1] * teeth
     ends = {} if math.isnan(found.sticks_by) else {"passages_to_sticking": found.sticks_by}
     return ds.assign_attrs(
         {
-            "law": json.dumps(law.describe()),
-            "law_source": law.source,
+            "law": json.dumps(windows.law.describe()),
+            "law_source": windows.law.source,
             "ending": found.ending,
             **ends,
             "states": len(windows.seen),
             "windows": windows.run,
             "mesh_cycles_simulated": simulated,
+            "mesh_cycles_direct": direct.run,
             "mesh_cycles_jumped": max(whole - simulated, 0.0),
             "passages_simulated": simulated / teeth,
             "passages_jumped": max(whole - simulated, 0.0) / teeth,
@@ -307,15 +203,27 @@ def _dataset(
     )
 
 
-def _so_far(scene: Scene, law: LossLaw, coverage: Coverage, windows: _Windows, found: Life) -> xr.Dataset:
-    """Make the dataset of a life that was cut off: of its steps whose windows have been run, without frequencies."""
-    done = [number for number, state in enumerate(found.states) if windows.has(state)]
+def _seen(direct: DirectCycles, state: Floats) -> Seen:
+    """What the windows of a state have shown, or its cycle where the coverage was followed cycle by cycle."""
+    own = direct.seen.get(state.tobytes())
+    if own is not None and not direct.windows.turns(state):
+        return own
+    return direct.windows.of(state)
+
+
+def _so_far(scene: Scene, direct: DirectCycles, found: Life) -> xr.Dataset:
+    """Make the dataset of a life that was cut off: of its steps that have been run, without frequencies."""
+    done = [
+        number
+        for number, state in enumerate(found.states)
+        if direct.windows.has(state) or state.tobytes() in direct.seen
+    ]
     if not done:
         return xr.Dataset()
     kept = Life(
         [found.passages[n] for n in done], [found.states[n] for n in done], found.ending, found.sticks_by
     )
-    return _dataset(scene, law, coverage, windows, kept, frequency=False)
+    return _dataset(scene, direct, kept, frequency=False)
 
 
 def _check(

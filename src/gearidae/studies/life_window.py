@@ -1,44 +1,77 @@
-"""One window of a life: some mesh cycles at a frozen coverage, and what the flanks are exposed to in them."""
+"""One window of a life: mesh cycles at a frozen coverage until the motion is steady, and what flanks are exposed to.
+
+Some cycles are passed first; then blocks of cycles are compared until their contacts no longer drift. At a low coverage
+the speed of the gear takes tens of cycles to settle, and a window that is cut off earlier shows too small rates.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearidae import engine
 from gearidae.engine.energy.exposures import PRESSURE, QUANTITIES
+from gearidae.engine.model.state import MATERIALS
 from gearidae.errors import SolverError
 from gearidae.runs.estimates import steady_speed
 from gearidae.runs.running import solve, unsolved
 
 if TYPE_CHECKING:
-    from gearidae.records import Extremes, Solution
+    from gearidae.records import Solution
     from gearidae.scene import Scene
 
-__all__ = ["Cycles", "run_window", "window_scene"]
+__all__ = [
+    "Cycles",
+    "Window",
+    "gained",
+    "part_of",
+    "run_window",
+    "solved",
+    "stands",
+    "steady_exposures",
+    "steady_window",
+    "window_scene",
+]
 
-_PATIENCE = 3.0
-"""Time that a window gets, over that of its cycles at the steady speed."""
+Floats: TypeAlias = NDArray[np.float64]
+
+_PATIENCE: Final = 4.0
+"""Time that each part of a window gets, over that of its cycles at the steady speed."""
+_MOST_BLOCKS: Final = 8
+"""Blocks after which a window is taken as it is."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cycles:
-    """Mesh cycles of a window: those that it takes to settle, and those that count."""
+    """Mesh cycles of a window.
+
+    Attributes
+    ----------
+    settle : int
+        Those that are passed first.
+    count : int
+        Those of a block.
+    tolerance : float
+        By which share a block may still drift; infinite for a window of one block.
+    """
 
     settle: int
     count: int
+    tolerance: float = math.inf
 
     @property
     def total(self) -> int:
-        """All of them."""
-        return self.settle + self.count
+        """Of the shortest window."""
+        return self.settle + self.count * (1 if self.tolerance == math.inf else 2)
 
 
 def window_scene(scene: Scene, cycles: Cycles, places: int) -> Scene:
-    """Return the scene of a window: it ends after its cycles, and keeps the exposures."""
+    """Return the scene of a window, with the time of all of it: it keeps the exposures."""
     assert scene.gears is not None
     assert scene.initial is not None
     speed = steady_speed(scene)
@@ -52,9 +85,29 @@ def window_scene(scene: Scene, cycles: Cycles, places: int) -> Scene:
             "run.checkpoints": [],
             "run.duration": duration,
             "run.stop": f"turns {cycles.total / scene.gears.gear_teeth!r}",
-            "name": f"window of {cycles.count} mesh cycles after {cycles.settle}",
+            "name": f"blocks of {cycles.count} mesh cycles after {cycles.settle}, steady to {cycles.tolerance:g}",
         }
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """What has come of a window.
+
+    Attributes
+    ----------
+    solution : Solution
+        Of all of it, with its sums.
+    exposures : ndarray or None
+        Of one block, as `gained` has them: the last, or the mean of the last two where blocks no longer drift but
+        fluctuate. None if the gear sticks.
+    origin : Origin or None
+        Where it ends, if the gear turns.
+    """
+
+    solution: Solution
+    exposures: Floats | None = None
+    origin: engine.Origin | None = None
 
 
 def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bool]:
@@ -71,7 +124,7 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     Returns
     -------
     solution : Solution
-        Of the whole window, without events; its exposures are those of the cycles that count, if they were passed.
+        Without events, and with the exposures of a block.
     sticks : bool
         Whether the gear has come to stand, or has not passed the cycles in its time.
 
@@ -80,31 +133,116 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     SolverError
         If a run could not be finished.
     """
-    assert scene.gears is not None
-    teeth = scene.gears.gear_teeth
-    if cycles.settle == 0:
-        found = _solved(scene, backend)
-        return _bare(found), _sticks(found, scene)
-    first = scene.replace({"run.stop": f"turns {cycles.settle / teeth!r}"})
-    settled = _solved(first, backend)
-    if _sticks(settled, first) or settled.checkpoint is None:
-        return _bare(settled), True
-    counted = scene.replace({"run.stop": f"turns {cycles.count / teeth!r}"})
-    found = _solved(counted, backend, engine.end_of(first, settled.checkpoint, 0.0))
+    window = steady_window(scene, cycles, backend)
+    found = replace(window.solution, events=unsolved("", "").events, checkpoint=None)
+    if window.exposures is None:
+        return found, True
     assert found.extremes is not None
-    assert settled.extremes is not None
-    extremes = _less(found.extremes, settled.extremes, scene)
-    return _bare(replace(found, extremes=extremes)), _sticks(found, counted)
+    extremes = replace(found.extremes, exposures=tuple(window.exposures.ravel().tolist()))
+    return replace(found, extremes=extremes), False
 
 
-def _sticks(solution: Solution, scene: Scene) -> bool:
+def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
+    """Run blocks of cycles until they are steady, from the start of a scene.
+
+    Parameters
+    ----------
+    scene, cycles, backend
+        As for `run_window`.
+
+    Returns
+    -------
+    Window
+
+    Raises
+    ------
+    SolverError
+        If a run could not be finished.
+    """
+    before: Solution | None = None
+    origin: engine.Origin | None = None
+    if cycles.settle:
+        first = part_of(scene, cycles.settle, cycles.total)
+        before = solved(first, backend)
+        if stands(before, first) or before.checkpoint is None:
+            return Window(before)
+        origin = engine.end_of(first, before.checkpoint, 0.0)
+    block = part_of(scene, cycles.count, cycles.total)
+    tables: list[Floats] = []
+    while True:
+        found = solved(block, backend, origin)
+        if stands(found, block) or found.checkpoint is None:
+            return Window(found)
+        tables.append(gained(found, before, scene))
+        origin = engine.end_of(block, found.checkpoint, 0.0 if origin is None else origin.time)
+        exposures = steady_exposures(tables, cycles.tolerance)
+        if exposures is not None:
+            return Window(found, exposures, origin)
+        before = found
+
+
+def part_of(scene: Scene, cycles: int, total: int, patience: float = 1.0) -> Scene:
+    """Return the scene of some of a window's mesh cycles, with their share of its time.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `window_scene`.
+    cycles, total : int
+        Mesh cycles of the part and of the window.
+    patience : float, optional
+        Times that share.
+    """
+    assert scene.gears is not None
+    return scene.replace(
+        {
+            "run.stop": f"turns {cycles / scene.gears.gear_teeth!r}",
+            "run.duration": patience * scene.run.duration * cycles / total,
+        }
+    )
+
+
+def steady_exposures(blocks: Sequence[Floats], tolerance: float) -> Floats | None:
+    """Exposures of a block where they no longer drift; None as long as they do.
+
+    What is still to come of a drift is estimated by its last two changes, as of a geometric series.
+
+    Parameters
+    ----------
+    blocks : sequence of ndarray
+        Of all blocks so far, as `gained` has them.
+    tolerance : float
+        Of what is still to come, over the contacts made.
+    """
+    if tolerance == math.inf:
+        return blocks[-1]
+    contacts = [float(each[: len(each) // 2, :MATERIALS].sum()) for each in blocks[-3:]]  # of the drive flank
+    changes = np.diff(contacts)
+    if not changes.size:
+        return None
+    drift = abs(changes[-1])
+    if changes.size > 1 and changes[0] != 0.0:
+        if changes[0] * changes[1] < 0.0:
+            return np.asarray(np.mean(blocks[-2:], axis=0))
+        drift *= min(abs(changes[1] / changes[0]), 1.0)
+    return blocks[-1] if drift <= tolerance * contacts[-1] or len(blocks) == _MOST_BLOCKS else None
+
+
+def stands(solution: Solution, scene: Scene) -> bool:
     """Whether the gear stands at the end of a run that was to end after some turns, or has not turned so far."""
     found, reached = solution.extremes, solution.reached or 0.0
     late = reached - solution.start >= scene.run.duration * (1.0 - 1e-9)
     return found is None or not math.isnan(found.stick_time) or late
 
 
-def _solved(scene: Scene, backend: str, origin: engine.Origin | None = None) -> Solution:
+def solved(scene: Scene, backend: str, origin: engine.Origin | None = None) -> Solution:
+    """Run some cycles.
+
+    Raises
+    ------
+    SolverError
+        If they could not be finished.
+    """
     solution = solve(scene, backend, origin=origin)
     if solution.extremes is None or solution.status != "finished":
         raise SolverError(
@@ -117,14 +255,22 @@ def _solved(scene: Scene, backend: str, origin: engine.Origin | None = None) -> 
     return solution
 
 
-def _less(whole: Extremes, settled: Extremes, scene: Scene) -> Extremes:
-    """Take what the cycles of settling have added out of the sums; largest pressures are those of all cycles."""
-    places = scene.run.exposures
-    ours, theirs = (np.array(each.exposures).reshape(-1, QUANTITIES, places) for each in (whole, settled))
-    theirs[:, PRESSURE] = 0.0
-    return replace(whole, exposures=tuple((ours - theirs).ravel().tolist()))
+def gained(solution: Solution, before: Solution | None, scene: Scene) -> Floats:
+    """What a run has added to the exposures of the one before; largest pressures are those of both.
+
+    Returns
+    -------
+    ndarray, shape (flanks times teeth, quantities, places)
+        As in `gearidae.records.Extremes`.
+    """
+    ours = _table(solution, scene)
+    if before is not None:
+        theirs = _table(before, scene)
+        theirs[:, PRESSURE] = 0.0
+        ours -= theirs
+    return ours
 
 
-def _bare(solution: Solution) -> Solution:
-    """Leave out what a life has no use for."""
-    return replace(solution, events=unsolved("", "").events, checkpoint=None)
+def _table(solution: Solution, scene: Scene) -> Floats:
+    assert solution.extremes is not None
+    return np.array(solution.extremes.exposures).reshape(-1, QUANTITIES, scene.run.exposures)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import threading
@@ -12,20 +11,24 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from gearidae.archive import check_target, dimension_names, save
 from gearidae.archive.provenance import provenance
+from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.executors import check_executor, check_jobs, own_executor
+from gearidae.runs.executors import check_executor, check_jobs, own_executor, stop
+from gearidae.runs.kept_runs import circumstances, name_of
 from gearidae.runs.running import prepare, runs_in_threads
 from gearidae.scene.group import did_you_mean
 from gearidae.studies.design import check_design, plain_design
-from gearidae.studies.distributions import read_distributions
+from gearidae.studies.distributions import Distribution, read_distributions
+from gearidae.studies.law_draws import drawn_laws, parameter_units
 from gearidae.studies.life import life
 from gearidae.studies.life_file import open_life
 from gearidae.studies.members import member_plan, names_of
@@ -35,6 +38,8 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["lives"]
+
+Floats: TypeAlias = NDArray[np.float64]
 
 _SETTINGS: Final = (
     "passages",
@@ -83,7 +88,8 @@ def lives(
     law : LossLaw
         How coverage is lost, from `gearidae.wear`.
     vary : mapping of str to object
-        Keys and their distributions, as for `gearidae.studies.ensemble`.
+        Keys and their distributions, as for `gearidae.studies.ensemble`; ``law.`` and a name are a parameter of the
+        law, ``{"law.energy": "lognormal(0.5 mJ/m^2, 3)"}``.
     size : int
         Number of members.
     design, seed
@@ -125,30 +131,33 @@ def lives(
     check_executor(executor)
     workers = check_jobs(jobs)
     _check_settings(law, settings)
-    distributions = read_distributions(base, vary)
+    distributions = read_distributions(base, vary, parameter_units(law))
     texts = names_of(distributions)
     drawn = plain_design(distributions, int(size), design, int(seed)).values
     values = {each.key: drawn[:, number] for number, each in enumerate(distributions)}
-    scenes = member_plan(base, values, texts).scenes
+    laws = drawn_laws(law, values, int(size), texts)
+    members = list(zip(_scenes(base, values, int(size), texts), laws, strict=True))
     folder = _folder(archive, overwrite=overwrite, resume=resume)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
-    common = _Common(law, settings, backend, folder)
-    paths = [common.path(each) for each in scenes]
+    common = _Common(settings, backend, folder)
+    paths = [common.path(*each) for each in members]
     with (
-        sweep_progress(progress, len(scenes)) as report,
+        sweep_progress(progress, len(members)) as report,
         own_executor(
-            workers if executor is None else 1, len(scenes), releases_gil=runs_in_threads(backend)
+            workers if executor is None else 1, len(members), releases_gil=runs_in_threads(backend)
         ) as own,
         _halting(own is not None and runs_in_threads(backend)) as halted,
     ):
         try:
-            found = _followed(common, scenes, executor or own, halted, report)
+            found = _followed(common, members, executor or own, halted, report)
         except KeyboardInterrupt:
+            if own is not None:
+                stop(own)
             where = (
                 "" if archive is None else "the lives so far are kept beside the archive; go on with --resume"
             )
             raise Interrupted(where, xr.Dataset()) from None
-    ds = _dataset(base, law, values, found).assign_attrs(ensemble=json.dumps(about))
+    ds = _dataset(base, law, distributions, values, found).assign_attrs(ensemble=json.dumps(about))
     if archive is not None and folder is not None:
         save(ds, archive, overwrite=overwrite or resume)
         for path in paths:
@@ -161,29 +170,18 @@ def lives(
 
 @dataclass(frozen=True)
 class _Common:
-    """What the members have in common besides their scene."""
+    """What the members have in common besides the keys that are not drawn."""
 
-    law: LossLaw
     settings: dict[str, Any]
     backend: str
     folder: Path | None
 
-    def path(self, scene: Scene) -> Path | None:
+    def path(self, scene: Scene, law: LossLaw) -> Path | None:
         """Where the life of a member is kept: a hash of all that it depends on."""
         if self.folder is None:
             return None
-        text = json.dumps(
-            [
-                scene.to_dict(),
-                self.law.describe(),
-                self.settings,
-                self.backend,
-                provenance(scene, "")["source"],
-            ],
-            sort_keys=True,
-            allow_nan=False,
-        )
-        return self.folder / f"{hashlib.sha256(text.encode()).hexdigest()}.nc"
+        about = {**circumstances(scene, choose_backend(self.backend)), "settings": self.settings}
+        return self.folder / f"{name_of(scene, {**about, 'law': law.describe()})}.nc"
 
 
 @dataclass(frozen=True)
@@ -199,9 +197,10 @@ class _Member:
     message: str = ""
 
 
-def _follow(scene: Scene, common: _Common, halted: Callable[[], bool] | None) -> _Member:
+def _follow(member: tuple[Scene, LossLaw], common: _Common, halted: Callable[[], bool] | None) -> _Member:
     """Follow the life of a member, or read it where it is kept."""
-    path = common.path(scene)
+    scene, law = member
+    path = common.path(scene, law)
     try:
         if path is not None and path.is_file():
             ds = open_life(path)
@@ -209,7 +208,7 @@ def _follow(scene: Scene, common: _Common, halted: Callable[[], bool] | None) ->
                 return _member(ds)
         ds = life(
             scene,
-            common.law,
+            law,
             **common.settings,
             frequency=False,
             jobs=1,
@@ -243,7 +242,7 @@ def _member(ds: xr.Dataset) -> _Member:
 
 def _followed(
     common: _Common,
-    scenes: Sequence[Scene],
+    members: Sequence[tuple[Scene, LossLaw]],
     executor: Executor | None,
     halted: Callable[[], bool] | None,
     report: SweepProgress,
@@ -251,9 +250,9 @@ def _followed(
     """Follow all members, side by side where there is an executor."""
     run = map if executor is None else executor.map
     found = []
-    for each in run(_follow, scenes, [common] * len(scenes), [halted] * len(scenes)):
+    for each in run(_follow, members, [common] * len(members), [halted] * len(members)):
         found.append(each)
-        report(float(len(found)), len(scenes))
+        report(float(len(found)), len(members))
     return found
 
 
@@ -302,8 +301,18 @@ def _check_settings(law: LossLaw, settings: Mapping[str, Any]) -> None:
             raise SceneError(name, value, allowed)
 
 
+def _scenes(base: Scene, values: Mapping[str, Floats], size: int, texts: Mapping[str, str]) -> list[Scene]:
+    """Scenes of the members; all alike if nothing but parameters of the law are drawn."""
+    own = {key: column for key, column in values.items() if not key.startswith("law.")}
+    return list(member_plan(base, own, texts).scenes) if own else [base] * size
+
+
 def _dataset(
-    base: Scene, law: LossLaw, values: Mapping[str, np.ndarray[Any, Any]], found: Sequence[_Member]
+    base: Scene,
+    law: LossLaw,
+    distributions: Sequence[Distribution],
+    values: Mapping[str, Floats],
+    found: Sequence[_Member],
 ) -> xr.Dataset:
     """Put the members along one dimension."""
     columns = {
@@ -321,7 +330,10 @@ def _dataset(
         about = {"units": "1", "long_name": words or f"{name} of the member"}
         variables[name] = ("member", [getattr(each, name) for each in found], about)
     names = dimension_names(values)
-    coords: dict[str, Any] = {names[key]: ("member", column) for key, column in values.items()}
+    coords: dict[str, Any] = {
+        names[each.key]: ("member", values[each.key], {"units": each.unit, "long_name": each.key})
+        for each in distributions
+    }
     coords["member"] = ("member", np.arange(len(found)), {"units": "1", "long_name": "number of the member"})
     about = provenance(base, f"followed {len(found)} lives", swept=tuple(values))
     return xr.Dataset(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, sticking, verdict_codes
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import SweepPlan
-from gearidae.scene import Scene
 
 if TYPE_CHECKING:
+    from gearidae.scene import Scene
     from gearidae.studies.distributions import Distribution
 
-__all__ = ["along_members", "member_plan"]
+__all__ = ["along_members", "drawn_members", "member_plan", "names_of"]
+
+Made = TypeVar("Made")
 
 STICKS = {
     "long_name": "whether the gear sticks",
@@ -51,24 +53,45 @@ def member_plan(
         If values are not allowed: distributions are not cut off on their own, as the result would be that of others.
     """
     columns = {key: column.tolist() for key, column in values.items()}
-    scenes: list[Scene] = []
-    refused: list[SceneError] = []
-    for row in zip(*columns.values(), strict=True):
-        try:
-            scenes.append(_member(base, dict(zip(columns, row, strict=True))))
-        except SceneError as error:
-            refused.append(error)
-    if refused:
-        raise _refusal(refused, len(scenes) + len(refused), drawn_from)
+    scenes = drawn_members(base.replace, values, drawn_from)
     return SweepPlan(base, (columns,), scenes)
 
 
-def _member(base: Scene, changes: Mapping[str, float]) -> Scene:
-    """Change some keys; tables that stay as they are are shared, so that a scene takes a few kilobytes."""
-    scene = base.replace(changes)
-    changed = {key.partition(".")[0] for key in changes}
-    shared = {name: getattr(base, name) for name in type(base).model_fields if name not in changed}
-    return scene.model_copy(update=shared)
+def drawn_members(
+    make: Callable[[dict[str, float]], Made],
+    values: Mapping[str, NDArray[np.float64]],
+    drawn_from: Mapping[str, str],
+) -> list[Made]:
+    """Make something of the values of each member.
+
+    Parameters
+    ----------
+    make : callable
+        Told the value of each key.
+    values : mapping of str to ndarray, shape (members,)
+        Of each key, in SI units.
+    drawn_from : mapping of str to str
+        The keys' distributions, for messages.
+
+    Returns
+    -------
+    list
+
+    Raises
+    ------
+    SceneError
+        If values are not allowed.
+    """
+    made: list[Made] = []
+    refused: list[SceneError] = []
+    for row in zip(*(column.tolist() for column in values.values()), strict=True):
+        try:
+            made.append(make(dict(zip(values, row, strict=True))))
+        except SceneError as error:
+            refused.append(error)
+    if refused:
+        raise _refusal(refused, len(made) + len(refused), drawn_from)
+    return made
 
 
 def _refusal(refused: Sequence[SceneError], count: int, drawn_from: Mapping[str, str]) -> SceneError:

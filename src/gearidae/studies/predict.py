@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
 from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.dataset import dimension_names
-from gearidae.errors import SceneError
 from gearidae.runs.running import prepare
 from gearidae.studies.design import check_design
 from gearidae.studies.members import along_members, member_plan
+from gearidae.studies.posterior_file import calibrated_keys
 from gearidae.studies.study_run import Execution, run_study
 
 if TYPE_CHECKING:
@@ -113,7 +112,7 @@ def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str
     SceneError
         If the dataset is no posterior.
     """
-    keys = _keys(posterior)
+    keys = calibrated_keys(posterior)
     names = dimension_names(keys)
     generator = np.random.default_rng(seed)
     if "weight" not in posterior:
@@ -128,12 +127,3 @@ def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str
         width = axis[1] - axis[0]
         values[key] = axis[place] + width * (generator.random(size) - 0.5)
     return values
-
-
-def _keys(posterior: xr.Dataset) -> tuple[str, ...]:
-    try:
-        told: Mapping[str, Any] = json.loads(posterior.attrs["calibration"])
-        return tuple(told["priors"])
-    except (AttributeError, KeyError, ValueError):
-        allowed = "must be a posterior, from studies.calibrate"
-        raise SceneError("posterior", type(posterior).__name__, allowed) from None

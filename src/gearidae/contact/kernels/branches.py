@@ -29,7 +29,7 @@ from gearidae.contact.kernels.layout import (
     Floats,
 )
 
-__all__ = ["B_PIECES", "branch_length", "branch_value", "set_branch"]
+__all__ = ["B_JOINED", "B_PIECES", "branch_length", "branch_value", "set_branch"]
 
 B_SHARE: Final = 0  # 1 / D
 B_PIECES: Final = 1
@@ -38,7 +38,8 @@ B_BEFORE: Final = 3  # the division of v, as in the header of a table,
 B_KINK: Final = 4
 B_BELOW: Final = 5
 B_ABOVE: Final = 6
-B_BODY: Final = 7  # then eight powers for each piece in v
+B_JOINED: Final = 7  # the joined height that it is of
+B_BODY: Final = 8  # then eight powers for each piece in v
 
 
 @compiled
@@ -69,7 +70,7 @@ def set_branch(table: Floats, joined: float, branch: Floats) -> None:
     u2 = u * u
     u4 = u2 * u2
     decay = math.exp(-0.5 * joined * joined) if joined > 0.0 else 1.0
-    branch[B_SHARE] = 1.0 / table[H_STRETCH]
+    branch[B_SHARE], branch[B_JOINED] = 1.0 / table[H_STRETCH], joined
     branch[B_PIECES], branch[B_BEFORE], branch[B_KINK] = table[H_PIECES], table[H_BEFORE], table[H_KINK]
     branch[B_BELOW], branch[B_ABOVE] = table[H_BELOW], table[H_ABOVE]
     branch[B_END] = decay * power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)

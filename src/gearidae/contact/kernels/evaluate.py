@@ -9,7 +9,7 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.division import place_of
-from gearidae.contact.kernels.lanes import BESIDE, eight_powers, three_slopes
+from gearidae.contact.kernels.lanes import BESIDE, eight_powers, sum_and_slope, three_slopes
 from gearidae.contact.kernels.layout import (
     DEGREE,
     GAP_HIGH,
@@ -40,6 +40,7 @@ __all__ = [
     "stretched_value",
     "three_values",
     "value_and_slope",
+    "value_of_shares",
 ]
 
 Three: TypeAlias = tuple[float, float, float]
@@ -124,6 +125,28 @@ def three_values(table: Floats, offset: int, gap: float) -> tuple[Three, Three]:
         slopes = (a1 - gap * a) * decay, (b1 - gap * b) * decay, (c1 - gap * c) * decay
         return (a * decay, b * decay, c * decay), slopes
     return (a, b, c), (a1, b1, c1)
+
+
+@compiled
+def value_of_shares(table: Floats, offset: int, gap: float, shares: Three) -> tuple[float, float]:
+    """Sum of three loading branches at one gap, each times its share, and its slope.
+
+    Parameters
+    ----------
+    table, offset, gap
+        As for `three_values`.
+    shares : tuple of three floats
+    """
+    if gap >= GAP_HIGH:
+        return 0.0, 0.0
+    position = (gap - GAP_LOW) * KNOTS_PER_SIGMA
+    j = min(max(int(position), 0), N_LOADING - 1)
+    f, d = sum_and_slope(table, np.uintp(offset + 8 * BESIDE * j), position - j, shares)
+    d *= KNOTS_PER_SIGMA
+    if gap > 0.0:
+        decay = math.exp(-0.5 * gap * gap)
+        return f * decay, (d - gap * f) * decay
+    return f, d
 
 
 @compiled(inline=True)

@@ -44,7 +44,7 @@ import numpy as np
 
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.branches import B_PIECES, branch_length, branch_value, set_branch
+from gearidae.contact.kernels.branches import B_JOINED, B_PIECES, branch_length, branch_value, set_branch
 from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.evaluate import law_value, loading_value, stretched_value
 from gearidae.contact.kernels.knots import loading_derivatives, stretched_derivatives
@@ -70,6 +70,7 @@ from gearidae.contact.kernels.layout import (
 from gearidae.contact.kernels.pieces import asperity_pieces, hermite_pieces, kernel_table, partial_pieces
 
 __all__ = [
+    "B_JOINED",
     "B_PIECES",
     "GAP_HIGH",
     "GAP_LOW",

@@ -27,6 +27,7 @@ from gearidae.engine.compiling import compiling
 from gearidae.engine.model.state import Floats, Model
 
 __all__ = [
+    "FINISH",
     "FOLLOW",
     "FORCE",
     "INIT",
@@ -36,9 +37,11 @@ __all__ = [
     "MATERIAL_ENERGY",
     "MATERIAL_LOSS",
     "NUMBER",
+    "PREDICT",
     "QUESTION",
     "RATES",
     "RESIDUAL",
+    "SETTLE",
     "STORED",
     "follow_nodes",
     "init_nodes",
@@ -52,7 +55,9 @@ __all__ = [
     "nodes_material_loss",
     "nodes_number",
     "nodes_stored",
+    "pair_deflections",
     "service",
+    "settle_pair",
 ]
 
 FORCE: Final = 0  # what is asked for
@@ -67,6 +72,9 @@ LENGTH_FORCE: Final = 8
 NUMBER: Final = 9
 MATERIAL_ENERGY: Final = 10
 MATERIAL_LOSS: Final = 11
+SETTLE: Final = 12
+FINISH: Final = 13
+PREDICT: Final = 14
 
 
 @cache
@@ -140,6 +148,27 @@ def node_force(
     """See `gearidae.engine.elastic.nodes.node_force`."""
     question = Question(FORCE, k, int(known), t, gap, rate, length)
     return _ask(m.work.elastic_service, m, question, y, y)
+
+
+@compiled
+def settle_pair(
+    m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
+) -> tuple[float, float]:
+    """See `gearidae.engine.elastic.elimination.settle_pair`."""
+    question = Question(SETTLE, k, int(known), t, gap, rate, length)
+    return _ask(m.work.elastic_service, m, question, y, y)
+
+
+@compiled
+def pair_deflections(
+    m: Model, kind: int, k: int, known: bool, t: float, y: Floats, gap: float, rate: float
+) -> None:
+    """Do what `kind` says with a pair's deflections, at the contact length that its history has.
+
+    `SETTLE`, `PREDICT` or `FINISH`; see `gearidae.engine.elastic.elimination`.
+    """
+    length = m.state.history[k].length
+    _ask(m.work.elastic_service, m, Question(kind, k, int(known), t, gap, rate, length), y, y)
 
 
 @compiled

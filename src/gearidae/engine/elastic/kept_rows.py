@@ -17,6 +17,7 @@ from gearidae.engine.elastic.rows import (
     ADHERED_ENERGY,
     GAP,
     JOINED,
+    NODE_ROWS,
     PRESSURE,
     SHARE,
     STIFFNESS,
@@ -152,5 +153,5 @@ def _all_rows(m: Model) -> Floats:
 def _kept_columns(m: Model) -> NDArray[np.int64]:
     """Places of the kept numbers in one history's rows: gap and share of the nodes, joined heights of the points."""
     n, points = int(m.scene.nodes), int(m.scene.points)
-    first = (PRESSURE + 2) * n
+    first = NODE_ROWS * n
     return np.concatenate([np.arange(2 * n), np.arange(first, first + MATERIALS * points)])

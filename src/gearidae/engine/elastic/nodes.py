@@ -34,9 +34,19 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.contact.bulk import STENCIL
 from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.kernels.law import stretched_value
+from gearidae.contact.kernels.lanes import add_lanes
+from gearidae.contact.kernels.law import (
+    B_JOINED,
+    B_PIECES,
+    branch_length,
+    branch_value,
+    set_branch,
+    stretched_value,
+)
 from gearidae.engine.elastic.rows import (
-    JOINED,
+    POINT_ADDED,
+    POINT_GAPS,
+    POINT_TURNS,
     PRESSURE,
     SHARE,
     SLOPE,
@@ -45,11 +55,13 @@ from gearidae.engine.elastic.rows import (
     first_node,
     first_unknown,
     influence_powers,
+    joined_at,
     node_profile,
     node_weights,
     point_gaps,
     point_weights,
     row,
+    scratch,
     shares_of_nodes,
     to_points,
 )
@@ -66,8 +78,10 @@ __all__ = [
     "node_residual",
     "pressure_shares",
     "stiffness_matrix",
+    "weighed_stiffness",
 ]
 
+_CLOSING, _OPENING, _TURNED = 0, 1, 2
 _BEGUN = 1e-9  # roughnesses of stretch
 _NOTHING = 6.5  # standard deviations: beyond, heights have 1e-9 of the density in the middle
 
@@ -147,35 +161,59 @@ def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: floa
     # bodies that part stretch what is joined: where they seem not to, the errors of the deflection say so, and Newton's
     # iteration must not take the soft slope of closing on for that of what comes
     opening = h.direction > 0.0 and not turned
-    shares = noted_shares(m, k)
-    gaps, turning, added = np.empty(points), np.empty(points), np.zeros(points)
+    gaps, added = scratch(m, POINT_GAPS, points), scratch(m, POINT_ADDED, points)
+    turning = scratch(m, POINT_TURNS, points)
+    added[:] = 0.0
     point_gaps(m, k, y, gap, gaps)
     if turned:
         back = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate) - gap
         to_points(m, row(m, k, SHARE), turning)
         for i in range(points):
             turning[i] = gaps[i] + turning[i] * back
+    way = _TURNED if turned else _OPENING if opening else _CLOSING
     for material in range(MATERIALS):
-        own = m.scene.material[material]
-        limit, scale, offset = own.stretch_limit, own.force_scale * shares[material], own.gap_offset
-        if limit == 0.0:
-            continue
-        table = m.tables[own.table_at :]
-        heights = row(m, k, JOINED + material)
-        farthest = farthest_joined(heights[0], offset)
-        for i in range(points):
-            joined = heights[i]
-            if joined > farthest:
-                break
-            if turned:
-                joined = joined_height(joined, turning[i], limit)
-            if gaps[i] > joined:
-                q, dq = stretched_value(table, gaps[i] + offset, joined + offset)
-                added[i] += scale * q
-                stiff[i] += scale * dq
-            elif opening:
-                stiff[i] += scale * stretched_value(table, gaps[i] + offset + _BEGUN, gaps[i] + offset)[1]
+        if m.scene.material[material].stretch_limit != 0.0:
+            _add_material(m, k, material, way, gaps, turning, added, stiff)
     add_to_nodes(m, added, row(m, k, PRESSURE))
+
+
+@compiled
+def _add_material(
+    m: Model, k: int, material: int, way: int, gaps: Floats, turning: Floats, added: Floats, stiff: Floats
+) -> None:
+    """Add the pressure of a material's stretched asperities at the points, and its slopes."""
+    own, points = m.scene.material[material], m.scene.points
+    limit, offset = own.stretch_limit, own.gap_offset
+    scale = own.force_scale * noted_shares(m, k)[material]
+    table, heights = m.tables[own.table_at :], joined_at(m, k, material)
+    farthest = farthest_joined(m.rows[heights], offset)
+    kept = way != _TURNED and m.scene.point_branch_length > 0 and branch_length(table) > 0
+    for i in range(points):
+        joined = m.rows[heights + i]
+        if joined > farthest:
+            break
+        if way == _TURNED:
+            joined = joined_height(joined, turning[i], limit)
+        stretch = gaps[i] - joined
+        if stretch > 0.0:
+            if kept and stretch < limit:
+                branch = point_branch(m, k, material, i)
+                if m.rows[branch + B_PIECES] == 0.0 or m.rows[branch + B_JOINED] != joined + offset:
+                    set_branch(table, joined + offset, m.rows[branch:])
+                q, dq = branch_value(m.rows[branch:], stretch)
+            else:
+                q, dq = stretched_value(table, gaps[i] + offset, joined + offset)
+            added[i] += scale * q
+            stiff[i] += scale * dq
+        elif way == _OPENING:
+            stiff[i] += scale * stretched_value(table, gaps[i] + offset + _BEGUN, gaps[i] + offset)[1]
+
+
+@compiled
+def point_branch(m: Model, k: int, material: int, point: int) -> int:
+    """Place of the branch of stretched asperities at a point, among the rows; it knows the joined height it is of."""
+    place = (k * MATERIALS + material) * m.scene.points + point
+    return m.scene.point_branches_at + place * m.scene.point_branch_length
 
 
 @compiled(makes_arrays=True)
@@ -190,22 +228,41 @@ def stiffness_matrix(m: Model, k: int, out: Floats) -> None:
     out : ndarray, shape (n, n)
         ``out[i, j]`` becomes the slope of the pressure at i in the gap at j.
     """
-    n = m.scene.nodes
-    finer, shares, weights = point_weights(m), shares_of_nodes(m), node_weights(m)
+    n, weights = m.scene.nodes, node_weights(m)
+    flat = out.reshape(n * n)
+    weighed_stiffness(m, k, flat, n)
+    for i in range(n):
+        for j in range(n):
+            flat[n * i + j] /= weights[i]
+
+
+@compiled(makes_arrays=True)
+def weighed_stiffness(m: Model, k: int, out: Floats, width: int) -> None:
+    """The same times the weight of the node at i, which makes it symmetric.
+
+    Parameters
+    ----------
+    m : Model
+    k : int
+        Index of the pair's history.
+    out : ndarray, shape (n * width,)
+        Filled in, row by row.
+    width : int
+        Length of a row, of which the first n numbers are set and the others made zero.
+    """
+    n, finer, shares, weights = m.scene.nodes, point_weights(m), shares_of_nodes(m), node_weights(m)
     slope, stiff = row(m, k, SLOPE), row(m, k, STIFFNESS)
-    out[:] = 0.0
+    for i in range(n * width):
+        out[i] = 0.0
     for point in range(m.scene.points):
         stiffness = finer[point] * stiff[point]
         if stiffness != 0.0:
             first, own = first_node(point, n), STENCIL * point
             for i in range(STENCIL):
-                factor = shares[own + i] * stiffness
-                for j in range(STENCIL):
-                    out[first + i, first + j] += factor * shares[own + j]
+                place = np.uintp((first + i) * width + first)
+                add_lanes(out, place, shares, np.uintp(own), shares[own + i] * stiffness)
     for i in range(n):
-        for j in range(n):
-            out[i, j] /= weights[i]
-        out[i, i] += slope[i]
+        out[(width + 1) * i] += weights[i] * slope[i]
 
 
 @compiled(makes_arrays=True)
@@ -234,14 +291,15 @@ def influence(m: Model, length: float, out: Floats) -> None:
         ``out[k, i]`` becomes ``kappa_ik``.
     """
     n, orders = m.scene.nodes, m.scene.orders
-    kappa = influence_powers(m)
+    flat, size, first = out.reshape(n * n), n * n, m.scene.influence_at
     x = (length - m.scene.length_middle) / m.scene.length_half_range
-    for k in range(n):
-        for i in range(n):
-            out[k, i] = kappa[orders - 1, k, i]
-        for order in range(orders - 2, -1, -1):
-            for i in range(n):
-                out[k, i] = out[k, i] * x + kappa[order, k, i]
+    kappa = m.tables[first + (orders - 1) * size : first + orders * size]
+    for i in range(size):
+        flat[i] = kappa[i]
+    for order in range(orders - 2, -1, -1):
+        kappa = m.tables[first + order * size : first + (order + 1) * size]
+        for i in range(size):
+            flat[i] = flat[i] * x + kappa[i]
 
 
 @compiled(makes_arrays=True)

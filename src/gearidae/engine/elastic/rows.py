@@ -1,8 +1,8 @@
 """Rows of numbers of an elastic contact: one number per node, or per point between the nodes.
 
-Among the rows that change lie, pair by pair, gap, share, pressure and slope of every node, then joined heights,
-stiffness and adhered energy of every point. Constants (profile, weights, influence coefficients, the points' shares of
-the nodes) lie among the tables. Functions here hand out views of them, with their true lengths.
+Among the rows that change lie, pair by pair, gap, share, pressure, slope and deflections of every node, then joined
+heights, stiffness and adhered energy of every point. Constants (profile, weights, influence coefficients, the points'
+shares of the nodes) lie among the tables. Functions here hand out views of them, with their true lengths.
 """
 
 from __future__ import annotations
@@ -13,23 +13,37 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.contact.bulk import STENCIL
+from gearidae.contact.kernels.lanes import LANES, add_lanes, product_of_lanes
 from gearidae.engine.model.state import MATERIALS, ROLLER, Floats, Model
 
 __all__ = [
     "ADHERED_ENERGY",
+    "BEFORE",
+    "BEFORE_TANGENT",
+    "DEFLECTION",
     "FINER",
     "GAP",
     "JOINED",
+    "LAST",
+    "LAST_TANGENT",
+    "MATRICES",
+    "NODE_ROWS",
+    "POINT_ADDED",
+    "POINT_GAPS",
+    "POINT_TURNS",
     "PRESSURE",
     "SHARE",
     "SLOPE",
     "STIFFNESS",
+    "TANGENT",
     "add_to_nodes",
     "first_node",
     "first_unknown",
     "influence_powers",
+    "joined_at",
     "node_profile",
     "node_weights",
+    "padded",
     "point_count",
     "point_gaps",
     "point_profile",
@@ -38,6 +52,8 @@ __all__ = [
     "row",
     "row_numbers",
     "row_of",
+    "scratch",
+    "scratch_size",
     "shares_of_nodes",
     "to_points",
 ]
@@ -49,11 +65,45 @@ GAP: Final = 0  # at the last accepted time
 SHARE: Final = 1  # how far the node's gap moves with the pair's
 PRESSURE: Final = 2  # of the last evaluation
 SLOPE: Final = 3  # slope of the loading branch in the node's gap
-_NODE_ROWS: Final = 4
-JOINED: Final = 4  # rows of points, one per material: joined height
+DEFLECTION: Final = 4  # where nodes are eliminated: of the last evaluation, with its slope in the pair's gap,
+TANGENT: Final = 5
+LAST: Final = 6  # the same at the end of the last step,
+LAST_TANGENT: Final = 7
+BEFORE: Final = 8  # and of the one before
+BEFORE_TANGENT: Final = 9
+NODE_ROWS: Final = 10
+JOINED: Final = NODE_ROWS  # rows of points, one per material: joined height
 STIFFNESS: Final = JOINED + MATERIALS  # slope of what stretched asperities add, in the point's gap
 ADHERED_ENERGY: Final = STIFFNESS + 1  # one per material: energy of what is joined, when nothing is stretched
 _POINT_ROWS: Final = 2 * MATERIALS + 1
+
+
+assert STENCIL == LANES  # the shares of a point are those of so many nodes
+
+SUMS: Final = 0  # parts of the scratch space, in use at once: sums at the nodes,
+POINT_GAPS: Final = 1  # numbers at the points,
+POINT_TURNS: Final = 2
+POINT_ADDED: Final = 3
+MATRICES: Final = 4  # and the linear equations of Newton's method
+
+
+@compiled
+def padded(nodes: int) -> int:
+    """Length of a row of the nodes' linear equations with two right-hand sides, in whole lanes."""
+    return (nodes + 2 + LANES - 1) // LANES * LANES
+
+
+def scratch_size(nodes: int) -> int:
+    """Numbers in the scratch space of a contact with so many nodes."""
+    points = FINER * (nodes - 1) + 1
+    return MATRICES * points + (3 * nodes + 5) * ((nodes + 2 + LANES - 1) // LANES * LANES)
+
+
+@compiled(makes_arrays=True)
+def scratch(m: Model, part: int, size: int) -> Floats:
+    """Scratch space of a size; what is in it is anything."""
+    start = m.scene.scratch_at + part * m.scene.points
+    return m.rows[start : start + size]
 
 
 @compiled
@@ -64,7 +114,7 @@ def point_count(nodes: int) -> int:
 
 def row_numbers(nodes: int) -> int:
     """Numbers in the rows of a pair with so many nodes."""
-    return _NODE_ROWS * nodes + _POINT_ROWS * (FINER * (nodes - 1) + 1)
+    return NODE_ROWS * nodes + _POINT_ROWS * (FINER * (nodes - 1) + 1)
 
 
 # Python code takes views by `row_of` and `profile_of`: compiled functions can hand views to each other only.
@@ -72,10 +122,10 @@ def row_of(m: Model, k: int, kind: int) -> Floats:
     """One row of a history's pair, shape (nodes,) or (points,)."""
     n, points = m.scene.nodes, m.scene.points
     start = m.scene.node_rows_at + k * m.scene.node_row_length
-    if kind < _NODE_ROWS:
+    if kind < NODE_ROWS:
         start += kind * n
         return m.rows[start : start + n]
-    start += _NODE_ROWS * n + (kind - _NODE_ROWS) * points
+    start += NODE_ROWS * n + (kind - NODE_ROWS) * points
     return m.rows[start : start + points]
 
 
@@ -89,6 +139,13 @@ def profile_of(m: Model, finer: bool) -> Floats:
 
 row = compiled(makes_arrays=True)(row_of)
 _profile = compiled(makes_arrays=True)(profile_of)
+
+
+@compiled
+def joined_at(m: Model, k: int, material: int) -> int:
+    """Place of the joined heights of a pair's points, among the rows."""
+    start = m.scene.node_rows_at + k * m.scene.node_row_length
+    return start + NODE_ROWS * m.scene.nodes + material * m.scene.points
 
 
 @compiled
@@ -146,11 +203,7 @@ def to_points(m: Model, values: Floats, out: Floats) -> None:
     """Interpolate from nodes to points."""
     n, shares = m.scene.nodes, shares_of_nodes(m)
     for k in range(m.scene.points):
-        first = first_node(k, n)
-        total = 0.0
-        for i in range(STENCIL):
-            total += shares[STENCIL * k + i] * values[first + i]
-        out[k] = total
+        out[k] = product_of_lanes(shares, np.uintp(STENCIL * k), values, np.uintp(first_node(k, n)))
 
 
 @compiled(makes_arrays=True)
@@ -158,13 +211,13 @@ def add_to_nodes(m: Model, values: Floats, out: Floats) -> None:
     """Add to the nodes what points have, such that both weigh the same."""
     n, shares = m.scene.nodes, shares_of_nodes(m)
     weights, finer = node_weights(m), point_weights(m)
-    total = np.zeros(n)
+    total = scratch(m, SUMS, n)
+    for i in range(n):
+        total[i] = 0.0
     for k in range(m.scene.points):
         value = finer[k] * values[k]
         if value != 0.0:
-            first = first_node(k, n)
-            for i in range(STENCIL):
-                total[first + i] += shares[STENCIL * k + i] * value
+            add_lanes(total, np.uintp(first_node(k, n)), shares, np.uintp(STENCIL * k), value)
     for i in range(n):
         out[i] += total[i] / weights[i]
 

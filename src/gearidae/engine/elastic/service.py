@@ -8,7 +8,7 @@ from numba import carray, types  # type: ignore[attr-defined]
 from numba.np.numpy_support import from_dtype
 
 from gearidae.compiled import compiled_callback
-from gearidae.engine.elastic import calls, histories, nodes
+from gearidae.engine.elastic import calls, elimination, histories, nodes
 from gearidae.engine.elastic.energy import (
     nodes_joining_loss,
     nodes_length_force,
@@ -45,6 +45,12 @@ def answer(  # type: ignore[no-untyped-def]
     two[0] = two[1] = 0.0
     if kind == calls.FORCE:
         two[0], two[1] = nodes.node_force(m, k, known != 0, t, y, gap, rate, length)
+    elif kind == calls.SETTLE:
+        two[0], two[1] = elimination.settle_pair(m, k, known != 0, t, y, gap, rate, length)
+    elif kind == calls.PREDICT:
+        elimination.predict(m, k, known != 0, t, y, gap, rate)
+    elif kind == calls.FINISH:
+        elimination.finish_pair(m, k, known != 0, t, y, gap, rate, length)
     elif kind == calls.RESIDUAL:
         nodes.node_residual(m, y, out)
     elif kind == calls.RATES:

@@ -111,7 +111,10 @@ def follow_joining(m: Model, h: float, y: Floats, w_rate: float, now: bool) -> N
     if m.scene.kind != GEARS:
         return
     if m.scene.by_place != 0:
-        _follow_by_place(m, y, w_rate, now)
+        h = m.state.time - m.work.lag_time
+        full = h > m.scene.balance_span or m.work.quadrature.steps + 1 >= m.scene.balance_steps
+        if h > 0.0 and (now or full):
+            _follow_by_place(m, h, y, w_rate)
         return
     if h <= 0.0:
         return
@@ -121,12 +124,8 @@ def follow_joining(m: Model, h: float, y: Floats, w_rate: float, now: bool) -> N
 
 
 @compiled
-def _follow_by_place(m: Model, y: Floats, w_rate: float, now: bool) -> None:
-    """Follow the lags of contacts whose shares change along the path, since they were followed last."""
-    h = m.state.time - m.work.lag_time
-    steps = m.work.quadrature.steps + 1
-    if h <= 0.0 or not (now or h > m.scene.balance_span or steps >= m.scene.balance_steps):
-        return
+def _follow_by_place(m: Model, h: float, y: Floats, w_rate: float) -> None:
+    """Follow the lags of contacts whose shares change along the path over the time since they were followed last."""
     m.work.lag_time = m.state.time
     for coast in range(2):
         if m.state.near[coast] != 0:

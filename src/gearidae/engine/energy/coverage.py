@@ -15,26 +15,25 @@ from gearidae.engine.elastic.calls import nodes_length_force, nodes_material_ene
 from gearidae.engine.energy.contacts import free_material_energy, material_energy, turning_point
 from gearidae.engine.energy.lengths import length_and_rates, material_lengths
 from gearidae.engine.model.coverage import Shares, note_shares, place_inside, potentials_of, shares_of
-from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, V, W
+from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.tooth_pairs import history_of
 
 __all__ = ["coverage_force", "coverage_power", "losses_by_material"]
 
 
-@compiled
+@compiled(inline=True)
 def coverage_power(
-    m: Model, k: int, coast: int, pair: int, gap: float, t: float, y: Floats, w_rate: float
+    m: Model, potentials: tuple[Shares, Shares], coast: int, pair: int, t: float, y: Floats, w_rate: float
 ) -> tuple[float, float]:
     """Power of the changing lengths of a pair's materials, and its own rate.
 
     Parameters
     ----------
     m : Model
-    k : int
-        Index of the pair's history.
+    potentials : tuple
+        Of the materials at the pair's gap, from `gearidae.engine.model.coverage.potentials_of`.
     coast, pair : int
         Flank and number of the pair, which is on the path of contact.
-    gap : float
-        Its gap.
     t : float
         Time over tau.
     y : ndarray
@@ -42,21 +41,21 @@ def coverage_power(
     w_rate : float
         Acceleration of the gear's surface.
     """
-    opening = -(1.0 - 2.0 * coast) * y[V]
+    sign, k = 1.0 - 2.0 * coast, history_of(m, coast, pair)
+    gap, opening = m.scene.half_backlash - sign * y[U], -sign * y[V]
     _, rates, bends = material_lengths(m, k, coast, pair, y[PHASE], y[W], w_rate)
     power = change = 0.0
     if m.scene.nodes > 0:
         bodies, slope = _bodies(m, k, coast, pair, gap, opening, t, y)
         _, rate, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
         power, change = bodies * rate, slope * rate + bodies * bend
-    potentials, pushes = potentials_of(m, gap)
     for material in range(MATERIALS):
         if rates[material] == 0.0 and bends[material] == 0.0:
             continue
         if m.scene.nodes > 0:
             energy, slope = nodes_material_energy(m, k, y, gap, opening, material)
         else:
-            energy, slope = potentials[material], pushes[material]
+            energy, slope = potentials[0][material], potentials[1][material]
             if m.scene.material[material].stretch_limit != 0.0:
                 more, rise = material_energy(m, k, gap, material)
                 energy += m.scene.material[material].force_scale * more

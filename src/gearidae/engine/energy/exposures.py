@@ -24,6 +24,7 @@ from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import node_force, nodes_number
 from gearidae.engine.energy.noted_force import begin_notes, note_force
+from gearidae.engine.energy.places import divide, note_pressure, place_at, spread
 from gearidae.engine.energy.quadrature import integral
 from gearidae.engine.model.coverage import note_shares, shares_of
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
@@ -82,7 +83,7 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _slide(m, t, k, sliding, noted.place, (noted.force, noted.slope * noted.gap_rate))
 
 
-@compiled(inline=True)
+@compiled
 def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Add what the flanks have been exposed to since the last call, up to an accepted time.
 
@@ -152,7 +153,7 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     own = m.work.exposing.pair[k]
     if own.known == 0 or own.pair != pair or own.time < m.work.exposing.time:
         return
-    gap, _, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     if gap >= m.scene.cutoff:
         return
     if m.state.history[k].direction > 0.0:
@@ -165,15 +166,17 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int)
     _join(m, y, k, gap, inside)
     own.adhesive = 1 if own.pull < -ADHESIVE * m.work.exposing.level else 0
     own.pull = 0.0
-    scale = m.scene.places_per_pitch
-    if own.adhesive != 0 or gap < own.lowest or int(scale * inside) != int(scale * own.place):
+    at = place_at(m, inside)
+    if own.adhesive != 0 or gap < own.lowest or at != own.at:
         own.lowest = min(own.lowest, gap)
-        force, _ = _force(m, t, y, coast, pair, k)
+        if m.scene.nodes == 0:
+            rate = 0.0  # but for rounding, which is not to send the history through this point
+        force, _ = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
         if own.adhesive != 0:  # the slope of the force has a jump here
             point = m.work.track.point[m.work.track.last]
             _slide(m, t, k, _sliding(m, y, point.travel_bend, point.speed_rate), inside, (force, 0.0))
         elif force > 0.0:
-            _note_pressure(m, own.row + PRESSURE * m.scene.places, inside, force)
+            note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force)
 
 
 @compiled
@@ -187,7 +190,8 @@ def close_exposures_at(place: int, t: float, y: Floats, yp: Floats) -> None:
 def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     """Begin with a pair in which nothing is in contact."""
     own = m.work.exposing.pair[k]
-    own.known, own.pair, own.time, own.place = 1, pair, t, inside
+    own.known, own.pair, own.time = 1, pair, t
+    own.place, own.at = inside, place_at(m, inside)
     own.turned, own.adhesive, own.lowest = 0, 0, m.scene.cutoff
     own.power = own.power_rate = own.pull = 0.0
     for material in range(MATERIALS):
@@ -208,13 +212,16 @@ def _note_forces(m: Model, t: float, y: Floats) -> None:
         k = history_of(m, coast, pair)
         gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
         if gap < m.scene.cutoff and m.state.history[k].pair == pair:
-            note_force(m, k, pair, inside, (gap, rate), _force(m, t, y, coast, pair, k))
+            force = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
+            note_force(m, k, pair, inside, (gap, rate), force)
 
 
 @compiled
-def _force(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> tuple[float, float]:
-    """Force of a pair and its slope in the gap."""
-    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+def _force(
+    m: Model, t: float, y: Floats, which: tuple[int, int, int], at: tuple[float, float, float]
+) -> tuple[float, float]:
+    """Force of a pair, given by flank, number and history, with a gap, a gap rate and a place; slope in the gap."""
+    (coast, pair, k), (gap, rate, inside) = which, at
     if m.scene.nodes > 0:
         note_shares(m, k, coast, pair, inside)
         return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
@@ -264,14 +271,24 @@ def _slide(
     if speed < 0.0:
         speed, speed_rate = -speed, -speed_rate
     power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
-    if power > 0.0 or own.power > 0.0 or own.power_rate > 0.0 > power_rate:
+    at, third = place_at(m, inside), (t - own.time) / 3.0
+    # between ends that pull the power's cubic may rise above zero, but not above its control points
+    rises = (
+        own.power_rate > 0.0 > power_rate
+        and max(own.power + third * own.power_rate, power - third * power_rate) > 0.0
+    )
+    if power > 0.0 or own.power > 0.0 or rises:
         work = _pushing(t - own.time, own.power, own.power_rate, power, power_rate)
-        _spread(m, own.row + SLIDING * m.scene.places, own.place, inside, work)
+        row = own.row + SLIDING * m.scene.places
+        if at == own.at:
+            m.rows[row + at] += work
+        else:
+            divide(m, row, own.place, inside, work)
         if force[0] > 0.0:
-            _note_pressure(m, own.row + PRESSURE * m.scene.places, inside, force[0])
-    if int(m.scene.places_per_pitch * inside) != int(m.scene.places_per_pitch * own.place):
+            note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force[0])
+    if at != own.at:
         own.lowest = m.scene.cutoff  # another place
-    own.time, own.place, own.power, own.power_rate = t, inside, power, power_rate
+    own.time, own.place, own.at, own.power, own.power_rate = t, inside, at, power, power_rate
     own.pull = min(own.pull, power)
 
 
@@ -331,38 +348,8 @@ def _join(m: Model, y: Floats, k: int, gap: float, inside: float) -> None:
             continue
         own.front[material] = front
         more = 0.5 * (contact_length(m, inside) + contact_length(m, own.place)) * joined
-        _spread(m, own.row + material * m.scene.places, own.place, inside, more)
+        spread(m, own.row + material * m.scene.places, own.place, inside, more)
         if law.stretch_limit > 0.0:
             lost = law.joining_energy * law.force_scale * more
-            _spread(m, own.row + (MATERIALS + material) * m.scene.places, own.place, inside, lost)
+            spread(m, own.row + (MATERIALS + material) * m.scene.places, own.place, inside, lost)
     own.turned = 0
-
-
-@compiled(inline=True)
-def _spread(m: Model, row: int, before: float, after: float, amount: float) -> None:
-    """Add an amount to the places that a contact has passed, in proportion to the way in each."""
-    places, scale = m.scene.places, m.scene.places_per_pitch
-    first, last = min(int(scale * before), places - 1), min(int(scale * after), places - 1)
-    if first == last:
-        m.rows[row + first] += amount
-    else:
-        _divide(m, row, scale * min(before, after), scale * max(before, after), amount)
-
-
-@compiled
-def _divide(m: Model, row: int, low: float, high: float, amount: float) -> None:
-    """Divide an amount between places, from one edge to another, in places."""
-    places = m.scene.places
-    for place in range(min(int(low), places - 1), min(int(high), places - 1) + 1):
-        way = min(high, place + 1.0) - max(low, float(place))
-        m.rows[row + place] += amount * way / (high - low)
-
-
-@compiled(inline=True)
-def _note_pressure(m: Model, row: int, inside: float, force: float) -> None:
-    """Note the pressure of a contact where it is the largest so far."""
-    at = row + min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
-    radius = m.scene.start_radius + inside
-    # of squares: a root only where there is something to note
-    if force * force > m.rows[at] * m.rows[at] * (radius - radius * radius * m.scene.sum_curvature):
-        m.rows[at] = force / contact_length(m, inside)

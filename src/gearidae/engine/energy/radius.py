@@ -19,7 +19,7 @@ from gearidae.engine.elastic.calls import nodes_joining_loss, nodes_length_force
 from gearidae.engine.energy.contacts import free_energy, joined_energy
 from gearidae.engine.energy.coverage import coverage_force, coverage_power
 from gearidae.engine.energy.lengths import length_and_rates
-from gearidae.engine.model.coverage import WHOLE
+from gearidae.engine.model.coverage import WHOLE, potentials_of
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import history_of
 
@@ -50,16 +50,16 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
         gap = m.scene.half_backlash - sign * y[U]
         if gap >= m.scene.cutoff:
             continue
+        if m.scene.by_place != 0:
+            more, change = _power_by_place(m, coast, gap, t, y, w_rate)
+            power += more
+            rate += change
+            continue
         potential, push = loading_value(m.tables, m.scene.potential_at, gap)
         first, last = pairs_on_path(m, coast)
         for pair in range(first, last + 1):
             k = history_of(m, coast, pair)
             if m.state.history[k].pair != pair:
-                continue
-            if m.scene.by_place != 0:
-                own_power, own_rate = coverage_power(m, k, coast, pair, gap, t, y, w_rate)
-                power += own_power
-                rate += own_rate
                 continue
             length, length_rate, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
             if elastic:
@@ -70,6 +70,22 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
                 change = -(slope + push) * sign * y[V]
             power += pull * length_rate
             rate += change * length_rate + pull * bend
+    return power, rate
+
+
+@compiled
+def _power_by_place(
+    m: Model, coast: int, gap: float, t: float, y: Floats, w_rate: float
+) -> tuple[float, float]:
+    """Do the same for a flank whose shares of the materials change along the path."""
+    power = rate = 0.0
+    potentials = potentials_of(m, gap)
+    first, last = pairs_on_path(m, coast)
+    for pair in range(first, last + 1):
+        if m.state.history[history_of(m, coast, pair)].pair == pair:
+            more, change = coverage_power(m, potentials, coast, pair, t, y, w_rate)
+            power += more
+            rate += change
     return power, rate
 
 

@@ -64,7 +64,7 @@ def keep(a: Record, t: float, yp: Floats) -> None:
     a.time, a.last_step, a.new_step = t, step, 0.0
     for j in range(MOTION):
         a.state[j] = a.new_state[j]
-    for j in range(yp.size):
+    for j in range(min(yp.size, MOTION)):
         yp[j] = a.new_differences[0, j]
     if a.used == 0:
         return
@@ -188,5 +188,5 @@ def between(a: Record, t: float, y: Floats, yp: Floats) -> None:
     count = a.order_used + 1
     _set_polynomials(a, t - a.time, count - 1)
     changes, rates = _sums(a, a.basis_integrals, count), _sums(a, a.basis_values, count)
-    for j in range(y.size):
+    for j in range(min(y.size, MOTION)):
         y[j], yp[j] = a.state[j] + changes[j], rates[j]

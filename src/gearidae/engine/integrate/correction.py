@@ -31,7 +31,7 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
         Squared frequency of the motion, over 1 / tau^2: an upper estimate from the slopes of the forces, with the rate
         at which resistance slows the motion down added at twice its value.
     """
-    force_u, force_phase, relief_u, relief_phase = motion(m, t, y, yp, delta)
+    force_u, force_phase, relief_u, relief_phase = motion(m, t, y, yp, delta, True)
     step = 1.0 / cj
     of_u, of_v = delta[U], delta[V]
     if m.scene.kind == ROLLER:

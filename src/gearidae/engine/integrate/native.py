@@ -6,12 +6,14 @@ output is full, a budget of steps is used up, or the run is over, and can be cal
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 
 import numpy as np
 
 from gearidae.compiled import compiled
+from gearidae.engine.elastic.elimination import begin_deflections
 from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
@@ -36,6 +38,7 @@ from gearidae.engine.integrate.start import first_step, set_rates
 from gearidae.engine.integrate.step_control import configure_ida
 from gearidae.engine.model.observe import observe
 from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.residual import is_eliminated, set_deflections
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.callbacks import callbacks
@@ -96,6 +99,8 @@ def restart(s: Stepper, stop: float) -> int:
         flag |= sun.IDASetMaxStep(ida, m.scene.longest_step)
     if m.work.adams.own != 0:
         adams.begin(m.work.adams, t, s.y, s.yp)
+        if m.scene.nodes > 0:
+            begin_deflections(m, t, s.y)
         flag |= configure_ida(ida, m.work.adams)
     start_search(s)
     return flag
@@ -108,6 +113,8 @@ def state_for_sample(s: Stepper, t: float) -> None:
         adams.between(s.m.work.adams, t, s.dky, s.spare)
     else:
         sun.IDAGetDky(s.handles[IDA], t, 0, s.handles[DKY])
+    if is_eliminated(s.m):
+        set_deflections(s.m, t, s.dky, False)
 
 
 @compiled(inline=True)
@@ -188,6 +195,14 @@ def make_arrays(problem: Problem, m: Model, as_ida: bool) -> Arrays:
     return Arrays(handles, y, np.zeros_like(y), np.zeros_like(y), np.zeros_like(y), np.zeros(1))
 
 
+def _weigh_motion(m: Model) -> int:
+    """Set the error weights of a motion whose nodes are eliminated to those of a rigid one; its number of states."""
+    motion = int(m.scene.states - m.scene.nodes * m.scene.histories)
+    first = int(m.scene.error_weights_at)
+    m.rows[first : first + motion] *= math.sqrt(motion / float(m.scene.states))
+    return motion
+
+
 def run(
     problem: Problem,
     rtol: float,
@@ -227,8 +242,10 @@ def run(
         observe_at(problem.located.place, float(s.clock[0]), s.y, out.rows[0])
         m.work.driver.rows = m.state.progress.next_sample = 1
     place = problem.located.place
-    elastic = bool(m.scene.nodes > 0)
-    functions = callbacks(s.y.size, elastic, as_ida)
+    unknowns = s.y.size
+    if m.scene.nodes > 0 and not as_ida:
+        unknowns = _weigh_motion(m)
+    functions = callbacks(unknowns, bool(m.scene.nodes > 0), as_ida)
     places = Places(sun.places(), sun.newton_places())
     try:
         if open_solver(s.handles, place, functions, places, (s.y, s.yp, s.dky)) != 0:

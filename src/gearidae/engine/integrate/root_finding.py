@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine.events.events import guard
 from gearidae.engine.integrate import adams
+from gearidae.engine.model.residual import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
@@ -87,12 +88,17 @@ def start_search(s: Stepper) -> None:
 
 
 @compiled(inline=True)
-def state_at(s: Stepper, t: float) -> None:
-    """Set state and rates to those at a time within the last step."""
+def state_at(s: Stepper, t: float, roughly: bool) -> None:
+    """Set state and rates to those at a time within the last step.
+
+    Where nodes are eliminated, their deflections are solved for, or `roughly` interpolated between the ends of steps.
+    """
     if s.m.work.adams.order_used > 0:
         adams.between(s.m.work.adams, t, s.y, s.yp)
     else:
         solution_at(s.handles[IDA], t, s.handles[Y], s.handles[YP])
+    if is_eliminated(s.m):
+        set_deflections(s.m, t, s.y, roughly)
 
 
 @compiled(inline=True)
@@ -112,7 +118,7 @@ def next_time(s: Stepper) -> int:
     rest = search.rest != 0
     if rest:
         s.clock[0] = search.step_end
-        state_at(s, s.clock[0])
+        state_at(s, s.clock[0], True)
     elif search.stop != 0:
         return _stop(s)
     else:
@@ -126,7 +132,13 @@ def next_time(s: Stepper) -> int:
         if search.as_ida != 0:
             _find_as_ida(s, high)
         else:
-            _find(s, high)
+            _find(s, high, True)
+            if is_eliminated(s.m):
+                set_deflections(s.m, s.clock[0], s.y, False)
+                if _look(s, s.clock[0]) > 0.0:  # the interpolated deflections have been too far ahead
+                    s.clock[0] = search.step_end
+                    state_at(s, search.step_end, False)
+                    _find(s, high, False)
         return sun.IDA_ROOT_RETURN
     search.low, search.low_time = high, s.clock[0]
     search.rest = 0
@@ -145,12 +157,14 @@ def _step(s: Stepper) -> int:
     if flag < 0:
         return flag
     adams.keep(s.m.work.adams, s.clock[0], s.yp)
+    if is_eliminated(s.m):
+        finish_deflections(s.m, s.clock[0], s.y)
     if search.as_ida != 0:
         solution_at(vectors[IDA], s.clock[0], vectors[Y], vectors[YP])
     if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
         search.stop, search.stop_time = 1, s.clock[0]
         sun.IDAGetCurrentTime(vectors[IDA], s.clock.ctypes.data)
-        state_at(s, s.clock[0])
+        state_at(s, s.clock[0], False)
     return flag
 
 
@@ -159,7 +173,7 @@ def _stop(s: Stepper) -> int:
     """Return at a stop, after all roots before it have been handled."""
     s.m.work.search.stop = 0
     s.clock[0] = s.m.work.search.stop_time
-    state_at(s, s.clock[0])
+    state_at(s, s.clock[0], False)
     return sun.IDA_TSTOP_RETURN
 
 
@@ -180,8 +194,11 @@ def _inverse(a: float, at_a: float, b: float, at_b: float, c: float, at_c: float
 
 
 @compiled
-def _find(s: Stepper, high: float) -> None:
-    """Find when the guard has fallen, which is above zero at the interval's beginning and `high` at its end."""
+def _find(s: Stepper, high: float, roughly: bool) -> None:
+    """Find when the guard has fallen, which is above zero at the interval's beginning and `high` at its end.
+
+    `roughly` as for `state_at`.
+    """
     search = s.m.work.search
     a, b, low = search.low_time, s.clock[0], search.low
     tolerance = max(_rounding(s), search.sharpness * (b - a))
@@ -200,7 +217,7 @@ def _find(s: Stepper, high: float) -> None:
             if slow:
                 here = 0.5 * (a + b)
         here = min(max(here, a + 0.25 * tolerance), b - 0.25 * tolerance)
-        state_at(s, here)
+        state_at(s, here, roughly)
         value = _look(s, here)
         if value < 0.0:
             c, left, b, high = b, high, here, value
@@ -208,7 +225,7 @@ def _find(s: Stepper, high: float) -> None:
             c, left, a, low = a, low, here, value
     s.clock[0] = b
     if here != b:
-        state_at(s, b)
+        state_at(s, b, roughly)
 
 
 @compiled
@@ -231,7 +248,7 @@ def _find_as_ida(s: Stepper, high: float) -> None:
             middle = a + inward * (b - a)
         if abs(b - middle) < 0.5 * tolerance:
             middle = b - inward * (b - a)
-        state_at(s, middle)
+        state_at(s, middle, False)
         value = _look(s, middle)
         before = side
         if value < 0.0:
@@ -239,4 +256,4 @@ def _find_as_ida(s: Stepper, high: float) -> None:
         else:
             a, low, side = middle, value, 2
     s.clock[0] = b
-    state_at(s, b)
+    state_at(s, b, False)

@@ -11,6 +11,7 @@ import numpy as np
 from gearidae.contact.kernels.law import GAP_LOW
 from gearidae.engine.elastic.calls import service
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
+from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.balance import open_balance
 from gearidae.engine.energy.exposures import QUANTITIES
@@ -269,6 +270,10 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
     s.exposures = 2 * int(s.pinion_teeth) * QUANTITIES * int(s.places)
     s.exposures_at = rows.add(np.zeros(int(s.exposures)))
+    branches = MATERIALS * int(s.points * s.point_branch_length) * histories
+    s.point_branches_at = rows.add(np.zeros(branches))
+    s.scratch_at = rows.add(np.zeros(scratch_size(nodes) if nodes else 0))
+    s.trial_at = rows.add(np.zeros(int(s.states) if nodes else 0))
     return blank_model(s, tables.whole(), rows.size)
 
 

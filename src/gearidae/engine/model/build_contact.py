@@ -128,7 +128,7 @@ def add_contact(
             tables.add(each.ravel()) for each in (loadings, potentials, numbers)
         )
     s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
-    s.branch_length = 0 if s.nodes > 0 else longest
+    s.branch_length, s.point_branch_length = (0, longest) if s.nodes > 0 else (longest, 0)
 
 
 def _parts(scene: Scene) -> tuple[Material, ...]:

@@ -9,7 +9,7 @@ import math
 from typing import Final, NamedTuple, TypeAlias
 
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.evaluate import three_values
+from gearidae.contact.kernels.evaluate import three_values, value_of_shares
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.model.state import Model
 
@@ -96,7 +96,7 @@ def _fraction(m: Model, k: int, side: int, inside: float) -> Fraction:
     return Fraction(_value(m, k, side, inside), slope, bend)
 
 
-@compiled
+@compiled(inline=True)
 def _shares_by_place(m: Model, k: int, coast: int, pair: int, inside: float) -> Shares:
     """Shares of the materials of a pair."""
     _enter_cell(m, k, coast, pair, inside)
@@ -155,7 +155,7 @@ def noted_shares(m: Model, k: int) -> Shares:
     return own[0], own[1], own[2]
 
 
-@compiled
+@compiled(inline=True)
 def share_changes(m: Model, k: int, coast: int, pair: int, inside: float) -> tuple[Shares, Shares, Shares]:
     """Shares of the materials in a pair, and their first and second derivatives along the path, per pitch."""
     _enter_cell(m, k, coast, pair, inside)
@@ -178,9 +178,7 @@ def loading_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
     """Loading branch of all materials and its slope, scaled, for a contact of unit length."""
     if m.scene.by_place == 0:
         return loading_value(m.tables, m.scene.loading_at, gap)
-    (a, b, c), (a1, b1, c1) = three_values(m.tables, m.scene.loadings_at, gap)
-    bare, coated, mixed = shares
-    return bare * a + coated * b + mixed * c, bare * a1 + coated * b1 + mixed * c1
+    return value_of_shares(m.tables, m.scene.loadings_at, gap, shares)
 
 
 @compiled
@@ -188,8 +186,7 @@ def potential_of(m: Model, gap: float, shares: Shares) -> float:
     """Potential of the loading branch of all materials, scaled, per length."""
     if m.scene.by_place == 0:
         return loading_value(m.tables, m.scene.potential_at, gap)[0]
-    a, b, c = potentials_of(m, gap)[0]
-    return shares[0] * a + shares[1] * b + shares[2] * c
+    return value_of_shares(m.tables, m.scene.potentials_at, gap, shares)[0]
 
 
 @compiled

@@ -15,14 +15,24 @@ contact adds the deflections at its nodes, which have no rates: the system is th
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.elastic.calls import node_force, node_residual
+from gearidae.engine.elastic.calls import (
+    FINISH,
+    PREDICT,
+    SETTLE,
+    node_force,
+    node_residual,
+    pair_deflections,
+    settle_pair,
+)
 from gearidae.engine.elastic.nodes import mark_out_of_reach
+from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.energy.noted_force import begin_notes, note_force
 from gearidae.engine.energy.radius import radius_force
-from gearidae.engine.model.coverage import WHOLE, note_shares, shares_of
+from gearidae.engine.model.coverage import WHOLE, note_shares, place_inside, shares_of
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
+    gap_and_rate,
     history_of,
     pair_at,
     pair_force,
@@ -32,12 +42,23 @@ from gearidae.engine.model.tooth_pairs import (
 )
 from gearidae.engine.model.torque import torque_force
 
-__all__ = ["held", "jacobian", "mesh_forces", "motion", "residual", "resisting_force", "roller_force"]
+__all__ = [
+    "finish_deflections",
+    "held",
+    "is_eliminated",
+    "jacobian",
+    "mesh_forces",
+    "motion",
+    "residual",
+    "resisting_force",
+    "roller_force",
+    "set_deflections",
+]
 
 
 @compiled
-def roller_force(m: Model, t: float, y: Floats) -> tuple[float, float]:
-    """Force on a roller and its slope in the height, scaled."""
+def roller_force(m: Model, t: float, y: Floats, settling: bool = False) -> tuple[float, float]:
+    """Force on a roller and its slope in the height, scaled; `settling` as for `mesh_forces`."""
     height, speed = y[U], y[V]
     elastic = m.scene.nodes > 0
     if elastic:
@@ -45,14 +66,29 @@ def roller_force(m: Model, t: float, y: Floats) -> tuple[float, float]:
     if height >= m.scene.cutoff:
         return 0.0, 0.0
     known = m.state.history[0].pair == 0
+    if elastic and settling:
+        return settle_pair(m, 0, known, t, with_deflections(m, y), height, speed, 1.0)
     if elastic:
         return node_force(m, 0, known, t, y, height, speed, 1.0)
     return pair_force(m, 0, known, t, height, speed, 0.0, WHOLE)
 
 
 @compiled(inline=True)
-def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, float, float, float]:
-    """Sum the forces of all pairs within reach, with their slopes; those of an elastic contact at fixed deflection.
+def mesh_forces(
+    m: Model, t: float, y: Floats, settling: bool = False
+) -> tuple[float, float, float, float, float, float]:
+    """Sum the forces of all pairs within reach, with their slopes.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    y : ndarray
+        State.
+    settling : bool, optional
+        Whether the deflections of elastic contacts are solved for, with slopes along which they follow; otherwise they
+        are those of the state, and the slopes are at fixed deflection.
 
     Returns
     -------
@@ -69,6 +105,7 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
         mark_out_of_reach(m)
     if m.work.notes.wanted != 0:
         begin_notes(m, t, u)
+    full = with_deflections(m, y) if elastic and settling else y
     reach = pairs_touching(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -80,7 +117,11 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
         known = m.state.history[k].pair == pair
         if elastic:
             note_shares(m, k, coast, pair, inside)
-            load, stiffness = node_force(m, k, known, t, y, gap, rate, contact_length(m, inside))
+            length = contact_length(m, inside)
+            if settling:
+                load, stiffness = settle_pair(m, k, known, t, full, gap, rate, length)
+            else:
+                load, stiffness = node_force(m, k, known, t, y, gap, rate, length)
         else:
             shares = shares_of(m, k, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
@@ -100,7 +141,7 @@ def mesh_forces(m: Model, t: float, y: Floats) -> tuple[float, float, float, flo
             relief_u += by_u * slope
             relief_phase += by_phase * slope + sign * load * m.scene.relief_slope
         if m.scene.radius_force != 0:
-            load, by_u, by_phase = radius_force(m, t, y, coast, pair, k, gap, rate)
+            load, by_u, by_phase = radius_force(m, t, full, coast, pair, k, gap, rate)
             relief += load
             relief_u += by_u
             relief_phase += by_phase
@@ -123,8 +164,12 @@ def held(m: Model) -> bool:
 
 
 @compiled(inline=True)
-def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> tuple[float, float, float, float]:
+def motion(
+    m: Model, t: float, y: Floats, yp: Floats, out: Floats, settling: bool = False
+) -> tuple[float, float, float, float]:
     """F(t, y, y') of the motion, in the first places of `out`, and the slopes of its forces.
+
+    `settling` as for `mesh_forces`; the state may then be that of the motion alone.
 
     Returns
     -------
@@ -134,11 +179,11 @@ def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> tuple[floa
     v = y[V]
     out[U] = yp[U] - v
     if m.scene.kind == ROLLER:
-        force, slope = roller_force(m, t, y)
+        force, slope = roller_force(m, t, y, settling)
         out[V] = yp[V] - m.scene.gear_inverse_mass * force
         return slope, 0.0, 0.0, 0.0
     u, phase, w = y[U], y[PHASE], y[W]
-    force, relief, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y)
+    force, relief, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y, settling)
     force += m.scene.damping * v
     turn, e1, e2 = v + w, 0.0, 0.0
     if m.scene.error_count != 0:
@@ -156,6 +201,59 @@ def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> tuple[floa
     out[V] = yp[V] + yp[W] - pinion
     out[PHASE] = yp[PHASE] - m.scene.phase_rate * w
     return force_u, force_phase, relief_u, relief_phase
+
+
+@compiled(makes_arrays=True)
+def with_deflections(m: Model, y: Floats) -> Floats:
+    """Whole state to which deflections can be put: the same, or a copy if it is that of the motion alone."""
+    if y.size == m.scene.states:
+        return y
+    own = m.rows[m.scene.trial_at : m.scene.trial_at + m.scene.states]
+    for j in range(y.size):
+        own[j] = y[j]
+    return own
+
+
+@compiled
+def is_eliminated(m: Model) -> bool:
+    """Whether there are nodes that the integrator does not see."""
+    return bool(m.scene.nodes > 0 and m.work.adams.own != 0)
+
+
+@compiled
+def set_deflections(m: Model, t: float, y: Floats, roughly: bool) -> None:
+    """Solve for the deflections that go with the motion of a whole state, or only interpolate them, in place."""
+    _ask_for_deflections(m, t, y, PREDICT if roughly else SETTLE)
+
+
+@compiled
+def finish_deflections(m: Model, t: float, y: Floats) -> None:
+    """Put the deflections to the state at the end of a step, and note them for the prediction of the next ones."""
+    for k in range(m.scene.histories):
+        if m.state.history[k].loaded == 0:
+            m.work.settling[k].last_known = m.work.settling[k].before_known = 0
+    _ask_for_deflections(m, t, y, FINISH)
+
+
+@compiled
+def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
+    """Ask for the deflections of all pairs within reach, in one of the ways of `gearidae.engine.elastic.calls`."""
+    for j in range(first_unknown(m, 0), y.size):  # those of pairs out of reach are zero
+        y[j] = 0.0
+    reach = pairs_touching(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        k = history_of(m, coast, pair)
+        gap, rate = gap_and_rate(m, coast, pair, y)
+        if gap >= m.scene.cutoff:
+            continue
+        m.state.history[k].length = 1.0
+        if m.scene.kind != ROLLER:
+            inside = place_inside(m, coast, pair, y[PHASE])
+            note_shares(m, k, coast, pair, inside)
+            m.state.history[k].length = contact_length(m, inside)
+        known = m.state.history[k].pair == pair
+        pair_deflections(m, kind, k, known, t, y, gap, rate)
 
 
 @compiled

@@ -122,6 +122,10 @@ SCENE: Final = record_type(
     ("shares_at", INT),
     ("node_rows_at", INT),  # where the pairs' nodes begin among the rows
     ("node_row_length", INT),  # numbers of one pair's nodes there
+    ("point_branch_length", INT),  # size of the branch of stretched asperities at a point; 0 if none is kept
+    ("point_branches_at", INT),  # where those of all pairs begin among the rows
+    ("scratch_at", INT),  # scratch space for them, among the rows
+    ("trial_at", INT),  # where a state whose nodes are eliminated gets its deflections, among the rows
     # what flanks are exposed to
     ("places", INT),  # along the path of contact; 0 if it is not asked for
     ("places_per_pitch", REAL),

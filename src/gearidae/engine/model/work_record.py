@@ -27,6 +27,7 @@ __all__ = [
     "QUADRATURE",
     "RESISTANCE",
     "SEARCH",
+    "SETTLING",
     "TRACK",
     "WORK",
 ]
@@ -136,7 +137,8 @@ EXPOSED: Final = record_type(  # a pair where its exposures have last been added
     ("pair", INT),
     ("row", INT),  # where its tooth begins among the rows
     ("time", REAL),
-    ("place", REAL),  # along the path of contact, in pitches
+    ("place", REAL),  # along the path of contact, in pitches,
+    ("at", INT),  # and the index of what it is divided into
     ("turned", INT),  # 1 from where it began to close until something joins
     ("lowest", REAL),  # least gap at a turning point in this place
     ("front", REAL, (MATERIALS,)),  # asperities in contact, over their density
@@ -175,6 +177,21 @@ NOTES: Final = (
     )
 )
 
+SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminated
+    ("evaluated", INT),  # since the last step's end,
+    ("known", INT),  # and then whether the history was about the pair, the time and the pair's gap
+    ("time", REAL),
+    ("gap", REAL),
+    ("last_known", INT),  # the end of the last step, and the pair's gap and gap rate there
+    ("last_time", REAL),
+    ("last_gap", REAL),
+    ("last_rate", REAL),
+    ("before_known", INT),  # and of the one before
+    ("before_time", REAL),
+    ("before_gap", REAL),
+    ("before_rate", REAL),
+)
+
 PART: Final = (
     record_type(  # of a cell, one side: before + change u^3 (10 - 15 u + 6 u^2), u = (place - origin) scale
         ("origin", REAL),
@@ -206,6 +223,8 @@ WORK: Final = record_type(
         REAL,
         (2 * SLOTS_HIGH, MATERIALS),
     ),  # by tooth and place, of elastic contacts as last asked for
+    ("settling", SETTLING, (2 * SLOTS_HIGH,)),
+    ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),
     ("search", SEARCH),
     ("driver", DRIVER),

@@ -50,9 +50,12 @@ def _unasked(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
 @compiled_callback(_INT(_PTR, _PTR, _PTR))
 def _weights(yy, weights, data):  # type: ignore[no-untyped-def]
     m = ptr.model_at(data)
-    out = ptr.numbers(weights, m.scene.states)
+    count = m.scene.states
+    if m.work.adams.own != 0:  # nodes are eliminated
+        count -= m.scene.nodes * m.scene.histories
+    out = ptr.numbers(weights, count)
     first = m.scene.error_weights_at
-    for i in range(m.scene.states):
+    for i in range(count):
         out[i] = m.rows[first + i]
     return 0
 
@@ -155,7 +158,7 @@ def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Functions:
     Parameters
     ----------
     n : int
-        States, those of the nodes included.
+        Unknowns that IDA sees: those of the motion, and of the nodes where IDA iterates by itself.
     elastic : bool
         Whether the contact is elastic, and the equations solved by blocks.
     as_ida : bool, optional
@@ -163,14 +166,14 @@ def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Functions:
     """
     steps: tuple[Any, ...] = ()
     newton: tuple[Any, ...] = ()
-    if elastic:
-        slopes, set_up, solve = _bodies()
-        model, steps = (_residual(), slopes, _weights), (set_up, solve)
-    elif as_ida:
-        model = (_residual(), _dense(), _weights)
-    else:
+    if not as_ida:
         newton = _newton(n)
         model = (_unasked, None, _weights)
+    elif elastic:
+        slopes, set_up, solve = _bodies()
+        model, steps = (_residual(), slopes, _weights), (set_up, solve)
+    else:
+        model = (_residual(), _dense(), _weights)
     return Functions(
         *(np.array([f.address if f else 0 for f in part], np.int64) for part in (model, steps, newton))
     )

@@ -69,7 +69,10 @@ def open_solver(
         State, rates and work space.
     """
     m, (y, yp, dky) = memory.model_at(place), vectors
+    m.work.adams.own = 1 if functions.newton.size > 0 else 0
     n = y.size
+    if m.work.adams.own != 0:  # nodes are eliminated
+        n -= m.scene.nodes * m.scene.histories
     flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
     if flag != 0:
         return flag
@@ -84,7 +87,6 @@ def open_solver(
     flag |= sun.IDAInit(solver, functions.model[0], m.state.time, handles[Y], handles[YP])
     flag |= sun.IDAWFtolerances(solver, functions.model[2])
     flag |= sun.IDASetUserData(solver, place)
-    m.work.adams.own = 1 if functions.newton.size > 0 else 0
     if functions.newton.size > 0:
         handles[NEWTON] = sun.SUNNonlinSolNewEmpty(context)
         memory.replace(handles[NEWTON], places.newton, functions.newton)

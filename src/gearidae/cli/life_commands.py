@@ -1,0 +1,109 @@
+"""The commands on the life of a coating."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from gearidae.cli.app import Case, Output, Overwrite, Settings, app
+from gearidae.cli.study_commands import Design, Jobs, Seed, Vary
+
+__all__ = ["life", "lives"]
+
+Law = Annotated[str, Parameter(help="Loss law: contacts, adhesion_work or sliding_work.")]
+LawParameters = Annotated[
+    list[str],
+    Parameter(
+        name="--parameter",
+        help="Parameter of the law, such as energy='2 J/m^2'; repeatable.",
+        consume_multiple=False,
+    ),
+]
+Arrhenius = Annotated[
+    list[str] | None,
+    Parameter(
+        help="Factor of Arrhenius: activation_energy, activation_volume and temperature; repeatable.",
+        consume_multiple=False,
+    ),
+]
+Passages = Annotated[float, Parameter(help="Passages of each tooth of the pinion at most.")]
+Fraction = Annotated[float, Parameter(help="Mean coverage at which the life ends.")]
+Resolved = Annotated[str, Parameter(help="Coverage: uniform, by place, or by tooth and place.")]
+Tolerance = Annotated[float, Parameter(help="Relative tolerance of each jump, and of the rates.")]
+
+
+@app.command
+def life(
+    case: Case,
+    *,
+    law: Law,
+    parameter: LawParameters,
+    arrhenius: Arrhenius = None,
+    passages: Passages = 1e12,
+    fraction: Fraction = 0.0,
+    resolved: Resolved = "uniform",
+    tolerance: Tolerance = 3e-3,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Jobs = None,
+    overwrite: Overwrite = False,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished life in the output file.")] = False,
+) -> int:
+    """Follow the coverage over the passages of the teeth until the gear sticks."""
+    from gearidae.cli.life import follow_life
+
+    options = {
+        "passages": passages,
+        "fraction": fraction,
+        "resolved": resolved,
+        "tolerance": tolerance,
+        "jobs": jobs,
+        "overwrite": overwrite,
+        "resume": resume,
+    }
+    return follow_life(str(case), law, parameter, arrhenius or [], options, output, settings or [])
+
+
+@app.command
+def lives(
+    case: Case,
+    *,
+    law: Law,
+    parameter: LawParameters,
+    vary: Vary,
+    size: Annotated[int, Parameter(help="Number of members.")],
+    arrhenius: Arrhenius = None,
+    passages: Passages = 1e12,
+    fraction: Fraction = 0.0,
+    resolved: Resolved = "uniform",
+    tolerance: Tolerance = 3e-3,
+    design: Design = "sobol",
+    seed: Seed = 0,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Jobs = None,
+    overwrite: Overwrite = False,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished lives in the output file.")] = False,
+) -> int:
+    """Follow the coatings of gears with keys drawn from distributions: how long they last.
+
+    Parameters of the law are drawn as law.NAME, such as --vary "law.energy=lognormal(0.5 mJ/m^2, 3)". Lives so far are
+    kept beside the archive, in OUT.nc.lives, until the archive is written.
+    """
+    from gearidae.cli.lives import follow_lives
+
+    options = {
+        "size": size,
+        "design": design,
+        "seed": seed,
+        "passages": passages,
+        "fraction": fraction,
+        "resolved": resolved,
+        "tolerance": tolerance,
+        "jobs": jobs,
+        "overwrite": overwrite,
+        "resume": resume,
+    }
+    about = (law, parameter, arrhenius or [])
+    return follow_lives(str(case), about, vary, options, output, settings or [])

@@ -1,0 +1,147 @@
+"""The posterior of a calibration: the density of each key, and of each two keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from gearidae.archive.dataset import dimension_names
+from gearidae.plot.parameter_axis import parameter_axis
+from gearidae.plot.picture import PictureAxes, new_picture
+from gearidae.plot.style import POSITIVE, tidy
+from gearidae.studies.posterior_file import calibrated_keys
+
+__all__ = ["posterior"]
+
+Floats = NDArray[np.float64]
+
+_BINS: Final = 40
+"""Bins of draws, along each key."""
+_PANEL: Final = 2.4
+"""Side of the panel of one key [inches]."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Key:
+    """A key as an axis: edges of its cells in the unit of the label, and the summary in that unit."""
+
+    edges: Floats
+    label: str
+    mean: float
+    quantiles: Floats
+
+
+def posterior(ds: xr.Dataset) -> Figure:
+    """Draw the posterior density of each key and, below the diagonal, of each two keys.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.calibrate`.
+
+    Returns
+    -------
+    Figure
+        On the diagonal the band between the outermost quantiles is faint, that between the inner ones is full; a line
+        is at the mean.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no posterior.
+    """
+    keys = calibrated_keys(ds)
+    names = list(dimension_names(keys).values())
+    axes = [_axis(ds, key, name) for key, name in zip(keys, names, strict=True)]
+    weight = _cells(ds, names, axes)
+    count = len(keys)
+    size = (7.2, 3.8) if count == 1 else (_PANEL * count + 0.8, _PANEL * count + 0.4)
+    figure = new_picture(size, layout="constrained")
+    for row in range(count):
+        for column in range(row + 1):
+            ax = figure.add_subplot(count, count, row * count + column + 1, axes_class=PictureAxes)
+            if row == column:
+                _draw_one(ax, axes[row], weight([row]))
+            else:
+                shares = weight([column, row])
+                ax.pcolormesh(axes[column].edges, axes[row].edges, shares.T, cmap="Blues", rasterized=True)
+            _label(ax, axes, row, column)
+    return figure
+
+
+def _axis(ds: xr.Dataset, key: str, name: str) -> _Key:
+    """Cells of a grid, or bins of draws."""
+    values = ds[name]
+    along = parameter_axis(values)
+    factor = _factor(values.values, along.places)
+    if "weight" in ds:
+        half = 0.5 * (along.places[1] - along.places[0])
+        edges = np.append(along.places - half, along.places[-1] + half)
+    else:
+        edges = np.linspace(along.places.min(), along.places.max(), _BINS + 1)
+    one = ds.sel(parameter=key)
+    return _Key(edges, along.label, factor * float(one["mean"]), factor * one["quantiles"].values)
+
+
+def _factor(values: Floats, places: Floats) -> float:
+    """What values in SI units are to be multiplied by on their axis."""
+    largest = int(np.abs(values).argmax())
+    return float(places[largest] / values[largest]) if values[largest] != 0.0 else 1.0
+
+
+def _cells(ds: xr.Dataset, names: list[str], axes: list[_Key]) -> Callable[[list[int]], Floats]:
+    """Make what tells the share of the posterior in the cells of one or two keys."""
+
+    def of_grid(chosen: list[int]) -> Floats:
+        kept = [names[number] for number in chosen]
+        others = [name for name in names if name not in kept]
+        return np.asarray(ds["weight"].sum(others).transpose(*kept), dtype=np.float64)
+
+    def of_draws(chosen: list[int]) -> Floats:
+        points = np.stack([parameter_axis(ds[names[number]]).places for number in chosen], axis=1)
+        found, _ = np.histogramdd(points, [axes[number].edges for number in chosen])
+        return np.asarray(found / len(points), dtype=np.float64)
+
+    return of_grid if "weight" in ds else of_draws
+
+
+def _draw_one(ax: Axes, key: _Key, shares: Floats) -> None:
+    """Density of one key with its quantiles."""
+    density = shares / np.diff(key.edges)
+    ax.stairs(density, key.edges, color=POSITIVE, linewidth=1.4)
+    levels = len(key.quantiles) // 2
+    for place in range(levels):
+        ax.axvspan(
+            key.quantiles[place],
+            key.quantiles[-1 - place],
+            color=POSITIVE,
+            alpha=0.12 * (place + 1),
+            linewidth=0,
+        )
+    ax.axvline(key.mean, color="0.3", linewidth=0.9)
+    ax.set_ylim(bottom=0.0)
+
+
+def _label(ax: Axes, axes: list[_Key], row: int, column: int) -> None:
+    """Label the outer axes only."""
+    tidy(ax)
+    last = row == len(axes) - 1
+    ax.set_xlim(axes[column].edges[0], axes[column].edges[-1])
+    if last:
+        ax.set_xlabel(axes[column].label)
+    else:
+        ax.tick_params(labelbottom=False)
+    if row == column:
+        ax.set_yticks([])
+        ax.set_ylabel("posterior density" if len(axes) == 1 else "")
+    elif column == 0:
+        ax.set_ylabel(axes[row].label)
+    else:
+        ax.tick_params(labelleft=False)

@@ -1,0 +1,109 @@
+"""Loss laws whose parameters are drawn from distributions: keys such as ``law.energy``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.errors import SceneError
+from gearidae.scene.group import did_you_mean, shorten
+from gearidae.studies.members import drawn_members
+from gearidae.wear import LossLaw
+
+__all__ = ["drawn_laws", "parameter_units"]
+
+_LAW: Final = "law."
+
+
+def parameter_units(law: LossLaw) -> Callable[[str, Any], str | None]:
+    """Say which unit the parameters of a law have, for `read_distributions`.
+
+    Parameters
+    ----------
+    law : LossLaw
+        Its own parameters, and those of a law that it is a factor of.
+
+    Returns
+    -------
+    callable
+        Told a key and what is given for it: the unit of a parameter, None of what does not begin with ``law.``; raises
+        `SceneError` of what is none of its parameters.
+    """
+    units = _units(law)
+
+    def unit_of(key: str, given: Any) -> str | None:
+        if not key.startswith(_LAW):
+            return None
+        name = key.removeprefix(_LAW)
+        if name not in units:
+            known = [f"{_LAW}{each}" for each in units]
+            meant = did_you_mean(key, known)
+            allowed = f"is no parameter of the loss law {law.name}; it has {', '.join(known)}"
+            raise SceneError(key, shorten(given), f"{allowed}{'; ' if meant else ''}{meant}")
+        return units[name]
+
+    return unit_of
+
+
+def drawn_laws(
+    law: LossLaw, values: Mapping[str, NDArray[np.float64]], size: int, drawn_from: Mapping[str, str]
+) -> list[LossLaw]:
+    """Make the laws of all members.
+
+    Parameters
+    ----------
+    law : LossLaw
+        What they have in common.
+    values : mapping of str to ndarray, shape (members,)
+        Of each key, in SI units; those that begin with ``law.`` are taken.
+    size : int
+        Number of members.
+    drawn_from : mapping of str to str
+        The keys' distributions, for messages.
+
+    Returns
+    -------
+    list of LossLaw
+
+    Raises
+    ------
+    SceneError
+        If values are not allowed.
+    """
+    own = {key: column for key, column in values.items() if key.startswith(_LAW)}
+    if not own:
+        return [law] * size
+
+    def make(drawn: dict[str, float]) -> LossLaw:
+        try:
+            return _changed(law, {key.removeprefix(_LAW): value for key, value in drawn.items()})
+        except SceneError as error:
+            name = error.key.rpartition(".")[2]
+            raise SceneError(f"{_LAW}{name}", error.value, error.allowed) from None
+
+    return drawn_members(make, own, drawn_from)
+
+
+def _units(law: LossLaw) -> dict[str, str]:
+    """Units of the parameters of a law and of those within it; the outer ones go before."""
+    found: dict[str, str] = {}
+    for each in fields(law):
+        value = getattr(law, each.name)
+        if "quantity" in each.metadata:
+            found[each.name] = each.metadata["quantity"].unit
+        elif isinstance(value, LossLaw):
+            found = {**_units(value), **found}
+    return found
+
+
+def _changed(law: LossLaw, values: Mapping[str, float]) -> LossLaw:
+    """Change parameters of a law, and those that it has not of the law within it."""
+    own = {each.name: values[each.name] for each in fields(law) if each.name in values}
+    rest = {name: value for name, value in values.items() if name not in own}
+    within = {each.name: getattr(law, each.name) for each in fields(law)} if rest else {}
+    inner = {name: _changed(value, rest) for name, value in within.items() if isinstance(value, LossLaw)}
+    return replace(law, **own, **inner)
