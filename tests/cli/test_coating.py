@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -33,6 +35,20 @@ def test_map_prints_frequencies_and_keeps_them(folder, capfd):
     assert "SAM 60 %" in printed
     assert main(["coating-map", CASE, *OVER]) == 2  # it is there
     assert "exists already" in capfd.readouterr().err
+
+
+def test_info_says_what_is_in_a_map(chart, folder, capfd):
+    assert main(["info", chart]) == 0
+    printed = capfd.readouterr().out
+    assert "characteristic_frequency" in printed
+    assert "drive.torque" in printed
+    assert main(["info", chart, "--json"]) == 0
+    facts = json.loads(capfd.readouterr().out)
+    kept = gd.analysis.open_map(chart)
+    assert facts["kind"] == "coating_map"
+    assert facts["sizes"] == dict(kept.sizes)
+    assert facts["variables"]["characteristic_frequency"]["units"] == "Hz"
+    assert facts["scene"] == json.loads(kept.attrs["scene"])
 
 
 def test_map_over_torque(folder, capfd):

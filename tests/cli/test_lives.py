@@ -44,6 +44,14 @@ def test_lives_are_written_shown_and_drawn(folder, capsys):
     np.testing.assert_allclose(lasted, lasted[0], rtol=1e-4)  # last digits of the states
     assert main(["plot", f"{CASE}_lives.nc", "-o", "lives.png"]) == 0
     assert (folder / "lives.png").stat().st_size > 1000
+    capsys.readouterr()
+    assert main(["info", f"{CASE}_lives.nc"]) == 0
+    printed = capsys.readouterr().out
+    assert str(found.attrs["title"]) in printed
+    assert "passages_to_sticking" in printed
+    assert "coating.sam_fraction" in printed
+    assert main(["report", f"{CASE}_lives.nc"]) == 2
+    assert "gearidae plot draws this one" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

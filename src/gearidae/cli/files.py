@@ -13,6 +13,7 @@ from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import archive_facts, say_json
 from gearidae.cli.output import say
+from gearidae.cli.products import open_product, product_facts, product_rows
 from gearidae.cli.tables import show_account, show_outcomes, show_rows
 from gearidae.cli.validity_table import show_validity
 from gearidae.errors import SceneError
@@ -65,7 +66,7 @@ def write_case(name: str, preset: str) -> int:
 
 
 def describe(archive: Path, *, as_json: bool = False) -> int:
-    """Print the content of an archive.
+    """Print the content of an archive, or of what a study has written.
 
     Parameters
     ----------
@@ -84,7 +85,13 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
     SceneError
         If the archive cannot be read.
     """
-    ds = gd.open_archive(archive)
+    ds, kind = open_product(archive)
+    if kind != "runs":
+        if as_json:
+            say_json(product_facts(archive, ds, kind))
+        else:
+            show_rows([*product_rows(archive, ds), *_scene_rows(ds)])
+        return DONE
     if as_json:
         say_json(archive_facts(archive, ds))
         return DONE
@@ -124,6 +131,10 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
         if "time" not in variable.dims and "event" not in variable.dims:
             continue  # solver statistics of the runs; their totals are printed above
         yield str(quantity), f"({', '.join(map(str, variable.dims))})", str(variable.attrs.get("units", ""))
+    yield from _scene_rows(ds)
+
+
+def _scene_rows(ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     yield "scene", "", ""
     for table, content in scene_of(ds).items():
         if isinstance(content, dict):

@@ -19,7 +19,7 @@ from gearidae.cli.output import say
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["archive_facts", "say_json"]
+__all__ = ["archive_facts", "contents", "say_json"]
 
 _ATTRIBUTES = (
     "title", "history", "source", "product_version", "status", "message", "t_end", "rtol", "steps",
@@ -50,16 +50,32 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         "file": str(archive),
         "bytes": archive.stat().st_size,
         **{name: ds.attrs[name] for name in _ATTRIBUTES if name in ds.attrs},
-        "sizes": {str(name): size for name, size in ds.sizes.items()},
+        **contents(ds),
         "swept": {dim: ds[dim].values.tolist() for dim in swept_dims(ds)},
-        "variables": {
-            str(name): {"dimensions": list(map(str, one.dims)), "units": str(one.attrs.get("units", ""))}
-            for name, one in ds.data_vars.items()
-        },
         "outcomes": [{**asdict(one), "words": one.words} for one in outcomes(ds)],
         "run_summary": json.loads(ds.attrs["account"]) if "account" in ds.attrs else None,
         "energy_balance": balance_in_attributes(ds) or None,
         "scene": scene_of(ds),
+    }
+
+
+def contents(ds: xr.Dataset) -> dict[str, Any]:
+    """Sizes and variables of a dataset.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        "sizes": {str(name): size for name, size in ds.sizes.items()},
+        "variables": {
+            str(name): {"dimensions": list(map(str, one.dims)), "units": str(one.attrs.get("units", ""))}
+            for name, one in ds.data_vars.items()
+        },
     }
 
 

@@ -13,6 +13,7 @@ from gearidae.archive.select import is_roller, swept_dims
 from gearidae.archive.variables import columns
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
+from gearidae.cli.products import open_product
 from gearidae.cli.selection import selected
 from gearidae.cli.values import default_output, quantity
 from gearidae.errors import SceneError
@@ -117,24 +118,12 @@ def _is_moving(path: Path) -> bool:
 
 def _open(archive: Path) -> tuple[xr.Dataset, str]:
     """Dataset of a file, and its default picture."""
-    try:
-        ds = gd.open_archive(archive)
-        if "ensemble" in ds.attrs:
-            return ds, "sobol_indices" if "total_order" in ds else "sticking_probability"
-        if "outcome" in ds:
-            return ds, "outcome_map"
-        sampled = any(name in ds for name in columns(is_roller(ds)))
-        return ds, "overview" if sampled or not swept_dims(ds) else "outcome"
-    except SceneError:
-        others = (
-            (gd.analysis.open_map, "coating_map"),
-            (gd.studies.open_life, "life"),
-            (gd.studies.open_lives, "lives"),
-            (gd.studies.open_posterior, "posterior"),
-        )
-        for read, usual in others:
-            try:
-                return read(archive), usual
-            except SceneError:
-                pass
-        raise
+    ds, kind = open_product(archive)
+    if kind != "runs":
+        return ds, kind
+    if "ensemble" in ds.attrs:
+        return ds, "sobol_indices" if "total_order" in ds else "sticking_probability"
+    if "outcome" in ds:
+        return ds, "outcome_map"
+    sampled = any(name in ds for name in columns(is_roller(ds)))
+    return ds, "overview" if sampled or not swept_dims(ds) else "outcome"

@@ -22,7 +22,8 @@ from gearidae.errors import GearidaeError, SceneError
 __all__ = ["app", "session"]
 
 _WRITERS = (
-    "calibrate", "coating-map", "ensemble", "init", "operating-map", "plot", "predict", "report", "run", "sweep"
+    "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "report",
+    "run", "sweep",
 )  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 

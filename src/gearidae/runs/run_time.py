@@ -25,13 +25,13 @@ _STEPS_A_PERIOD: Final = 15.0
 """Steps for each oscillation on approaching flanks at a relative tolerance of 1e-6, turning points included."""
 _STEPS_A_PASSAGE: Final = 50.0
 """Steps to bring a pair into mesh and out of it."""
-_STEPS_AN_IMPACT: Final = 200.0
+_STEPS_AN_IMPACT: Final = 50.0
 """Steps of one impact with elastic bodies."""
 _GAP_ERROR: Final = 0.02
 """Error of the gap at rest, in roughnesses: 5 % of the frequency."""
 _ORDER: Final = 0.125
 """Steps grow as the tolerance to the power of minus this."""
-_RIGID_STEP, _ELASTIC_STEP = 1e-6, 30e-6
+_RIGID_STEP, _ELASTIC_STEP = 1e-6, 10e-6
 """Wall time of a step without and with elastic bodies [s]."""
 
 

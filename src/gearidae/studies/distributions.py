@@ -100,7 +100,7 @@ class Distribution:
     key: str
     text: str
     frozen: Any
-    unit: str
+    unit: str = "1"
 
     def quantiles(self, probability: Floats) -> Floats:
         """Values [SI] below which a share of the distribution lies.
