@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from gearidae.cli import main
@@ -36,8 +37,7 @@ def test_check_doubts_a_roughness_of_ten_micrometres(capfd):
     assert main(["check", CASE, "--set", "surface.roughness=10 um"]) == 0
     out = words(capfd)
     assert "Warning: surface.roughness = 10 um is larger than mesh.backlash = 200 nm" in out
-    assert "Warning: this run is expected to take" in out
-    assert "days" in out
+    assert re.search(r"Warning: this run is expected to take \d+ h \(", out)
 
 
 def test_check_of_a_roller(capfd):

@@ -72,7 +72,7 @@ def test_wrong_draws_are_told_in_a_line(vary, words, folder, capsys):
     assert not list(folder.iterdir())
 
 
-@pytest.mark.slow
+@pytest.mark.by_hand
 def test_ctrl_c_keeps_the_lives_that_are_done(folder, monkeypatch):
     """Two at a time in threads, which Ctrl-C does not reach: they end between two states, and go on from there."""
     command = [
