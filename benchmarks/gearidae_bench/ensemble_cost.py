@@ -188,7 +188,7 @@ def main(arguments: Sequence[str]) -> int:
     jobs = int(arguments[1]) if len(arguments) > 1 else 2
     scene = gd.preset("teodorescu2009_low_speed")
     costs: dict[int, Cost] = {}
-    _say(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start\n{HEADINGS}")
+    _say(f"{os.cpu_count()} cores\n{HEADINGS}")
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "ensemble.nc"
         _say(cost_row(f"in memory, jobs {jobs}", ensemble_cost(scene, members, jobs)[0]))
