@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass
+from array import array
+from dataclasses import dataclass, field
 
 __all__ = [
     "GEAR_BOUND",
@@ -177,7 +178,7 @@ class Extremes:
         Smallest distance of the flanks [m], of elastic ones with their deflection.
     final_speed : float
         Speed of the gear [rad/s] or the roller [m/s] where the run stands.
-    exposures : tuple of float
+    exposures : array of float
         What the flanks have been exposed to, in the order flank, tooth of the pinion, quantity, place: for each
         material asperities joined over those of a unit contact length, for each the energy they lost [J], sliding work
         [J], largest force over contact length [N]. Empty if ``run.exposures`` is 0.
@@ -205,4 +206,4 @@ class Extremes:
     smallest_mesh_force_time: float = math.nan
     smallest_separation: float = math.nan
     final_speed: float = math.nan
-    exposures: tuple[float, ...] = ()
+    exposures: array[float] = field(default_factory=lambda: array("d"))

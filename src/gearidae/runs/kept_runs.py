@@ -8,6 +8,7 @@ import os
 import re
 import secrets
 import warnings
+from array import array
 from collections.abc import Collection, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -208,7 +209,7 @@ def _header(key: str, solution: Solution, judged: dict[str, Any]) -> str:
             "balance": None if solution.balance is None else _numbers(solution.balance),
             "extremes": None if solution.extremes is None else _numbers(solution.extremes),
         },
-        default=int,  # numpy's integers
+        default=_plain,
     )
 
 
@@ -234,7 +235,12 @@ def _write(path: Path, header: str, solution: Solution) -> None:
         )
 
 
-def _numbers(record: EnergyBalance | Extremes) -> dict[str, float]:
+def _plain(value: Any) -> Any:
+    """What JSON has not: arrays, and numpy's integers."""
+    return value.tolist() if isinstance(value, array) else int(value)
+
+
+def _numbers(record: EnergyBalance | Extremes) -> dict[str, Any]:
     """Fields of a record of numbers; `dataclasses.asdict` copies each of them deeply, which takes longer."""
     return {field.name: getattr(record, field.name) for field in fields(record)}
 
@@ -281,10 +287,10 @@ def _rebuilt(
 
 
 def _extremes(numbers: dict[str, Any] | None) -> Extremes | None:
-    """Read extremes back; JSON has no tuples."""
+    """Read extremes back; JSON has no arrays."""
     if numbers is None:
         return None
-    return Extremes(**{**numbers, "exposures": tuple(numbers.get("exposures", ()))})
+    return Extremes(**{**numbers, "exposures": array("d", numbers.get("exposures", ()))})
 
 
 def _checksum(header: str, *tables: Floats) -> str:

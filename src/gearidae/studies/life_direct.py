@@ -6,6 +6,7 @@ Each cycle goes on from the one before, with the coverage that its exposures hav
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -126,7 +127,7 @@ class DirectCycles:
         assert scene.gears is not None
         same = scene.coating == here.origin.scene.coating
         exposures = gained(found, here.run if same else None, scene)
-        extremes = replace(found.extremes, exposures=tuple(exposures.ravel().tolist()))
+        extremes = replace(found.extremes, exposures=array("d", exposures.tobytes()))
         exposure = self.windows.coverage.exposure(scene, replace(found, extremes=extremes), 1, here.state)
         assert found.reached is not None
         speed = 2.0 * math.pi / (scene.gears.gear_teeth * (found.reached - here.origin.time))

@@ -7,6 +7,7 @@ the speed of the gear takes tens of cycles to settle, and a window that is cut o
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -138,7 +139,7 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     if window.exposures is None:
         return found, True
     assert found.extremes is not None
-    extremes = replace(found.extremes, exposures=tuple(window.exposures.ravel().tolist()))
+    extremes = replace(found.extremes, exposures=array("d", window.exposures.tobytes()))
     return replace(found, extremes=extremes), False
 
 

@@ -6,7 +6,7 @@ length changes along the path of contact, so that it loses
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
 The last integral, the lag, is followed from step to step; where shares change with tooth and place, which takes longer,
-over as many steps at once as the energy balance, and to every event. The work of the changing radius is less by the
+over the intervals of the energy balance, and to every event. The work of the changing radius is less by the
 same: it has been worked out as if nothing were lost until the turning point (`gearidae.engine.energy.balance`).
 """
 
@@ -24,7 +24,7 @@ from gearidae.engine.model.coverage import WHOLE, note_shares, place_inside, sha
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import contact_length, history_of, pair_gap
 
-__all__ = ["book_joining", "follow_joining", "joining_lag", "sample_joining"]
+__all__ = ["book_joining", "follow_joining", "follow_joining_by_place", "joining_lag", "sample_joining"]
 
 
 @compiled
@@ -111,22 +111,23 @@ def follow_joining(m: Model, h: float, y: Floats, w_rate: float, now: bool) -> N
     if m.scene.kind != GEARS:
         return
     if m.scene.by_place != 0:
-        h = m.state.time - m.work.lag_time
-        full = h > m.scene.balance_span or m.work.quadrature.steps + 1 >= m.scene.balance_steps
-        if h > 0.0 and (now or full):
-            _follow_by_place(m, h, y, w_rate)
+        if now:
+            follow_joining_by_place(m, m.state.time, y, w_rate)
         return
     if h <= 0.0:
         return
     for coast in range(2):
-        if m.state.near[coast] != 0 and (y[V] < 0.0) == (coast != 0):
+        if m.state.near[coast] != 0:
             _follow_flank(m, coast, h, y, w_rate)
 
 
 @compiled
-def _follow_by_place(m: Model, h: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of contacts whose shares change along the path over the time since they were followed last."""
-    m.work.lag_time = m.state.time
+def follow_joining_by_place(m: Model, t: float, y: Floats, w_rate: float) -> None:
+    """Follow the lags of contacts whose shares change along the path from where they were followed last, to t."""
+    h = t - m.work.lag_time
+    if h <= 0.0:
+        return
+    m.work.lag_time = t
     for coast in range(2):
         if m.state.near[coast] != 0:
             _follow_flank(m, coast, h, y, w_rate)

@@ -32,7 +32,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled
-from gearidae.engine.energy.adhesion import follow_joining
+from gearidae.engine.energy.adhesion import follow_joining, follow_joining_by_place
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.exposures import begin_exposures
 from gearidae.engine.energy.motion import kinetic_energy
@@ -123,6 +123,8 @@ def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> N
         _book_kinetic(m, kinetic_energy(m, y), 0.0)
         return
     w, w_rate = y[W], yp[W]
+    if m.scene.by_place != 0:
+        follow_joining_by_place(m, t, y, w_rate)
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _book_drive(m, h, t, y, yp)
     if m.scene.dry != 0:

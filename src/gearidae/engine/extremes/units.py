@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from typing import Any
 
 from gearidae.engine.energy.exposures import PRESSURE, QUANTITIES
@@ -60,15 +61,15 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
     )
 
 
-def _exposures(m: Model) -> tuple[float, ...]:
+def _exposures(m: Model) -> array[float]:
     """What the flanks have been exposed to; see `gearidae.records.Extremes`."""
     if m.scene.places == 0:
-        return ()
+        return array("d")
     force, length = float(m.scene.force_unit), float(m.scene.length_unit)
     table = exposures_of(m).reshape(-1, QUANTITIES, int(m.scene.places)).copy()
     table[:, MATERIALS:PRESSURE] *= force * length
     table[:, PRESSURE] *= force
-    return tuple(table.ravel().tolist())
+    return array("d", table.tobytes())
 
 
 def _standstill(e: Record, tau: float, time: float, place: float) -> dict[str, Any]:
