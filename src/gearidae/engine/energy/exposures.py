@@ -52,7 +52,9 @@ __all__ = [
 QUANTITIES = 2 * MATERIALS + 2
 """Sums of a place: contacts and adhesion work of each material, sliding work, largest pressure."""
 MOST_STEPS = 6
-"""Accepted steps over which sliding work is integrated at once; where adhesion matters, single ones are."""
+"""Accepted steps over which sliding work is integrated at once."""
+ADHESIVE_STEPS = 2
+"""The same where adhesion matters: the slope of a force jumps where asperities are stretched to the limit."""
 ADHESIVE = 0.1
 """Power of a pair that pulls, over that of the pair that pushes most, from which on adhesion matters."""
 FADING = 0.9
@@ -120,7 +122,7 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _slide(m, t, k, sliding, noted.place, (force, noted.slope * noted.gap_rate))
         level = max(level, abs(own.power))
         if own.adhesive != 0 or own.pull < -ADHESIVE * exposing.level:
-            steps = 1
+            steps = ADHESIVE_STEPS
     exposing.time, exposing.level = t, max(level, FADING * exposing.level)
     _wait(m, steps)
 
