@@ -8,17 +8,21 @@ a time and several, and on a Dask cluster of as many processes on this machine::
 Each is begun once before it is measured: compiling, tables that are shared and imports (netCDF's writer imports Dask
 where it is installed, half a second) are not of a run. Cores in use are of this machine: on a busy one only the
 processor times mean something.
+
+Two cores of a processor may be two threads of one: then the engine itself takes longer in each of them. What the
+machine can do is told by as many processes that share nothing, with a part of the members each.
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import sys
 import tempfile
 import threading
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -30,7 +34,7 @@ import gearidae as gd
 from gearidae import engine
 from gearidae_bench.long import peak_memory
 
-__all__ = ["BEGUN", "VARY", "Cost", "Watch", "cost_row", "ensemble_cost", "same_runs"]
+__all__ = ["BEGUN", "VARY", "Cost", "Watch", "cost_row", "ensemble_cost", "same_runs", "wall_apart"]
 
 VARY: Final = {"coating.sam_fraction": "uniform(0.5, 1)", "drive.torque": "normal(4.5e-18, 1e-19)"}
 BEGUN: Final = 4
@@ -150,6 +154,19 @@ def ensemble_cost(
     return Cost(members, wall, own + now_used - used, solving, 1e-6 * peak_memory()), ds
 
 
+def wall_apart(scene: gd.Scene, members: int, processes: int, folder: Path) -> float:
+    """Wall time [s] of an ensemble divided between processes that share nothing, each with one job and its archive."""
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
+        parts = [
+            pool.submit(_part, scene, members // processes, folder / f"part_{k}.nc") for k in range(processes)
+        ]
+        return max(part.result() for part in parts)
+
+
+def _part(scene: gd.Scene, members: int, archive: Path) -> float:
+    return ensemble_cost(scene, members, 1, archive)[0].wall
+
+
 def same_runs(one: xr.Dataset, other: xr.Dataset) -> bool:
     """Whether two ensembles agree to the last bit in all but the times that their runs took."""
     timed = [name for name in ("wall_time",) if name in one]
@@ -195,13 +212,17 @@ def main(arguments: Sequence[str]) -> int:
         for number in sorted({1, jobs}):
             costs[number], local = ensemble_cost(scene, members, number, target)
             _say(cost_row(f"into an archive, jobs {number}", costs[number]))
-        _say(f"efficiency of {jobs} threads: {costs[1].wall / (jobs * costs[jobs].wall):.3f}")
+        limit = wall_apart(scene, members, jobs, Path(folder))
+        _say(
+            f"{jobs} processes that share nothing: {limit:.1f} s, {costs[1].wall / (jobs * limit):.3f} of {jobs} cores"
+        )
+        _say(_efficiency(f"{jobs} threads", costs[1].wall / jobs, limit, costs[jobs].wall))
         if find_spec("distributed") is not None:
             from gearidae_bench.ensemble_on_dask import dask_cost
 
             there = dask_cost(scene, members, jobs, target)
             _say(cost_row(f"Dask, {jobs} workers", there.cost))
-            _say(f"efficiency of {jobs} Dask workers: {costs[1].wall / (jobs * there.cost.wall):.3f}")
+            _say(_efficiency(f"{jobs} Dask workers", costs[1].wall / jobs, limit, there.cost.wall))
             _say(
                 f"the cluster takes {100.0 * there.idle:.1f} % of a core when idle; without that "
                 f"{1e3 * there.beside:.2f} ms beside the engine a run"
@@ -211,6 +232,10 @@ def main(arguments: Sequence[str]) -> int:
                 f"the cluster's runs are those of the threads to the last bit: {same_runs(local, there.runs)}"
             )
     return 0
+
+
+def _efficiency(who: str, ideal: float, limit: float, wall: float) -> str:
+    return f"efficiency of {who}: {ideal / wall:.3f}, {limit / wall:.3f} of what the machine can do"
 
 
 def _say(text: str) -> None:

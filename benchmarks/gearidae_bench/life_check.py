@@ -15,7 +15,7 @@ import argparse
 import math
 import sys
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae import engine
 from gearidae.studies.life_coverage import coverage_of
-from gearidae.studies.life_window import Cycles, gained, window_scene
+from gearidae.studies.life_window import Cycles, gained, window_scene, with_exposures
 
 __all__ = ["BruteForce", "Comparison", "brute_force", "compared", "fast_life"]
 
@@ -113,8 +113,7 @@ def brute_force(scene: gd.Scene, law: gd.wear.LossLaw, most: int, resolved: str)
             return BruteForce(np.arange(len(kept)) / teeth, np.array(kept), True)
         # exposures go on where the coating is the same as in the cycle before
         exposures = gained(solution, before if origin and origin.scene.coating == own.coating else None, own)
-        extremes = replace(solution.extremes, exposures=tuple(exposures.ravel().tolist()))
-        seen = coverage.exposure(own, replace(solution, extremes=extremes), 1, state)
+        seen = coverage.exposure(own, with_exposures(solution, exposures), 1, state)
         state = np.clip(state + law.rate(state, seen) / teeth, 0.0, 1.0)
         kept.append(state)
         began, before = 0.0 if origin is None else origin.time, solution

@@ -6,7 +6,7 @@ import pytest
 
 import gearidae as gd
 from gearidae import engine
-from gearidae_bench.ensemble_cost import cost_row, ensemble_cost, same_runs
+from gearidae_bench.ensemble_cost import cost_row, ensemble_cost, same_runs, wall_apart
 from gearidae_bench.ensemble_on_dask import dask_cost
 
 SHORT = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3})
@@ -22,6 +22,11 @@ def test_parts_add_up_and_the_archive_is_written(tmp_path):
     assert cost.over_solver == pytest.approx(1.0 + 6 * cost.beside / cost.solving)
     assert cost.cores <= 2.5  # threads of the linear algebra may help
     assert f"{cost.peak:.0f}" in cost_row("short", cost)
+
+
+def test_processes_that_share_nothing_write_their_parts(tmp_path):
+    assert wall_apart(SHORT, 4, 2, tmp_path) > 0.0
+    assert [gd.open_archive(tmp_path / f"part_{k}.nc").sizes["member"] for k in range(2)] == [2, 2]
 
 
 def test_a_cluster_counts_the_solver_of_its_workers(tmp_path):

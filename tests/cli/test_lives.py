@@ -29,7 +29,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_lives_are_written_shown_and_drawn(folder, capsys):
     drawn = ["--vary", "law.energy=uniform(1 uJ/m^2, 2 uJ/m^2)", "--size", "2", "--jobs", "1"]
-    assert main(["lives", CASE, *LAW, *drawn, "--fraction", "0.899", *SETTINGS]) == 0
+    assert main(["lives", CASE, *LAW[:2], *drawn, "--fraction", "0.899", *SETTINGS]) == 0
     printed = capsys.readouterr().out
     assert "lives of 2 coatings" in printed
     assert "100 % of the members" in printed
@@ -70,6 +70,13 @@ def test_wrong_draws_are_told_in_a_line(vary, words, folder, capsys):
     assert words in printed
     assert printed.count("\n") == 1
     assert not list(folder.iterdir())
+
+
+def test_parameters_that_are_neither_given_nor_drawn_are_named(capsys):
+    assert (
+        main(["lives", CASE, *LAW[:2], "--vary", "drive.torque=normal(4.5e-18, 1e-19)", "--size", "4"]) == 2
+    )
+    assert "adhesion_work.energy = (missing): is required" in capsys.readouterr().err
 
 
 @pytest.mark.by_hand

@@ -39,9 +39,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
         'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',
     ),
-    "lives": (
-        "gearidae lives mine.toml --law contacts --parameter area=1e-19 --size 64 --vary law.area=lognormal(1e-19,3)",
-    ),
+    "lives": ("gearidae lives mine.toml --law contacts --size 64 --vary law.area=lognormal(1e-19,3)",),
     "assess": (
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from gearidae.cli.output import is_quiet, say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.values import assignments, default_output
 from gearidae.errors import SceneError
+from gearidae.studies.law_draws import law_of_medians
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,7 +70,9 @@ def follow_life(
     return DONE
 
 
-def read_law(name: str, parameters: Sequence[str], arrhenius: Sequence[str]) -> LossLaw:
+def read_law(
+    name: str, parameters: Sequence[str], arrhenius: Sequence[str], vary: Mapping[str, Any] | None = None
+) -> LossLaw:
     """Make the loss law of a command.
 
     Parameters
@@ -77,6 +80,8 @@ def read_law(name: str, parameters: Sequence[str], arrhenius: Sequence[str]) -> 
     name : str
     parameters, arrhenius : sequence of str
         ``name=value`` pairs of the law, and of Arrhenius' factor if there is one.
+    vary : mapping of str to object, optional
+        Distributions, whose medians stand in for parameters that are not given.
 
     Returns
     -------
@@ -87,7 +92,7 @@ def read_law(name: str, parameters: Sequence[str], arrhenius: Sequence[str]) -> 
     SceneError
         If there is no such law, or its parameters are others.
     """
-    law = gd.wear.loss_law(name, **assignments(parameters, "--parameter", "energy=2 J/m^2"))
+    law = law_of_medians(name, assignments(parameters, "--parameter", "energy=2 J/m^2"), vary or {})
     if not arrhenius:
         return law
     example = "activation_energy=1 eV"

@@ -12,14 +12,13 @@ from gearidae.cli.study_commands import Design, Jobs, Seed, Vary
 __all__ = ["life", "lives"]
 
 Law = Annotated[str, Parameter(help="Loss law: contacts, adhesion_work or sliding_work.")]
-LawParameters = Annotated[
-    list[str],
-    Parameter(
-        name="--parameter",
-        help="Parameter of the law, such as energy='2 J/m^2'; repeatable.",
-        consume_multiple=False,
-    ),
-]
+_PARAMETER = Parameter(
+    name="--parameter",
+    help="Parameter of the law, such as energy='2 J/m^2'; repeatable.",
+    consume_multiple=False,
+)
+LawParameters = Annotated[list[str], _PARAMETER]
+OtherParameters = Annotated[list[str] | None, _PARAMETER]
 Arrhenius = Annotated[
     list[str] | None,
     Parameter(
@@ -70,9 +69,9 @@ def lives(
     case: Case,
     *,
     law: Law,
-    parameter: LawParameters,
     vary: Vary,
     size: Annotated[int, Parameter(help="Number of members.")],
+    parameter: OtherParameters = None,
     arrhenius: Arrhenius = None,
     passages: Passages = 1e12,
     fraction: Fraction = 0.0,
@@ -88,8 +87,8 @@ def lives(
 ) -> int:
     """Follow the coatings of gears with keys drawn from distributions: how long they last.
 
-    Parameters of the law are drawn as law.NAME, such as --vary "law.energy=lognormal(0.5 mJ/m^2, 3)". Lives so far are
-    kept beside the archive, in OUT.nc.lives, until the archive is written.
+    Parameters of the law are drawn as law.NAME, such as --vary "law.energy=lognormal(0.5 mJ/m^2, 3)"; --parameter gives
+    those that are not drawn. Lives so far are kept beside the archive, in OUT.nc.lives, until the archive is written.
     """
     from gearidae.cli.lives import follow_lives
 
@@ -105,5 +104,5 @@ def lives(
         "overwrite": overwrite,
         "resume": resume,
     }
-    about = (law, parameter, arrhenius or [])
+    about = (law, parameter or [], arrhenius or [])
     return follow_lives(str(case), about, vary, options, output, settings or [])

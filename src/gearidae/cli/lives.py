@@ -62,7 +62,7 @@ def follow_lives(
     distributions = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
     ds = gd.studies.lives(
         read_scene(case, settings),
-        read_law(*law),
+        read_law(*law, distributions),
         distributions,
         progress=not is_quiet(),
         archive=target,

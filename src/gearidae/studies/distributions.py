@@ -176,7 +176,7 @@ def read_distributions(
     found = []
     for key, given in vary.items():
         unit = None if others is None else others(key, given)
-        found.append(_read(key, given, _unit_of(scene, key, given) if unit is None else unit))
+        found.append(read_distribution(key, given, _unit_of(scene, key, given) if unit is None else unit))
     return tuple(found)
 
 
@@ -190,7 +190,8 @@ def _unit_of(scene: Scene, key: str, given: Any) -> str:
     return info.unit
 
 
-def _read(key: str, given: Any, unit: str) -> Distribution:
+def read_distribution(key: str, given: Any, unit: str) -> Distribution:
+    """Read one distribution, as for `read_distributions`, of a key whose SI unit is known."""
     if isinstance(given, str):
         return Distribution(key, " ".join(given.split()), _of_text(key, given, unit), unit)
     if not callable(getattr(given, "ppf", None)):

@@ -11,12 +11,45 @@ from numpy.typing import NDArray
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
+from gearidae.studies.distributions import read_distribution
 from gearidae.studies.members import drawn_members
-from gearidae.wear import LossLaw
+from gearidae.wear import LossLaw, loss_law
+from gearidae.wear.registry import loss_law_units
 
-__all__ = ["drawn_laws", "parameter_units"]
+__all__ = ["drawn_laws", "law_of_medians", "parameter_units"]
 
 _LAW: Final = "law."
+
+
+def law_of_medians(name: str, parameters: Mapping[str, Any], vary: Mapping[str, Any]) -> LossLaw:
+    """Make a loss law of which some parameters are drawn.
+
+    Parameters
+    ----------
+    name : str
+        One of `gearidae.wear.loss_law_names`.
+    parameters : mapping of str to object
+        SI numbers, or texts with a unit.
+    vary : mapping of str to object
+        Keys and their distributions. A parameter that has one, as ``law.`` and its name, and none in `parameters` is
+        its median.
+
+    Returns
+    -------
+    LossLaw
+
+    Raises
+    ------
+    SceneError
+        If there is no such law, or its parameters are others.
+    """
+    middle = np.array([0.5])
+    medians = {
+        each: float(read_distribution(_LAW + each, vary[_LAW + each], unit).quantiles(middle)[0])
+        for each, unit in loss_law_units(name).items()
+        if each not in parameters and _LAW + each in vary
+    }
+    return loss_law(name, **medians, **parameters)
 
 
 def parameter_units(law: LossLaw) -> Callable[[str, Any], str | None]:

@@ -6,9 +6,8 @@ Each cycle goes on from the one before, with the coverage that its exposures hav
 from __future__ import annotations
 
 import math
-from array import array
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 from gearidae import engine
 from gearidae.studies.cycle_jump import Sticks
 from gearidae.studies.life_states import Seen, Windows
-from gearidae.studies.life_window import gained, part_of, solved, stands, steady_window
+from gearidae.studies.life_window import gained, part_of, solved, stands, steady_window, with_exposures
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -127,8 +126,7 @@ class DirectCycles:
         assert scene.gears is not None
         same = scene.coating == here.origin.scene.coating
         exposures = gained(found, here.run if same else None, scene)
-        extremes = replace(found.extremes, exposures=array("d", exposures.tobytes()))
-        exposure = self.windows.coverage.exposure(scene, replace(found, extremes=extremes), 1, here.state)
+        exposure = self.windows.coverage.exposure(scene, with_exposures(found, exposures), 1, here.state)
         assert found.reached is not None
         speed = 2.0 * math.pi / (scene.gears.gear_teeth * (found.reached - here.origin.time))
         rate = self.windows.law.rate(here.state, exposure)

@@ -37,6 +37,7 @@ __all__ = [
     "steady_exposures",
     "steady_window",
     "window_scene",
+    "with_exposures",
 ]
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -138,9 +139,22 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     found = replace(window.solution, events=unsolved("", "").events, checkpoint=None)
     if window.exposures is None:
         return found, True
+    return with_exposures(found, window.exposures), False
+
+
+def with_exposures(found: Solution, exposures: Floats) -> Solution:
+    """Put other exposures in the place of a run's own.
+
+    Parameters
+    ----------
+    found : Solution
+        With extremes.
+    exposures : ndarray
+        As `gained` has them.
+    """
     assert found.extremes is not None
-    extremes = replace(found.extremes, exposures=array("d", window.exposures.tobytes()))
-    return replace(found, extremes=extremes), False
+    extremes = replace(found.extremes, exposures=array("d", exposures.tobytes()))
+    return replace(found, extremes=extremes)
 
 
 def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:

@@ -9,7 +9,7 @@ from gearidae.errors import SceneError
 from gearidae.registry import Registry
 from gearidae.wear.base import LossLaw
 
-__all__ = ["loss_law", "loss_law_names", "register_loss", "unregister_loss"]
+__all__ = ["loss_law", "loss_law_names", "loss_law_units", "register_loss", "unregister_loss"]
 
 Law = TypeVar("Law", bound=type[LossLaw])
 
@@ -42,6 +42,17 @@ def unregister_loss(name: str) -> None:
 def loss_law_names() -> tuple[str, ...]:
     """Return the names of all loss laws, in the order of the alphabet."""
     return _LAWS.names()
+
+
+def loss_law_units(name: str) -> dict[str, str]:
+    """Return the SI units of the parameters of a loss law.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    return {each.name: each.metadata["quantity"].unit for each in fields(_LAWS.find(name))}
 
 
 def loss_law(name: str, **parameters: Any) -> LossLaw:
