@@ -1,6 +1,7 @@
-"""Compiled code is kept on disk, found again, and never stale."""
+"""Compiled code is kept on disk, found again, and never stale; and no index in it lies outside its array."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from types import MappingProxyType
 import pytest
 
 from gearidae import compiled
+from reference.small_scenes import SCENES
 
 RUN = (
     "import gearidae as gd, gearidae.engine as e; "
@@ -29,16 +31,20 @@ def run(folder, model, code=RUN, more=NOTHING):
         own = dict(os.environ) | own
     else:
         own |= {"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)}
-    return subprocess.run(
+    done = subprocess.run(
         [sys.executable, "-c", code.format(model=model)],
         env=own | more,
         capture_output=True,
         text=True,
-        check=True,
+        check=False,
     )
+    assert done.returncode == 0, done.stderr
+    return done
 
 
 MODELS = ("asperity", "elastic")
+CHECKED = {"NUMBA_BOUNDSCHECK": "1"}
+"""Every index is looked at."""
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +53,7 @@ def first_runs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("cache")
     runs = {}
     for model in MODELS:
-        told = run(folder, model)
+        told = run(folder, model, more=CHECKED)
         runs[model] = told, {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")}
     return folder, runs
 
@@ -67,10 +73,26 @@ def test_what_is_compiled_is_said(first_runs):
 @pytest.mark.parametrize("model", MODELS)
 def test_the_second_process_compiles_nothing(first_runs, model):
     folder, runs = first_runs
-    again = run(folder, model)
+    again = run(folder, model, more=CHECKED)
     assert again.stderr == ""
     assert again.stdout == runs[model][0].stdout
     assert {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")} == runs["elastic"][1]
+
+
+EVERY_KIND = Path(__file__).parents[1] / "reference" / "small_scenes.py"
+COMPILING = re.compile(r"compiling .* for this machine: once, .*|.*: \d+ functions compiled in \d+ s")
+"""What is said before and after compilation."""
+
+
+@pytest.mark.slow
+def test_no_index_is_out_of_bounds(first_runs):
+    """Python code sees an IndexError; those of C callbacks are ignored, but for a message on stderr."""
+    program = f"import runpy; runpy.run_path({str(EVERY_KIND)!r}, run_name='__main__')"
+    done = run(first_runs[0], "", program, CHECKED)
+    assert [line for line in done.stderr.splitlines() if not COMPILING.fullmatch(line)] == []
+    first, *lines = done.stdout.splitlines()
+    assert first == "checked True"
+    assert lines == [f"{name}, {backend}: finished" for name in SCENES for backend in ("sksundae", "native")]
 
 
 def test_the_folder_is_named_after_everything_that_goes_in(monkeypatch, tmp_path):
