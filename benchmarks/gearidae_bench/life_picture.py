@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 from typing import Final
 
-import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 
@@ -68,13 +68,15 @@ def shown(seen: xr.Dataset) -> str:
 def main() -> None:
     """Draw and print."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path()
-    mpl.use("agg")
+    plt.switch_backend("agg")
     began, processor = time.perf_counter(), time.process_time()
     seen = follow(gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 1.0}))
     sys.stdout.write(shown(seen))
     wall, processor = time.perf_counter() - began, time.process_time() - processor
     sys.stdout.write(f"{wall:.0f} s, {processor:.0f} s of the processor, map and assessments included\n")
-    gd.plot.life(seen).figure.savefig(folder / "life.png", dpi=120, bbox_inches="tight")
+    figure, ax = plt.subplots(figsize=(7.2, 3.8), layout="constrained")
+    gd.plot.life(seen, ax)
+    figure.savefig(folder / "life.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -99,7 +99,8 @@ def run_blocks(
         Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
     """
     driver = ready_driver(backend, problem)
-    problem.prepare(rtol, samples)  # by which checkpoints are judged
+    if resume is not None:
+        problem.prepare(rtol, samples)  # by which checkpoints are judged
     statistics.method = formulas(problem, backend)
     if problem.elastic is None:
         yield from _run_bodies(problem, rtol, samples, driver, statistics, resume)

@@ -32,7 +32,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled
-from gearidae.engine.energy.adhesion import follow_joining, follow_joining_by_place
+from gearidae.engine.energy.adhesion import follow_joining, follow_joining_by_place, joining_lag
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.exposures import begin_exposures
 from gearidae.engine.energy.motion import kinetic_energy
@@ -252,8 +252,8 @@ def close_balance(m: Model, t: float, y: Floats, yp: Floats) -> None:
     accumulate_energy(m, t, y, yp, True)
 
 
-BALANCE: Final = 3
-"""Numbers that `balance_at` leaves besides the sums: stored and pending energy, energy of motion."""
+BALANCE: Final = 4
+"""Numbers that `balance_at` leaves besides the sums: stored and pending energy, energy of motion, lag of joining."""
 
 
 @compiled
@@ -274,7 +274,7 @@ def balance_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None
     m = model_at(place)
     close_balance(m, t, y, yp)
     out[0], out[1] = stored_energy(m, y)
-    out[2] = kinetic_energy(m, y)
+    out[2], out[3] = kinetic_energy(m, y), joining_lag(m)
 
 
 @compiled

@@ -7,8 +7,9 @@ from gearidae.engine.extremes.forces import first_force, follow_force, force_of_
 from gearidae.engine.extremes.separation import follow_separation, note_separation, separation
 from gearidae.engine.extremes.speeds import follow_speed, next_part, note_speed, stand
 from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.sundials.memory import model_at
 
-__all__ = ["follow_extremes", "note_present", "note_rest", "restart_extremes"]
+__all__ = ["follow_extremes", "note_present_at", "note_rest", "restart_extremes"]
 
 
 @compiled(inline=True)
@@ -42,7 +43,7 @@ def follow_extremes(m: Model, t: float, y: Floats, yp: Floats, event: bool, spar
     if event:
         k.smooth = 1
         note_corner(m, k.point[k.last], y)
-        note_present(m, y)
+        _note_present(m, y)
 
 
 @compiled(inline=True)
@@ -55,7 +56,13 @@ def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled
-def note_present(m: Model, y: Floats) -> None:
+def note_present_at(place: int, y: Floats) -> None:
+    """Note a state of the model at a place, from `gearidae.engine.sundials.memory.Located`, as it is."""
+    _note_present(model_at(place), y)
+
+
+@compiled
+def _note_present(m: Model, y: Floats) -> None:
     """Note a state as it is: until an extremum is passed it may be one."""
     if m.scene.kind == GEARS:
         note_speed(m, y[W])
@@ -84,4 +91,4 @@ def restart_extremes(m: Model, t: float, y: Floats, yp: Floats) -> None:
     _set_point(m, 0, t, y, yp)
     first_force(m, t, k.point[0].force)
     e.begun = 1
-    note_present(m, y)
+    _note_present(m, y)

@@ -31,6 +31,7 @@ HEADER: Final = 8
 _LAYOUT: Final = int(hashlib.sha256(repr((STATE.descr, KEPT_ROWS)).encode()).hexdigest()[:8], 16)
 _WORDS: Final = STATE.itemsize // 8
 _DEPTHS: Final = 64
+_NOTHING: Final = empty_history()
 
 
 def scene_digest(text: str) -> tuple[float, ...]:
@@ -54,9 +55,9 @@ def pack(m: Model, digest: tuple[float, ...], depth: int, y: Floats) -> Floats:
     y : ndarray, shape (n,)
         State vector.
     """
-    state = np.array([m.state])[0]
+    state = m.state.copy()
     histories = state.history
-    histories[histories["pair"] == EMPTY] = empty_history()
+    histories[histories["pair"] == EMPTY] = _NOTHING
     rows = np.concatenate([kept_rows(m), exposures_of(m)])
     header = [float(_LAYOUT), *digest, float(depth), float(y.size), float(rows.size)]
     return np.concatenate([header, np.frombuffer(state.tobytes(), np.float64), y, rows])

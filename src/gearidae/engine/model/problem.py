@@ -8,16 +8,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gearidae.engine.energy.adhesion import joining_lag
 from gearidae.engine.energy.balance import BALANCE, balance_at
 from gearidae.engine.energy.exposures import close_exposures_at
-from gearidae.engine.extremes.follow import note_present
+from gearidae.engine.extremes.follow import note_present_at
 from gearidae.engine.extremes.units import extremes_in_si
 from gearidae.engine.model import checkpoint as checkpoints
 from gearidae.engine.model.checkpoint import exposures_of
 from gearidae.engine.model.state import (
     DRIVE,
-    ENERGY,
     GEARS,
     LOAD,
     MATERIALS,
@@ -27,6 +25,7 @@ from gearidae.engine.model.state import (
     V,
     assign,
     blank_work,
+    plain,
 )
 from gearidae.engine.model.tooth_pairs import set_branches
 from gearidae.engine.model.torques.harmonic import fastest_harmonic
@@ -185,34 +184,33 @@ class Problem:
         m = self.model
         kept = m.state.extremes.copy()
         if kept.begun != 0:
-            note_present(m, state)
+            note_present_at(self.located.place, state)
         found = extremes_in_si(m, time, state)
         assign(m.state.extremes, kept)
         return found
 
-    def _in_joules(self, time: float, stored: float, pending: float, kinetic: float) -> EnergyBalance:
-        # one look at all sums: a record's fields cost microseconds each outside compiled code
-        e = dict(zip(ENERGY.names or (), self.model.state.energy.item(), strict=True))
-        scene = self.model.scene
+    def _in_joules(
+        self, time: float, stored: float, pending: float, kinetic: float, lag: float
+    ) -> EnergyBalance:
+        e, scene = plain(self.model.state.energy), self.model.scene
         unit = float(scene.force_unit * scene.length_unit)
-        lag = joining_lag(self.model)
         return EnergyBalance(
             time=time * self.time_unit,
-            drive_work=unit * e["drive_work"],
-            radius_work=unit * (e["radius_work"] - (lag if self.model.scene.radius_force == 0 else 0.0)),
-            model_change=unit * e["model_change"],
-            drag_loss=unit * e["drag_loss"],
-            dry_loss=unit * e["dry_loss"],
-            damping_loss=unit * e["damping_loss"],
-            adhesion_loss=unit * (e["adhesion_loss"] + pending - lag),
-            stored_change=unit * (stored - pending - e["start_stored"]),
-            kinetic_change=unit * (kinetic - e["start_kinetic"]),
-            throughput=unit * e["throughput"],
-            quadrature_error=unit * (e["quadrature_error"] + e["loss_error"]),
-            largest=unit * (e["peak_kinetic"] + abs(e["start_stored"]) + abs(e["model_change"])),
+            drive_work=unit * e.drive_work,
+            radius_work=unit * (e.radius_work - (lag if scene.radius_force == 0 else 0.0)),
+            model_change=unit * e.model_change,
+            drag_loss=unit * e.drag_loss,
+            dry_loss=unit * e.dry_loss,
+            damping_loss=unit * e.damping_loss,
+            adhesion_loss=unit * (e.adhesion_loss + pending - lag),
+            stored_change=unit * (stored - pending - e.start_stored),
+            kinetic_change=unit * (kinetic - e.start_kinetic),
+            throughput=unit * e.throughput,
+            quadrature_error=unit * (e.quadrature_error + e.loss_error),
+            largest=unit * (e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)),
             # both shafts' torques are at most the unit of force
             pitch_work=unit * float(2.0 / scene.phase_rate) if scene.kind == GEARS else 0.0,
-            speed_work=unit * self._momenta(e["peak_kinetic"]),
+            speed_work=unit * self._momenta(e.peak_kinetic),
         )
 
     def _momenta(self, kinetic: float) -> float:
