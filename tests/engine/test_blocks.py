@@ -45,6 +45,22 @@ def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
     np.testing.assert_array_equal(pieces[1], whole[1])
 
 
+@pytest.mark.parametrize("steps", [7, 100])
+@pytest.mark.parametrize("by_place", [False, True])
+def test_sums_do_not_depend_on_where_they_are_looked_at(steps, by_place, monkeypatch):
+    """How many steps a block has depends on how long they take."""
+    scene = FAST.replace({"coating.sam_fraction": 0.6, "run.exposures": 3, "run.duration": 2e-5})
+    if by_place:
+        scene = scene.replace({"coating.pinion_table": np.full((19, 4), 0.6)})
+    whole = solve(scene, samples="off")
+    monkeypatch.setattr(native, "BLOCK_STEPS", steps)
+    monkeypatch.setattr(native, "FIRST_STEPS", steps)
+    looks = []
+    cut = solve(scene, samples="off", backend="native", on_block=looks.append)
+    assert len(looks) > 10
+    assert (cut.balance, cut.extremes) == (whole.balance, whole.extremes)
+
+
 def test_a_resumed_run_is_the_same_run(monkeypatch):
     """Through scikit-sundae, where the distance of checkpoints is not compiled in; one is taken every 500 steps."""
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 500)

@@ -149,12 +149,14 @@ class Problem:
         """
         m = self.model
         parts = (m.state.energy, m.work.quadrature, m.work.resistance)
-        # the quadrature interval is not to be split by a look at it
+        # intervals are not to be split by a look at what they have added up to
         kept, now = [part.copy() for part in parts], np.empty(BALANCE)
+        histories, followed = m.state.history.copy(), m.work.lag_time  # whose lags are followed to here
         balance_at(self.located.place, time, state, rates, now)
         balance = self._in_joules(time, *now.tolist())
         for part, before in zip(parts, kept, strict=True):
             assign(part, before)
+        m.state.history[:], m.work.lag_time = histories, followed
         return balance
 
     def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance, Extremes]:
