@@ -1,6 +1,6 @@
 """Put faults into copies of the package, one at a time, and see that the tests catch them.
 
-``python tests/mutants/run.py -o docs`` tries all of the catalogue, half an hour or more, and writes ``docs/mutants.md``.
+``python tests/mutants/run.py -o docs`` tries all of the catalogue, in half an hour, and writes ``docs/mutants.md``.
 """
 
 import argparse
