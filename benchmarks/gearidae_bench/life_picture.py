@@ -57,7 +57,7 @@ def shown(seen: xr.Dataset) -> str:
     held = (seen["assessed_low"] <= true) & (true <= seen["assessed_high"])
     missed = [f"{each:.4f}" for each in true[clear & ~held].values]
     return (
-        f"ends: {seen.attrs['ending']}, after {seen.attrs['passages_to_sticking']:.4g} passages\n"
+        f"ends: {seen.attrs['ending']}, after {float(seen['passages'][-1]):.4g} passages\n"
         f"mesh cycles simulated: {seen.attrs['mesh_cycles_simulated']}\n"
         f"assessments: {seen.sizes['passages']}, clear: {int(clear.sum())}, of these holding the coverage: "
         f"{int((clear & held).sum())}{'; missed at ' + ', '.join(missed) if missed else ''}\n"
