@@ -124,6 +124,15 @@ def test_nodes_have_converged(monkeypatch):
     np.testing.assert_allclose(coarse["force"], fine["force"], rtol=0, atol=1e-5 * fine["force"].max())
 
 
+@pytest.mark.parametrize("name", ["roller_slow", "roller_fast"])
+def test_the_force_has_a_potential(name):
+    """At a tight tolerance energies add up to what tables are good for, however few nodes there are."""
+    scene = roller(name, **{"run.rtol": 1e-12, "run.samples": "off"})
+    balance = solve(scene).balance
+    # rounding of some thousand steps; coefficients of nodes as they are, not symmetric, leave 1e-9 of the fast one
+    assert abs(balance.residual) < 1e-10 * balance.throughput
+
+
 # -- gears ---------------------------------------------------------------------------------------------------------
 
 
@@ -180,6 +189,18 @@ def contact():
     y[4:] += 1e-3 * np.sin(np.arange(y.size - 4))
     y[V] = 0.1
     return m, y
+
+
+def test_influence_coefficients_are_symmetric():
+    """Of weighed pressures, at all lengths of a contact: each power of the fit is."""
+    _, problem = meshing()
+    m = problem.model
+    n, orders = int(m.scene.nodes), int(m.scene.orders)
+    kappa = m.tables[int(m.scene.influence_at) :][: orders * n * n].reshape(orders, n, n)
+    weights = m.tables[int(m.scene.weights_at) :][:n]
+    work = weights * kappa  # kappa lies column by column
+    assert orders > 1
+    np.testing.assert_allclose(work, work.swapaxes(1, 2), rtol=0, atol=1e-14 * np.abs(work).max())
 
 
 def test_jacobian_is_the_slope_of_the_residual(contact):

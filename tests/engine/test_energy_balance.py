@@ -421,7 +421,7 @@ def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
 def test_looking_does_not_disturb():
     problem = make_problem(HIGH)
     before = [part.copy() for part in problem.model]
-    problem.balance(1e-3, problem.start, np.zeros_like(problem.start))
+    problem.kept(1e-3, problem.start, np.zeros_like(problem.start))
     for part, was in zip(problem.model, before, strict=True):
         np.testing.assert_array_equal(part, was)
 

@@ -8,10 +8,9 @@ A contact of length l stores the energy of its asperities and that of its bodies
     d_i = \sum_k \kappa_{ik}(\ell)\, p_k,
 
 with the gaps, pressures and deflections of `gearidae.engine.elastic.nodes` and u the potential of the pressure
-between two
-planes (`gearidae.contact.kernels.energy`). As the influence coefficients are symmetric, E falls by W dg while the
-gap opens
-by dg and the length stays. While the gap stays and the length changes,
+between two planes (`gearidae.contact.kernels.energy`). As :math:`w_i \kappa_{ik} = w_k \kappa_{ki}` (see
+`gearidae.engine.elastic.layout`), E falls by W dg while the gap opens by dg and the length stays. While the gap stays
+and the length changes,
 
 .. math::
 

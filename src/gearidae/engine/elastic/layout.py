@@ -146,13 +146,22 @@ def node_grid(
     grids = [_line_grid(reach * (middle + half * p), bounds.width, modulus, nodes) for p in places]
     # pressures are in reference loads per face width and unit length
     pressure = force_unit / (bounds.width * unit)
-    values = np.stack([grid.compliance.T for grid in grids]) * (pressure / sigma)
-    powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
     x, weights = place_nodes(reach / unit, nodes)
+    values = np.stack([_symmetric(grid.compliance, weights).T for grid in grids]) * (pressure / sigma)
+    powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
     finer, finer_weights = place_nodes(reach / unit, point_count(nodes))
     between = between_nodes(nodes, FINER)
     body = [x**2, weights, powers.ravel(), finer**2, finer_weights, between.ravel()]
     return NodeGrid(nodes, orders, middle, half, np.concatenate(body))
+
+
+def _symmetric(compliance: Floats, weights: Floats) -> Floats:
+    """Return influence coefficients with ``w_i k_ij = w_j k_ji``, so that the force has a potential.
+
+    Those of `line_grid` differ from it by the error of so few nodes. The mean of both sides has an error of that size.
+    """
+    work = weights[:, None] * compliance
+    return np.asarray(0.5 * (work + work.T) / weights[:, None])
 
 
 def _stretch(scene: Scene) -> float:
