@@ -12,7 +12,12 @@ from gearidae.engine.model.state import STATE, W
 SCENE = gd.preset("teodorescu2009").replace(
     {"load.torque": 1e-11, "coating.sam_fraction": 0.5, "initial.gap": 1.5e-8, "run.samples": "off"}
 )
-NOT_CARRIED = {"bound_exceeded", "energy", "history"}  # cleared, continued, and moved to other slots
+NOT_CARRIED = {
+    "bound_exceeded",
+    "deep_exits",
+    "energy",
+    "history",
+}  # cleared, begun, continued, moved to other slots
 
 
 def carried(change, speed=0.0):

@@ -85,7 +85,8 @@ def test_sliding_work_and_pressure_are_those_of_the_samples(sampled):
     largest = sampled.largest_pressure.sel(flank="drive").values
     assert largest.max() == pytest.approx(pressure.max(), rel=1e-6, abs=0)  # that of the start
     # in most places the largest is passed between two ends of intervals
-    np.testing.assert_allclose(largest, pressure, rtol=0, atol=0.03 * pressure.max())
+    # 200 samples to a vibration: less than 1e-4 of its amplitude beside an extremum
+    np.testing.assert_allclose(largest, pressure, rtol=0, atol=1e-4 * pressure.max())
 
 
 def test_contacts_are_those_of_the_samples(sampled):

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.changeover import change_over, deepen
+from gearidae.engine.changeover import change_over, deepen, lighten
 from gearidae.engine.continuing import Origin, checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.integrate.driver import Block, Ending
@@ -99,55 +99,61 @@ def run_blocks(
         Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
     """
     driver = ready_driver(backend, problem)
+    statistics.method = formulas(problem, backend)
+    current = problem
     if resume is not None:
         problem.prepare(rtol, samples)  # by which checkpoints are judged
-    statistics.method = formulas(problem, backend)
-    if problem.elastic is None:
-        yield from _run_bodies(problem, rtol, samples, driver, statistics, resume)
-        return
-    bodies = problem if resume is None else problem.of_checkpoint(resume)
-    rigid = bodies is problem
-    if rigid and not (resume is not None and problem.outgrown(resume)):
-        for block in driver(problem, rtol, samples, statistics, resume):
+        current = problem.of_checkpoint(resume)
+        current.prepare(rtol, samples)
+    while True:
+        if resume is not None:
+            current, resume = _with_its_model(problem, current, resume)
+        goes_on = False
+        for block in driver(current, rtol, samples, statistics, resume):
             resume = block.checkpoint
+            goes_on = resume is not None and _changes_model(problem, current, statistics.ending)
+            if goes_on:  # that is no ending
+                statistics.ending = Ending.FINISHED
             yield block
-        if statistics.ending is not Ending.DEFLECTION or resume is None:
+        if not goes_on:
             return
-        statistics.ending = Ending.FINISHED
-    if rigid:
-        bodies = problem.elastic()
-    problem.skipped["elastic_deflection"] = 0
-    if rigid and resume is not None:
+
+
+def _changes_model(problem: Problem, current: Problem, ending: Ending) -> bool:
+    """Whether a run goes on with another contact model, or other nodes, where it has ended so."""
+    if ending is Ending.TOO_DEEP:
+        return current.deeper is not None
+    return problem.elastic is not None and ending in (Ending.DEFLECTION, Ending.LIGHT)
+
+
+def _with_its_model(
+    problem: Problem, current: Problem, checkpoint: NDArray[np.float64]
+) -> tuple[Problem, NDArray[np.float64]]:
+    """Return the problem with the contact model that a checkpoint calls for, and a checkpoint of that problem.
+
+    Parameters
+    ----------
+    problem, current : Problem
+        Of the scene, and with the contact model that the checkpoint has.
+    checkpoint : ndarray
+    """
+    here, beyond = current, current.outgrown(checkpoint)
+    if beyond and current.elastic is not None:
         log.info(
             "the deflection of the bodies exceeds the asperity model's limit: continuing with the elastic model"
         )
-        resume = change_over(problem, bodies, resume)
-    yield from _run_bodies(bodies, rtol, samples, driver, statistics, resume)
-
-
-def _run_bodies(
-    problem: Problem,
-    rtol: float,
-    samples: int,
-    driver: Callable[..., Iterator[Block]],
-    statistics: Statistics,
-    resume: NDArray[np.float64] | None,
-) -> Iterator[Block]:
-    """Run a problem that stays with its contact model; nodes that are pressed too deep are laid out anew."""
-    if resume is not None:
-        problem = problem.of_checkpoint(resume)
-        problem.prepare(rtol, samples)
-    while True:
-        if resume is not None and problem.deeper is not None and problem.outgrown(resume):
-            deeper = problem.deeper()
-            resume = deepen(problem, deeper, resume)
-            problem = deeper
-        for block in driver(problem, rtol, samples, statistics, resume):
-            resume = block.checkpoint
-            yield block
-        if statistics.ending is not Ending.TOO_DEEP or problem.deeper is None or resume is None:
-            return
-        statistics.ending = Ending.FINISHED
+        here = current.elastic()
+        checkpoint = change_over(current, here, checkpoint)
+    elif beyond and current.deeper is not None:
+        here = current.deeper()
+        checkpoint = deepen(current, here, checkpoint)
+    elif not beyond and current.depth > problem.depth == 0 and current.lightened(checkpoint):
+        log.info("contacts have been light for long: continuing with the asperity model")
+        here = problem
+        checkpoint = lighten(current, here, checkpoint)
+    if here.has_been_elastic(checkpoint):
+        problem.skipped["elastic_deflection"] = 0
+    return here, checkpoint
 
 
 def follow(
@@ -328,8 +334,8 @@ def outlook(
         If the scene is beyond what the engine can do.
     """
     problem = problem_from(scene, origin)
-    if checkpoint is not None and problem.of_checkpoint(checkpoint).depth > 0:
-        problem.skipped["elastic_deflection"] = 0  # the elastic model has taken over
+    if checkpoint is not None and problem.of_checkpoint(checkpoint).has_been_elastic(checkpoint):
+        problem.skipped["elastic_deflection"] = 0
     return problem.checkpoint(0.0, problem.start).size, problem.skipped, formulas(problem, backend)
 
 
@@ -355,8 +361,7 @@ def kept_at(
     """
     problem = problem_from(scene, origin).of_checkpoint(checkpoint)
     problem.prepare(scene.run.rtol, scene.run.sample_count)
-    state = np.empty(problem.start.size)
-    time = problem.restore(checkpoint, state)
+    time, state = problem.restored(checkpoint)
     return problem.kept(time, state, np.zeros_like(state))
 
 

@@ -13,8 +13,19 @@ from gearidae.engine.energy.balance import carry_balance
 from gearidae.engine.model.checkpoint import exposures_of
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
+from gearidae.engine.model.tooth_pairs import set_joined
 
-__all__ = ["carry_nodes", "change_over", "deepen", "join_anew", "join_as_pairs", "note_gaps", "take_over"]
+__all__ = [
+    "carry_nodes",
+    "change_over",
+    "deepen",
+    "join_anew",
+    "join_as_pairs",
+    "lighten",
+    "note_gaps",
+    "remember",
+    "take_over",
+]
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
 
@@ -36,11 +47,10 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
         Where the asperity problem stands.
     """
     m, source = new.model, old.model
-    state = np.empty(old.start.size)
-    time = old.restore(checkpoint, state)
+    time, state = old.restored(checkpoint)
     take_over(source, m)
+    m.state.deep_exits = m.state.extremes.mesh_exits
     y = np.concatenate([state, np.zeros(new.start.size - state.size)])
-    m.state.time = time
     join_as_pairs(m, y)
     carry_balance(source, state, m, y)
     return new.checkpoint(time, y)
@@ -115,6 +125,57 @@ def take_over(source: Model, m: Model) -> None:
     carry_exposures(source, m)
 
 
+def remember(source: Model, m: Model, k: int) -> None:
+    """Take a pair's joined heights to other materials or to rigid bodies, and set the energy of what is joined."""
+    h = m.state.history[k]
+    for material in range(MATERIALS):
+        before, limit = source.scene.material[material], float(m.scene.material[material].stretch_limit)
+        joined = float(h.joined[material])
+        if before.stretch_limit == 0.0:  # it has remembered nothing
+            joined = float(h.gap)
+        joined = max(joined, float(h.gap) - limit)
+        if h.direction > 0.0:
+            joined = min(joined, float(h.gap))
+        h.joined[material] = joined
+        # that of a contact with nodes is kept with these, and a material that cannot stretch has none
+        h.adhered_energy[material] = 0.0
+        if limit > 0.0 and m.scene.nodes == 0:
+            set_joined(m, k, material, joined)
+        stretched = h.direction > 0.0 and joined + limit <= h.gap
+        h.fully_stretched[material] = int(limit > 0.0 and stretched)
+
+
+def lighten(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
+    """Checkpoint from which the asperity problem goes on where the elastic problem has had light contacts for long.
+
+    The motion is kept, and how far asperities are stretched in the middle of each contact; what the deflections stored,
+    some hundredths of a roughness, is booked as change of the model.
+
+    Parameters
+    ----------
+    old : Problem
+        The elastic problem.
+    new : Problem
+        The same scene's asperity problem; whatever it has been through is forgotten.
+    checkpoint : ndarray
+        Where the elastic problem stands.
+    """
+    m, source = new.model, old.model
+    time, state = old.restored(checkpoint)
+    take_over(source, m)
+    m.state.light = 0
+    y = state[: new.start.size].copy()
+    slots, own = int(source.scene.slots), int(m.scene.slots)
+    for k in range(int(m.scene.histories)):
+        h = m.state.history[k]
+        if h.pair != EMPTY:
+            h.joined -= state[first_unknown(source, k // own * slots + (int(h.pair) & (slots - 1)))]
+            h.stretched = 0
+            remember(source, m, k)
+    carry_balance(source, state, m, y)
+    return new.checkpoint(time, y)
+
+
 def carry_exposures(source: Model, m: Model) -> None:
     """Take over what the flanks have been exposed to, if the new model keeps as many places; else it begins anew."""
     if source.scene.exposures == m.scene.exposures:
@@ -137,8 +198,7 @@ def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
         Where the old one stands.
     """
     m, source = new.model, old.model
-    state = np.empty(old.start.size)
-    time = old.restore(checkpoint, state)
+    time, state = old.restored(checkpoint)
     assign(m.state, source.state)
     m.state.bound_exceeded = 0
     m.rows[m.scene.node_rows_at : m.scene.error_weights_at] = source.rows[

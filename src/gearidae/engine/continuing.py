@@ -17,7 +17,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearidae.engine.changeover import carry_nodes, join_anew, join_as_pairs, note_gaps, take_over
+from gearidae.engine.changeover import (
+    carry_nodes,
+    join_anew,
+    join_as_pairs,
+    note_gaps,
+    remember,
+    take_over,
+)
 from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.exposures import QUANTITIES
@@ -40,7 +47,6 @@ from gearidae.engine.model.state import (
     V,
     W,
 )
-from gearidae.engine.model.tooth_pairs import set_joined
 from gearidae.engine.model.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
@@ -182,9 +188,7 @@ def _restored(scene: Scene, words: Floats, start: float) -> tuple[Problem, Float
     """Return the problem of a run where it ended, with its state; everything read is checked."""
     problem = make_problem(scene, begin=Begin(start, 0.0)).of_checkpoint(words)
     problem.prepare(scene.run.rtol, scene.run.sample_count)
-    y = np.empty(problem.start.size)
-    problem.restore(words, y)
-    return problem, y
+    return problem, problem.restored(words)[1]
 
 
 def refuse_other_bodies(old: Scene, new: Scene) -> None:
@@ -274,7 +278,7 @@ def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, cha
     source, m = old.model, new.model
     for k in range(int(m.scene.histories)):
         if m.state.history[k].pair != EMPTY and changed:
-            _remember(source, m, k)
+            remember(source, m, k)
     same_nodes = _carry_deflections(source, old_y, m, y)
     if m.scene.nodes > 0 and (changed or not same_nodes):
         if changed and source.scene.nodes > 0:
@@ -297,29 +301,11 @@ def _carry_deflections(source: Model, old_y: Floats, m: Model, y: Floats) -> boo
     return carry_nodes(source, old_y, m, y)
 
 
-def _remember(source: Model, m: Model, k: int) -> None:
-    """Take a pair's joined heights to other materials, and set the energy of what is joined."""
-    h = m.state.history[k]
-    for material in range(MATERIALS):
-        before, limit = source.scene.material[material], float(m.scene.material[material].stretch_limit)
-        joined = float(h.joined[material])
-        if before.stretch_limit == 0.0:  # it has remembered nothing
-            joined = float(h.gap)
-        joined = max(joined, float(h.gap) - limit)
-        if h.direction > 0.0:
-            joined = min(joined, float(h.gap))
-        h.joined[material] = joined
-        # that of a contact with nodes is kept with these, and a material that cannot stretch has none
-        h.adhered_energy[material] = 0.0
-        if limit > 0.0 and m.scene.nodes == 0:
-            set_joined(m, k, material, joined)
-        stretched = h.direction > 0.0 and joined + limit <= h.gap
-        h.fully_stretched[material] = int(limit > 0.0 and stretched)
-
-
 def _begin_stretch(m: Model) -> None:
     """Begin the counters of the run, its schedules and the parts of it over which speeds are judged."""
     s, time = m.state, float(m.state.time)
+    if m.scene.nodes == 0:
+        s.deep_exits = -1
     for name in PROGRESS.names or ():
         s.progress[name] = 0
     s.next_knot = 0

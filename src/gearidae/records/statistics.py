@@ -33,6 +33,7 @@ class Ending(Enum):
         "too_deep",
         "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
     )
+    LIGHT = ("light", "contacts of elastic bodies are so light that the asperity model will do")
     STOPPED = ("stopped", "ended by on_block")
     NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
 

@@ -32,7 +32,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled
-from gearidae.engine.energy.adhesion import follow_joining, follow_joining_by_place, joining_lag
+from gearidae.engine.energy.adhesion import follow_joining_by_place, joining_lag
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.exposures import begin_exposures
 from gearidae.engine.energy.motion import kinetic_energy
@@ -247,8 +247,6 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
 @compiled
 def close_balance(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Bring all sums up to an accepted time, after its event."""
-    if m.scene.kind == GEARS:
-        follow_joining(m, 0.0, y, yp[W], True)
     accumulate_energy(m, t, y, yp, True)
 
 

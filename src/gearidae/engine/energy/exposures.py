@@ -10,7 +10,8 @@ For both flanks of every tooth of the pinion and every place along the path of c
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
   times the distance from the pitch point. It is integrated over some steps at once; the forces are those of Newton's
   iteration (`gearidae.engine.energy.noted_force`);
-- the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times and at turning points.
+- the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times, at turning points, and where a contact
+  passes from one place to the next.
 
 An elastic contact is looked at as often as the energy balance closes an interval. What falls into a step in which a
 contact passes from one place to the next is divided in proportion. Contacts on the tip relief count at the end of the
@@ -26,6 +27,7 @@ from gearidae.engine.elastic.calls import node_force, nodes_number
 from gearidae.engine.energy.noted_force import begin_notes, note_force
 from gearidae.engine.energy.places import divide, note_pressure, place_at, spread
 from gearidae.engine.energy.quadrature import integral
+from gearidae.engine.extremes.interpolation import cubic
 from gearidae.engine.model.coverage import note_shares, shares_of
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
@@ -195,7 +197,7 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     own.known, own.pair, own.time = 1, pair, t
     own.place, own.at = inside, place_at(m, inside)
     own.turned, own.adhesive, own.lowest = 0, 0, m.scene.cutoff
-    own.power = own.power_rate = own.pull = 0.0
+    own.power = own.power_rate = own.pull = own.force = own.force_rate = 0.0
     for material in range(MATERIALS):
         own.front[material] = 0.0
     coast = 0 if k < m.scene.slots else 1
@@ -289,9 +291,32 @@ def _slide(
         if force[0] > 0.0:
             note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force[0])
     if at != own.at:
+        if own.force > 0.0 or force[0] > 0.0:
+            _note_crossings(m, t, k, inside, force)
         own.lowest = m.scene.cutoff  # another place
     own.time, own.place, own.at, own.power, own.power_rate = t, inside, at, power, power_rate
+    own.force, own.force_rate = force
     own.pull = min(own.pull, power)
+
+
+@compiled
+def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
+    """Note the pressure where a pair has passed from one place to the next, on the cubic of its force.
+
+    Parameters
+    ----------
+    m, t, k, inside, force
+        As for `_slide`.
+    """
+    own, scale = m.work.exposing.pair[k], m.scene.places_per_pitch
+    at, row = place_at(m, inside), own.row + PRESSURE * m.scene.places
+    for place in range(min(own.at, at) + 1, max(own.at, at) + 1):
+        edge = place / scale
+        share = (edge - own.place) / (inside - own.place)
+        pressing = cubic(share, t - own.time, own.force, own.force_rate, force[0], force[1])
+        if pressing > 0.0:
+            note_pressure(m, row + place - 1, edge, pressing)
+            note_pressure(m, row + place, edge, pressing)
 
 
 @compiled(inline=True)

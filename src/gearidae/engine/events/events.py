@@ -30,6 +30,9 @@ from gearidae.engine.model.tooth_pairs import (
 
 __all__ = ["CONTINUE", "CROWDED", "RESTART", "balance_can_wait", "guard", "handle"]
 
+LIGHT_EXITS = 4
+"""Mesh exits without a deep contact after which elastic bodies are no longer needed."""
+
 CONTINUE, RESTART, CROWDED = 0, 1, 2
 
 _TINY: Final = 1e-300
@@ -94,6 +97,8 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
         crossed = crossed_mark(m, y)
         if crossed:
             count = cross_mark(m, t, y, events, count)
+            if m.scene.nodes > 0 and _light(m):
+                m.state.light = 1
             if m.scene.radius_force != 0 and not in_flight(m):  # the force of the pair there jumps
                 action = RESTART
         if m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0:
@@ -113,6 +118,13 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
     if _crowded(m, t):
         action = CROWDED
     return count, action
+
+
+@compiled
+def _light(m: Model) -> bool:
+    """Whether contacts of elastic bodies have not been deep for so long that the asperity model would do, if it may."""
+    passed = m.state.extremes.mesh_exits - m.state.deep_exits
+    return bool(m.scene.light_gap < math.inf and passed >= LIGHT_EXITS)
 
 
 @compiled

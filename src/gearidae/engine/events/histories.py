@@ -48,6 +48,8 @@ def accept(m: Model, t: float, y: Floats) -> None:
                 init_nodes(m, k, y, gap)
         elif m.scene.nodes > 0:
             follow_nodes(m, k, y, gap)
+        if m.scene.nodes > 0 and middle_gap(m, k, y, gap) < m.scene.light_gap:
+            m.state.deep_exits = m.state.extremes.mesh_exits
         h.gap, h.gap_rate = gap, rate
         if gap < m.scene.lowest_gap:
             m.state.bound_exceeded = 1

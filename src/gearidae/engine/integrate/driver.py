@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,8 @@ __all__ = [
     "BOUND_EXCEEDED",
     "CHATTER",
     "CONVERGENCE_FAILURES_HIGH",
+    "LIGHT",
+    "MODEL_CHANGES",
     "Block",
     "Ending",
     "Output",
@@ -44,8 +46,11 @@ CHECKPOINT_STEPS = 200_000
 
 CONVERGENCE_FAILURES_HIGH = 40
 """Failures of Newton's iteration in one step, each of which quarters it: a step out of long flight lands in a tooth."""
-CHATTER, BOUND_EXCEEDED = 1, 2
-"""What a driver may end a run with of its own: crowded events, a gap beyond the model's bound."""
+CHATTER, BOUND_EXCEEDED, LIGHT = 1, 2, 3
+"""What a driver may end a run with of its own: crowded events, a gap beyond the model's bound, contacts of elastic
+bodies that have been light for long."""
+MODEL_CHANGES: Final = (BOUND_EXCEEDED, LIGHT)
+"""Those from which a run goes on, with another contact model."""
 
 _FLAGS = {
     0: Ending.FINISHED,
@@ -53,6 +58,7 @@ _FLAGS = {
     -3: Ending.STEP_UNDERFLOW,
     -4: Ending.NO_CONVERGENCE,
     CHATTER: Ending.CHATTER,
+    LIGHT: Ending.LIGHT,
 }
 
 

@@ -13,7 +13,7 @@ from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
 from gearidae.engine.extremes.follow import follow_extremes, note_rest
 from gearidae.engine.integrate import adams
-from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS
+from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, W
@@ -77,6 +77,8 @@ def finish_step(
             driver.error = CHATTER
         if m.scene.stop != 0 and stop_guard(m, y) <= 0.0:
             driver.done = 1
+        if m.state.light != 0 and driver.done == 0 and driver.error == 0:
+            driver.error = LIGHT
     elif flag == STOP:
         if m.state.next_knot < m.scene.knot_count:
             if keeps_checkpoint(m):

@@ -23,8 +23,8 @@ from gearidae.engine.integrate.by_address import observe_at
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
     BLOCK_STEPS,
-    BOUND_EXCEEDED,
     CHECKPOINT_STEPS,
+    MODEL_CHANGES,
     Block,
     Ending,
     Output,
@@ -269,7 +269,7 @@ def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) ->
         statistics.ending = ending_of_flag(int(driver.error), elastic)
         if driver.error < 0 and elastic:
             statistics.note_fold(fold_gap(m, m.state.time) * m.scene.length_unit)
-        if driver.error == BOUND_EXCEEDED:  # the run that continues from here restarts
+        if driver.error in MODEL_CHANGES:  # the run that continues from here restarts
             driver.error, driver.pending = 0, -1
             m.state.progress.restarts += 1
             beyond = True

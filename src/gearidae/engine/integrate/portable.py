@@ -30,9 +30,9 @@ from gearidae.engine.integrate.by_address import (
 )
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
-    BOUND_EXCEEDED,
     CHECKPOINT_STEPS,
     CONVERGENCE_FAILURES_HIGH,
+    MODEL_CHANGES,
     Block,
     Ending,
     Output,
@@ -89,7 +89,7 @@ def run(
         if not has_room(driver.events, out.events):
             yield out.block(m, driver.time)
         afresh = finish_step_at(solver.located.place, y, yp, between, flag, out.events)
-        if driver.error == BOUND_EXCEEDED:
+        if driver.error in MODEL_CHANGES:
             progress.restarts += 1
         checkpoint = driver.since >= CHECKPOINT_STEPS
         if (afresh or checkpoint) and driver.done == 0 and driver.error == 0:
@@ -108,7 +108,7 @@ def run(
     statistics.ending = solver.ending or ending_of_flag(int(driver.error), bool(m.scene.nodes > 0))
     if driver.error < 0 and m.scene.nodes > 0:
         statistics.note_fold(fold_gap(m, driver.time) * m.scene.length_unit)
-    if driver.done != 0 or driver.error == BOUND_EXCEEDED:
+    if driver.done != 0 or driver.error in MODEL_CHANGES:
         yield _ready(problem, m, out, statistics, y, yp)
     else:
         yield out.block(m, driver.time, None, problem.kept(driver.time, y, yp))

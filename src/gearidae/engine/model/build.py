@@ -55,6 +55,8 @@ class Begin(NamedTuple):
 
 
 AT_ONCE = Begin()
+LIGHTER = 0.25
+"""Roughnesses above the bound of the asperity model; below, contacts count as deep while bodies are elastic."""
 
 
 def make_problem(
@@ -63,6 +65,7 @@ def make_problem(
     digest: tuple[float, ...] | None = None,
     columns: tuple[str, ...] | None = None,
     begin: Begin = AT_ONCE,
+    light_gap: float = math.inf,
 ) -> Problem:
     """Scale a scene and tabulate its force laws.
 
@@ -77,6 +80,8 @@ def make_problem(
         What that scene samples.
     begin : Begin, optional
         Of a run that goes on from another; the problem's own start is then of no use.
+    light_gap : float, optional
+        Gap in the middle of elastic contacts, in roughnesses, above which the asperity model would do.
 
     Raises
     ------
@@ -90,14 +95,16 @@ def make_problem(
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
     # handed on by value: a problem that referred to itself would wait for the garbage collector with all its tables
     told = (problem.digest, problem.columns, begin)
+    problem.model.scene.light_gap = light_gap
     count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
     if count > 0:
         problem.depth = 1 if nodes is None else nodes.depth
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
-            problem.deeper = lambda: make_problem(scene, deeper, *told)
+            problem.deeper = lambda: make_problem(scene, deeper, *told, light_gap)
     elif scene.contact.model == "auto":
-        problem.elastic = lambda: make_problem(scene.replace({"contact.model": "elastic"}), None, *told)
+        bodies, light = scene.replace({"contact.model": "elastic"}), lowest + LIGHTER
+        problem.elastic = lambda: make_problem(bodies, None, *told, light)
     return problem
 
 

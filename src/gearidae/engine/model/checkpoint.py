@@ -21,9 +21,19 @@ from gearidae.engine.model.checkpoint_checks import (
     refused,
     require,
 )
-from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, empty_history
+from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, copied, empty_history
 
-__all__ = ["HEADER", "depth_of", "exceeded", "exposures_of", "pack", "scene_digest", "unpack"]
+__all__ = [
+    "HEADER",
+    "depth_of",
+    "elastic_so_far",
+    "exceeded",
+    "exposures_of",
+    "light",
+    "pack",
+    "scene_digest",
+    "unpack",
+]
 
 HEADER: Final = 8
 """Words in front of the state: layout, scene (four), contact model, states, words of node rows and exposures."""
@@ -55,7 +65,7 @@ def pack(m: Model, digest: tuple[float, ...], depth: int, y: Floats) -> Floats:
     y : ndarray, shape (n,)
         State vector.
     """
-    state = m.state.copy()
+    state = copied(m.state)
     histories = state.history
     histories[histories["pair"] == EMPTY] = _NOTHING
     rows = np.concatenate([kept_rows(m), exposures_of(m)])
@@ -133,6 +143,16 @@ def exposures_of(m: Model) -> Floats:
 def exceeded(checkpoint: Floats) -> bool:
     """Whether a checkpoint that `depth_of` has accepted stands where the contact model's bound has been exceeded."""
     return bool(_state_of(checkpoint).bound_exceeded != 0)
+
+
+def elastic_so_far(checkpoint: Floats) -> bool:
+    """Whether bodies have been elastic in the run of a checkpoint that `depth_of` has accepted."""
+    return bool(_state_of(checkpoint).deep_exits >= 0)
+
+
+def light(checkpoint: Floats) -> bool:
+    """Whether a checkpoint that `depth_of` has accepted stands where elastic contacts have been light for long."""
+    return bool(_state_of(checkpoint).light != 0)
 
 
 def _state_of(checkpoint: Floats) -> Record:

@@ -163,6 +163,13 @@ def _check_run(m: Model, s: Record) -> None:
     require(s.slip in (-1.0, 0.0, 1.0) and (scene.dry != 0 or s.slip == 1.0), "slip", "a direction")
     require(s.slipping in _FLAGS and s.bound_exceeded in _FLAGS, "flags", "0 or 1")
     require(s.stop_armed in _FLAGS, "stop_armed", "0 or 1")
+    require(-1 <= s.deep_exits <= s.extremes.mesh_exits, "deep_exits", "mesh exits")
+    may_return = scene.nodes > 0 and scene.light_gap < math.inf
+    require(
+        s.light == 0 or (s.light == 1 and may_return),
+        "light",
+        "0, or 1 where a run may return to rigid bodies",
+    )
     require(set(s.near.tolist()) <= _FLAGS, "near", "0 or 1")
     require(s.last_flank in (-1, 0, 1), "last_flank", "a flank")
     require(0 <= s.roots <= scene.root_limit and s.last_root <= s.time, "roots", "before the time")

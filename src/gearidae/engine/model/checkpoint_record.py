@@ -123,6 +123,11 @@ STATE: Final = record_type(
     ("last_flank", INT),  # flank of the last onset, -1 before the first
     ("bound_exceeded", INT),  # 1 once a pair has been below the lowest gap
     (
+        "deep_exits",
+        INT,
+    ),  # mesh exits when elastic contacts were last too deep for the asperity model, -1 before,
+    ("light", INT),  # and 1 once that has been long ago
+    (
         "stop_armed",
         INT,
     ),  # 1 once the gear has moved forward, in a run that ends where its speed falls to zero

@@ -25,6 +25,7 @@ from gearidae.engine.model.state import (
     V,
     assign,
     blank_work,
+    copied,
     plain,
 )
 from gearidae.engine.model.tooth_pairs import set_branches
@@ -137,8 +138,10 @@ class Problem:
             fastest = max(fastest, fastest_schedule(scene.schedule[SPEED], tables, felt / scene.speed_gain))
         return float(fastest)
 
-    def balance(self, time: float, state: Floats, rates: Floats) -> EnergyBalance:
-        """The energy balance at an accepted time.
+    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance, Extremes]:
+        """Return the energy balance and the extremes of the run up to an accepted time.
+
+        Whoever looks leaves the run as it was: intervals are not split by a look at what they have added up to.
 
         Parameters
         ----------
@@ -147,49 +150,19 @@ class Problem:
         state, rates : ndarray, shape (n,)
             Scaled state there, and its rate.
         """
-        m = self.model
-        parts = (m.state.energy, m.work.quadrature, m.work.resistance)
-        # intervals are not to be split by a look at what they have added up to
-        kept, now = [part.copy() for part in parts], np.empty(BALANCE)
-        histories, followed = m.state.history.copy(), m.work.lag_time  # whose lags are followed to here
+        m, now, exposures = self.model, np.empty(BALANCE), exposures_of(self.model)
+        before, exposed = (copied(m.state), copied(m.work)), exposures.copy()
         balance_at(self.located.place, time, state, rates, now)
         balance = self._in_joules(time, *now.tolist())
-        for part, before in zip(parts, kept, strict=True):
-            assign(part, before)
-        m.state.history[:], m.work.lag_time = histories, followed
-        return balance
-
-    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance, Extremes]:
-        """Return all that is kept of the run up to an accepted time: `balance` and `extremes`."""
-        balance, m = self.balance(time, state, rates), self.model
-        if m.scene.places == 0:
-            return balance, self.extremes(time, state)
-        # intervals are not to be split by a look at what they have added up to
-        rows, exposing, notes = exposures_of(m).copy(), m.work.exposing.copy(), m.work.notes.copy()
-        close_exposures_at(self.located.place, time, state, rates)
-        found = self.extremes(time, state)
-        exposures_of(m)[:] = rows
-        assign(m.work.exposing, exposing)
-        assign(m.work.notes, notes)
-        return balance, found
-
-    def extremes(self, time: float, state: Floats) -> Extremes:
-        """The extremes of the run up to an accepted time.
-
-        Parameters
-        ----------
-        time : float
-            Over tau.
-        state : ndarray, shape (n,)
-            Scaled state there.
-        """
-        m = self.model
-        kept = m.state.extremes.copy()
-        if kept.begun != 0:
+        if m.scene.places > 0:
+            close_exposures_at(self.located.place, time, state, rates)
+        if m.state.extremes.begun != 0:
             note_present_at(self.located.place, state)
-        found = extremes_in_si(m, time, state)
-        assign(m.state.extremes, kept)
-        return found
+        extremes = extremes_in_si(m, time, state)
+        for record, one in zip((m.state, m.work), before, strict=True):
+            assign(record, one)
+        exposures[:] = exposed
+        return balance, extremes
 
     def _in_joules(
         self, time: float, stored: float, pending: float, kinetic: float, lag: float
@@ -275,6 +248,19 @@ class Problem:
         m.work.driver.time = time
         return time
 
+    def restored(self, checkpoint: Floats) -> tuple[float, Floats]:
+        """Take a checkpoint of this problem back, as `restore` does; return its time over tau and the state vector."""
+        state = np.empty(self.start.size)
+        return self.restore(checkpoint, state), state
+
     def outgrown(self, checkpoint: Floats) -> bool:
         """Whether a checkpoint of this problem stands where the model's bound has been exceeded."""
         return checkpoints.exceeded(checkpoint)
+
+    def has_been_elastic(self, checkpoint: Floats) -> bool:
+        """Whether bodies have been elastic in the run of a checkpoint of this problem."""
+        return self.depth > 0 or checkpoints.elastic_so_far(checkpoint)
+
+    def lightened(self, checkpoint: Floats) -> bool:
+        """Whether a checkpoint stands where the asperity model would do again."""
+        return checkpoints.light(checkpoint)

@@ -95,6 +95,7 @@ SCENE: Final = record_type(
     ("cutoff", REAL),  # gap beyond which the force is taken as zero
     ("contact_gap", REAL),  # gap of contact onset and separation
     ("lowest_gap", REAL),  # the model holds above this gap of a pair
+    ("light_gap", REAL),  # gap in the middle of elastic contacts above which the asperity model would do
     ("material", MATERIAL, (MATERIALS,)),
     ("by_place", INT),  # 1 where shares change with tooth and place and are not in the force scales
     ("loadings_at", INT),  # their loading branches over the pair's gap, in forces, side by side,

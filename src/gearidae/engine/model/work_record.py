@@ -142,6 +142,8 @@ EXPOSED: Final = record_type(  # a pair where its exposures have last been added
     ("turned", INT),  # 1 from where it began to close until something joins
     ("lowest", REAL),  # least gap at a turning point in this place
     ("front", REAL, (MATERIALS,)),  # asperities in contact, over their density
+    ("force", REAL),  # and its rate
+    ("force_rate", REAL),
     ("power", REAL),  # force times sliding speed, and its rate
     ("power_rate", REAL),
     ("pull", REAL),  # least power since the gap has last turned round from closing to opening
