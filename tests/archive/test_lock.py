@@ -59,6 +59,7 @@ def test_a_killed_writer_holds_nothing(archive):
     here, there = multiprocessing.Pipe()
     writer = multiprocessing.get_context("spawn").Process(target=hold, args=(archive, there))
     writer.start()
+    there.close()  # or a writer that ends before it is ready would be waited for
     assert here.recv()
     assert is_locked(archive)
     assert WriterLock.take(archive) is None

@@ -341,4 +341,32 @@ MUTANTS = (
         "means = np.add.reduceat(density[crowded], first)",
         ("plot/test_spectra_and_maps.py",),
     ),
+    Mutant(
+        "influence coefficients of elastic nodes as the grid has them, not symmetric",
+        "engine/elastic/layout.py",
+        "0.5 * (work + work.T) / weights",
+        "work / weights",
+        ("engine/test_elastic.py::test_the_force_has_a_potential",),
+    ),
+    Mutant(
+        "pressure not noted where a contact passes from one place to the next",
+        "engine/energy/exposures.py",
+        "        if pressing > 0.0:\n",
+        "        if pressing > 1e300:\n",
+        ("engine/test_exposures.py::test_sliding_work_and_pressure_are_those_of_the_samples",),
+    ),
+    Mutant(
+        "deep contacts of elastic bodies not counted before a run returns to the asperity model",
+        "engine/events/histories.py",
+        "            m.state.deep_exits = m.state.extremes.mesh_exits",
+        "            m.state.deep_exits = 0",
+        ("engine/test_returning.py",),
+    ),
+    Mutant(
+        "stretch of asperities not kept where a run returns to the asperity model",
+        "engine/changeover.py",
+        "            h.joined -= state[",
+        "            h.joined -= 0.0 * state[",
+        ("engine/test_returning.py",),
+    ),
 )

@@ -7,6 +7,7 @@ for; macOS has no ``fdatasync``. What is there is used, and the next best thing 
 from __future__ import annotations
 
 import os
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["DiskError", "commit", "disk_errors", "open_file", "read_at", "sync", "write_at"]
+__all__ = ["DiskError", "commit", "disk_errors", "open_file", "part_beside", "read_at", "sync", "write_at"]
 
 _BINARY: Final[int] = getattr(os, "O_BINARY", 0)  # or Windows would take line ends for texts'
 
@@ -37,6 +38,11 @@ def disk_errors() -> Iterator[None]:
 def open_file(path: Path) -> int:
     """Open a file to read and write at any place of it; its descriptor, which no other program inherits."""
     return os.open(path, os.O_RDWR | _BINARY)
+
+
+def part_beside(target: Path, ending: str = "") -> Path:
+    """Name of a hidden file beside a target, of this process alone: written first, and renamed when it is whole."""
+    return target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part{ending}")
 
 
 def commit(descriptor: int) -> None:

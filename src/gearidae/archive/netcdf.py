@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import secrets
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ import xarray as xr
 
 from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, chunked
-from gearidae.archive.disk import sync
+from gearidae.archive.disk import part_beside, sync
 from gearidae.archive.growing_layout import is_growing, trimmed
 from gearidae.archive.heaps import check_heaps
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
@@ -98,7 +97,7 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
         If the target is refused (see `check_target`) or the disk does not take the data.
     """
     target = check_target(path, overwrite=overwrite)
-    part = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
+    part = part_beside(target)
     try:
         with_checksums(ds.drop_encoding()).to_netcdf(
             part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import secrets
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from gearidae.archive.disk import part_beside
 from gearidae.errors import SceneError
 
 __all__ = ["BY_FFMPEG", "MOVING", "whole_file", "write"]
@@ -82,7 +82,7 @@ def whole_file(
         raise SceneError("picture", path, f"must end in one of {endings}")
     if target.is_dir() or (target.exists() and not overwrite):
         raise SceneError("picture", path, "exists already: name another with -o, or allow --overwrite")
-    part = target.with_name(f".{target.stem}.{os.getpid()}-{secrets.token_hex(4)}.part.{_kind(target)}")
+    part = part_beside(target.with_name(target.stem), f".{_kind(target)}")
     try:
         yield part
         part.replace(target)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import secrets
 from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
 import xarray as xr
 
+from gearidae.archive.disk import part_beside
 from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
 from gearidae.report import html
@@ -143,7 +143,7 @@ def write_report(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: boo
     if target.is_dir() or (target.exists() and not overwrite):
         raise SceneError("report", path, "exists already: name another with -o, or allow --overwrite")
     page = build_report(ds)
-    part = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
+    part = part_beside(target)
     try:
         part.write_text(page, encoding="utf-8")
         part.replace(target)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import re
-import secrets
 import warnings
 from array import array
 from collections.abc import Collection, Mapping
@@ -18,6 +16,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.archive.disk import part_beside
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.library import LIBRARY
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
@@ -179,7 +178,7 @@ class KeptRuns:
 
     def _write(self, key: str, header: str, solution: Solution) -> None:
         """Write a run to a file of its own, which appears when it is whole."""
-        part = self.folder / f".{key}.{os.getpid()}-{secrets.token_hex(4)}.part"
+        part = part_beside(self.folder / key)
         try:
             _write(part, header, solution)
             part.replace(self._path(key))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import secrets
 import warnings
 from collections.abc import Collection
 from pathlib import Path
 from typing import Final
+
+from gearidae.archive.disk import part_beside
 
 __all__ = ["RunJournal"]
 
@@ -100,7 +100,7 @@ class RunJournal:
         if not left:
             self.path.unlink()
         else:
-            part = self.path.with_name(f".{self.path.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
+            part = part_beside(self.path)
             with self.path.open("rb") as file, part.open("wb") as shorter:
                 for start, length in left:
                     file.seek(start)

@@ -124,13 +124,10 @@ def drawn_laws(
 def _units(law: LossLaw) -> dict[str, str]:
     """Units of the parameters of a law and of those within it; the outer ones go before."""
     found: dict[str, str] = {}
-    for each in fields(law):
-        value = getattr(law, each.name)
-        if "quantity" in each.metadata:
-            found[each.name] = each.metadata["quantity"].unit
-        elif isinstance(value, LossLaw):
-            found = {**_units(value), **found}
-    return found
+    for value in (getattr(law, each.name) for each in fields(law)):
+        if isinstance(value, LossLaw):
+            found |= _units(value)
+    return found | law.parameter_units()
 
 
 def _changed(law: LossLaw, values: Mapping[str, float]) -> LossLaw:

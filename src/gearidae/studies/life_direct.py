@@ -96,8 +96,7 @@ class DirectCycles:
     def _begin(self, passages: float, state: Floats) -> _Place:
         """Bring the gears into steady motion at a coverage."""
         windows = self.windows
-        scene = windows.scene.replace(windows.coverage.changes(state))
-        window = steady_window(scene, windows.cycles, windows.backend)
+        window = steady_window(windows.scene_at(state), windows.cycles, windows.backend)
         if window.origin is None:
             raise Sticks(passages)
         assert window.solution.extremes is not None
@@ -107,8 +106,7 @@ class DirectCycles:
     def _next(self, here: _Place) -> _Place:
         """Simulate a cycle."""
         windows, state = self.windows, here.state
-        changed = windows.scene.replace(windows.coverage.changes(state))
-        scene = part_of(changed, 1, windows.cycles.total, _PATIENCE)
+        scene = part_of(windows.scene_at(state), 1, windows.cycles.total, _PATIENCE)
         found = solved(scene, windows.backend, here.origin)
         if stands(found, scene) or found.checkpoint is None:
             raise Sticks(here.passages + self.cycle)

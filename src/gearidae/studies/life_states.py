@@ -76,7 +76,8 @@ class Windows:
 
     def of(self, state: Floats) -> Seen:
         """Look a state up, or run its windows."""
-        key = np.clip(state, 0.0, 1.0).tobytes()
+        inside = np.clip(state, 0.0, 1.0)
+        key = inside.tobytes()
         if key not in self.seen:
             if len(self.seen) >= MOST_STATES:
                 raise SolverError(
@@ -86,9 +87,13 @@ class Windows:
                     last_event="none",
                     advice="loosen the tolerance, or make windows longer (cycles, settle, starts)",
                 )
-            self.seen[key] = self._run(np.clip(state, 0.0, 1.0))
+            self.seen[key] = self._run(inside)
             self.say()
         return self.seen[key]
+
+    def scene_at(self, state: Floats) -> Scene:
+        """Return the scene of a window with the coverage of a state."""
+        return self.scene.replace(self.coverage.changes(state))
 
     def say(self) -> None:
         """Report the states so far."""
@@ -96,7 +101,7 @@ class Windows:
 
     def _run(self, state: Floats) -> Seen:
         assert self.scene.initial is not None
-        changed = self.scene.replace(self.coverage.changes(state))
+        changed = self.scene_at(state)
         phase = self.scene.initial.mesh_phase
         scenes = [
             changed.replace({"initial.mesh_phase": (phase + number / self.starts) % 1.0})

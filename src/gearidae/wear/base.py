@@ -79,6 +79,12 @@ class LossLaw(ABC):
                 raise SceneError(f"{self.name}.{each.name}", value, str(error)) from None
             object.__setattr__(self, each.name, number)
 
+    @classmethod
+    def parameter_units(cls) -> dict[str, str]:
+        """Return the SI units of the parameters, without those of a law within this one."""
+        known = {each.name: each.metadata.get("quantity") for each in fields(cls)}
+        return {name: quantity.unit for name, quantity in known.items() if quantity is not None}
+
     @abstractmethod
     def rate(self, fraction: Floats, exposure: Exposure) -> Floats:
         """Return what one passage adds to the coverage (it is negative).

@@ -52,7 +52,7 @@ def loss_law_units(name: str) -> dict[str, str]:
     SceneError
         If there is no such law.
     """
-    return {each.name: each.metadata["quantity"].unit for each in fields(_LAWS.find(name))}
+    return _LAWS.find(name).parameter_units()
 
 
 def loss_law(name: str, **parameters: Any) -> LossLaw:
