@@ -278,7 +278,7 @@ def _motion(scene: Scene, run: _Run) -> Floats:
     sigma, s = scene.surface.roughness, run.problem.model.scene
     speed = sigma / run.problem.time_unit
     if scene.roller:
-        height, rate, force = run.rows.T
+        height, rate, force = run.rows[:, :3].T
         values = [height / sigma, rate / speed]
         rates = [values[1], s.gear_inverse_mass * force / s.force_unit]
     else:
