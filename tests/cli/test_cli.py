@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import errno
 import os
 import signal
 import subprocess
@@ -278,6 +279,19 @@ def test_a_reader_that_goes_away_is_no_error(folder):
     process.stderr.close()
     assert "Traceback" not in err
     process.wait(timeout=60)
+
+
+def test_what_the_system_refuses_is_one_line(monkeypatch, capfd):
+    """A full disk under the compiled code, say."""
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(gd, "simulate", full)
+    assert main(["run", "roller_slow", "-o", "never.nc"]) == 3
+    err = capfd.readouterr().err
+    assert one_line(err), err
+    assert "No space left" in err
 
 
 @pytest.mark.slow

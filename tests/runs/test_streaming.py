@@ -276,7 +276,7 @@ def test_interrupted_and_resumed_is_the_same_run(path):
 
 def test_ctrl_c_is_exit_130_and_resumable(path):
     """A signal to the program, as a terminal sends it."""
-    arguments = ["run", "teodorescu2009", "--set", "run.duration=2.5 ms", "run.samples=2001", "-o", str(path)]
+    arguments = ["run", "teodorescu2009", "--set", "run.duration=20 ms", "run.samples=2001", "-o", str(path)]
     process = child(main, arguments)
     while not (path.exists() and gd.open_archive(path).sizes["time"] > 1):
         time.sleep(0.005)
@@ -284,7 +284,21 @@ def test_ctrl_c_is_exit_130_and_resumable(path):
     assert end_of(process) == 130
     assert gd.open_archive(path).attrs["status"] == "interrupted"
     assert main([*arguments, "--resume"]) == 0
-    whole = gd.simulate(gd.preset("teodorescu2009"), t_end=2.5e-3, samples=2001)
+    whole = gd.simulate(gd.preset("teodorescu2009"), t_end=20e-3, samples=2001)
+    assert_same(gd.open_archive(path), whole)
+
+
+def test_ctrl_c_after_the_last_step_is_resumable(path, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    whole = gd.simulate(LOW, backend="sksundae")
+    with monkeypatch.context() as patched:
+        patched.setattr(streaming, "account_of", interrupted)
+        with pytest.raises(gd.Interrupted, match="--resume"):
+            simulate(path)
+    assert gd.open_archive(path).sizes["time"] == whole.sizes["time"]
+    simulate(path, resume=True)
     assert_same(gd.open_archive(path), whole)
 
 
@@ -339,6 +353,9 @@ def test_what_cannot_be_resumed_is_refused(path, end_early):
 
 
 def test_no_room_at_all_is_said_before_anything_is_run(path, capfd):
+    simulate(path, gd.preset("roller_slow"))  # compiled code is kept before the limit
+    path.unlink()
+
     def limited():
         resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
         return main(["run", "roller_slow", "--set", "run.samples=100001", "-o", str(path)])
@@ -374,7 +391,7 @@ def test_no_room_for_the_final_form(path, monkeypatch):
     monkeypatch.setattr(growing.GrowingArchive, "_compact", lambda self, template, part: full(part))
     with pytest.raises(gd.SolverError, match="No space left"):
         simulate(path)
-    assert assert_sound(path, whole).sizes["time"] == LOW.run.samples
+    assert assert_sound(path, whole).sizes["time"] == whole.sizes["time"]
     monkeypatch.undo()
     monkeypatch.setattr("gearidae.engine.backend.run_blocks", lambda *_: pytest.fail("the run was repeated"))
     simulate(path, resume=True)

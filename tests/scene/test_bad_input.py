@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from gearidae.errors import SceneError
 from gearidae.scene import Coating, Drive, Scene, Surface, describe_keys, preset
+from gearidae.scene.knots import PACKED_ABOVE
 
 NAN, INF = float("nan"), float("inf")
 
@@ -308,6 +309,19 @@ def test_errors_survive_the_trip_between_processes(gears: Scene) -> None:
         gears.replace({"coating.sam_fraction": 2})
     again = pickle.loads(pickle.dumps(caught.value))
     assert (again.key, again.value, again.allowed) == ("coating.sam_fraction", 2, "must lie in 0..1")
+
+
+def test_an_interrupt_stays_one(gears: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where pydantic writes the scene, which makes an error of its own out of what it calls."""
+
+    def interrupted(_: object) -> None:
+        raise KeyboardInterrupt
+
+    ramp = [(0.1 * number, 1e-18 * number) for number in range(PACKED_ABOVE + 1)]
+    scene = gears.replace({"drive.schedule": ramp})
+    monkeypatch.setattr("gearidae.scene.knots.pack_knots", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        scene.to_dict()
 
 
 JSON = st.recursive(

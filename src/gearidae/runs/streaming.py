@@ -155,15 +155,20 @@ class _Run:
             If the run did not reach its end.
         """
         if ended.status == "interrupted":
-            archive.close()
-            kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
-            raise Interrupted(kept, open_archive(self._target))
+            raise self._interrupted(archive)
         try:
             archive.finish(self._told(archive, ended))
+        except KeyboardInterrupt:
+            raise self._interrupted(archive) from None
         except DiskError as error:
             raise self._not_written(archive, ended.reached, error) from error
         if ended.status not in ("finished", "stopped"):
             raise early_end(open_archive(self._target), ended.reached)
+
+    def _interrupted(self, archive: GrowingArchive) -> Interrupted:
+        archive.close()
+        kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
+        return Interrupted(kept, open_archive(self._target))
 
     def _told(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
         """Make the final template, with the account of the run."""

@@ -8,6 +8,7 @@ from numbers import Real
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import PydanticSerializationError
 
 from gearidae.errors import SceneError
 
@@ -47,6 +48,16 @@ class Group(BaseModel):
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse: scenes are frozen."""
         raise SceneError(name, shorten(value), "scenes cannot be changed in place; use scene.replace({...})")
+
+    def plain_tables(self, **options: Any) -> dict[str, Any]:
+        """Return pydantic's dump: plain tables, lists, texts and numbers, ready for JSON.
+
+        pydantic makes an error of its own out of whatever a field's serializer raises, of a `KeyboardInterrupt` too.
+        """
+        try:
+            return self.model_dump(mode="json", **options)
+        except PydanticSerializationError as error:
+            raise (error.__cause__ or error) from None
 
     @classmethod
     def _unknown(cls, key: str, known: list[str]) -> str:

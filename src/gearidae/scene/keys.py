@@ -96,7 +96,7 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     SceneError
         If there is no such key, or the scene lacks the table it belongs to.
     """
-    value = value.model_dump(mode="json") if isinstance(value, Group) else value
+    value = value.plain_tables() if isinstance(value, Group) else value
     if isinstance(key, str) and key in model.model_fields:
         data[key] = deepcopy(value) if isinstance(value, dict) else value  # dotted keys may change it later
         return

@@ -239,7 +239,7 @@ class Scene(Group):
 
     def _plain(self, tables: set[str] | None) -> dict[str, Any]:
         """Return some tables, or all, as `to_dict` does."""
-        data: dict[str, Any] = self.model_dump(mode="json", exclude_none=True, include=tables)
+        data = self.plain_tables(exclude_none=True, include=tables)
         for table, key in _NOTHING_IF_EMPTY:
             if table in data and not data[table][key]:
                 del data[table][key]
