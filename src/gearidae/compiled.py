@@ -30,7 +30,15 @@ from llvmlite import binding
 from numba.core import caching
 from platformdirs import user_cache_path
 
-__all__ = ["Function", "cache_folder", "compiled", "compiled_callback", "is_cached", "numba_options"]
+__all__ = [
+    "Function",
+    "cache_folder",
+    "compiled",
+    "compiled_callback",
+    "is_cached",
+    "name_type",
+    "numba_options",
+]
 
 log = logging.getLogger(__name__)
 
@@ -219,6 +227,29 @@ def _takes(name: str, value: Any) -> bool:
     except Exception:  # whatever numba says: without the option all is well
         return False
     return True
+
+
+_named: set[Any] = set()
+"""Types that have been given a name, which numba keeps for as long as somebody else does."""
+
+
+def name_type(value: Any, name: str) -> None:
+    """Give numba's type of a value a short name.
+
+    That of a tuple of records lists all fields of all of them, and is part of the symbol of every function that takes
+    such a tuple: twelve thousand letters, of which nine tenths of all compiled code would consist.
+
+    Parameters
+    ----------
+    value : object
+        Of the type that is meant.
+    name : str
+        A digest of numba's own name is added: types that differ are never called the same.
+    """
+    kind: Any = numba.typeof(value)  # type: ignore[no-untyped-call]
+    if kind not in _named:
+        _named.add(kind)
+        kind.name = f"{name}_{hashlib.sha256(kind.name.encode()).hexdigest()[:12]}"
 
 
 # -- functions -------------------------------------------------------------------------------------------------------

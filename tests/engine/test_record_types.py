@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import signal
+from typing import NamedTuple
 
+import numba
 import numpy as np
 import pytest
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, name_type
 from gearidae.engine.model.record_types import INT, REAL, record_type
 from gearidae.engine.model.scene_record import SCENE
 from gearidae.engine.model.state import Model, blank_model
@@ -70,3 +72,36 @@ def test_an_interrupt_stays_one_while_numba_takes_records_apart():
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, usual)
     assert caught == [KeyboardInterrupt] * 100
+
+
+def test_the_type_of_a_model_has_a_short_name():
+    """It is part of the symbol of each compiled function; numba's own name of it lists the fields of all records."""
+    model = blank_model(np.zeros(1, SCENE)[0], np.zeros(1), 1)
+
+    @numba.njit
+    def kind_of(m):
+        return m.scene.kind
+
+    @numba.njit
+    def kind(scene, state, work, tables, rows):
+        return kind_of(Model(scene, state, work, tables, rows))
+
+    assert kind(*model) == model.scene.kind
+    in_compiled_code = kind_of.nopython_signatures[0].args[0]
+    assert in_compiled_code is numba.typeof(model)
+    assert in_compiled_code.name.startswith("Model_")
+    assert len(in_compiled_code.name) < 20
+
+
+def test_types_that_differ_are_not_called_the_same():
+    class Pair(NamedTuple):
+        one: float
+        other: float
+
+    kinds = [Pair(1.0, 2.0), Pair(1, 2)]
+    for _ in range(2):
+        for kind in kinds:
+            name_type(kind, "Pair")
+    names = {numba.typeof(kind).name for kind in kinds}
+    assert len(names) == 2
+    assert all(name.startswith("Pair_") for name in names)

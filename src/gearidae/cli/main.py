@@ -46,7 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # The reader of the output has closed (a pager, head); without this, Python prints an error at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
-    except OSError as error:  # compiled code on a full disk, say: no file of the user's, of which commands say more
+    except OSError as error:
+        # A disk that is full where compiled code is kept, say; of the user's own files the commands say more.
         return _complain(f"the system refuses to go on: {error}", UNFINISHED)
     return code if isinstance(code, int) else DONE
 

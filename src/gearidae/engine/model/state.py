@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gearidae.compiled import name_type
 from gearidae.engine.model.checkpoint_record import ENERGY, EXTREMES, HISTORY, PARTS, PROGRESS, STATE, STOPS
 from gearidae.engine.model.record_types import (
     COAST,
@@ -138,3 +139,6 @@ def blank_model(scene: Record, tables: Floats, rows: int) -> Model:
     state.history["pair"] = EMPTY
     state.last_flank = state.deep_exits = -1
     return Model(scene, state, work, tables, np.zeros(rows))
+
+
+name_type(blank_model(np.zeros(1, SCENE)[0], np.zeros(0), 0), "Model")
