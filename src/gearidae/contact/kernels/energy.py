@@ -199,7 +199,7 @@ def _store_partial(law: Floats, end: Floats, table: Floats) -> None:
     size = math.prod(shape)
     # powers of v in all pieces, then those of u
     partial = law[first : first + size].reshape(shape).swapaxes(2, 3).reshape(len(end), pieces * n, 8)
-    result = 2.0 * limit * np.einsum("ab,jbc->jac", _stretch_integral(division), partial, optimize=True)
+    result = 2.0 * limit * (_stretch_integral(division) @ partial)
     result[:, ::n] += limit * end[:, None]
     table[first : first + size] = result.reshape(len(end), pieces, n, 8).swapaxes(2, 3).ravel()
 

@@ -2,12 +2,16 @@ r"""Branches of a force law and their derivatives at the knots of its table, by 
 
 With joined heights shifted by the distance of joining (see `gearidae.contact.kernels.law`) the loading branch begins at
 the displacement ``-join``, and what is stretched beyond lies between ``-join - S`` and ``-join``.
+
+All are integrals of a load times the kernel at a knot plus an offset. Over a panel of offsets the kernel is a
+polynomial to the last digit or two: it is worked out at a few places of the panel, once for all stretches, and the law
+becomes weights at these places.
 """
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from functools import cache
 from typing import Final
 
 import numpy as np
@@ -19,52 +23,110 @@ from gearidae.contact.kernels.layout import KNOTS_PER_SIGMA, Floats, Kernel
 
 __all__ = ["loading_derivatives", "stretched_derivatives"]
 
-GAUSS: Final = 16
-PANEL: Final = 0.5  # longest panel, in roughnesses
-
-
-def _close_nodes(law: AsperityLaw) -> tuple[Floats, Floats]:
-    """Gauss nodes and weights from joining to half a roughness of compression, where the load is not smooth."""
-    rule = gauss_rule(48)
-    edges = np.linspace(-law.join, 0.0, math.ceil(law.join / PANEL) + 1)
-    parts = [law.nodes(low, high, *rule) for low, high in pairwise([*edges, PANEL])]
-    delta, weight = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return delta, weight
+PANEL: Final = 0.5
+"""Longest panel of offsets, in roughnesses."""
+PLACES: Final = 16
+"""Chebyshev nodes of a panel."""
+CLOSE: Final = 48
+"""Nodes of the rule over the law from joining to half a roughness of compression, where the load is not smooth; """
+FAR: Final = 12
+"""those over half a roughness beyond;"""
+STRETCHED: Final = 16
+"""and those over a panel of stretched asperities."""
+KERNEL_END: Final = 12.0
+"""Beyond which the kernel is nothing."""
 
 
 def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats:
     """q(G, 0) and three derivatives, shape (4, n), for gaps on a grid of `KNOTS_PER_SIGMA`.
 
-    Beyond the first half roughness the compression is integrated by panels of half a roughness, so that all gaps
-    share the values of the kernel.
+    Panels of compression lie on the same grid, so that all gaps share the values of the kernel.
     """
-    delta, weight = _close_nodes(law)
-    result = np.einsum("i,kji->kj", weight, kernel_at(kernel, gap[:, None] + delta[None, :]))
-    x, w = gauss_rule(12)
-    within, half = 0.25 * (x + 1.0), KNOTS_PER_SIGMA // 2
-    panels = math.ceil((12.0 - gap[0]) / PANEL)
-    step = np.arange(len(gap) + panels * half)
-    shared = kernel_at(kernel, (gap[0] + step / KNOTS_PER_SIGMA)[:, None] + within[None, :])
-    load_weights = 0.25 * w * law.load(0.5 * np.arange(panels)[:, None] + within)
-    for panel in range(1, panels):
-        first = panel * half
-        result += shared[:, first : first + len(gap)] @ load_weights[panel]
-    return np.asarray(result)
+    half, panels = round(PANEL * KNOTS_PER_SIGMA), math.ceil((KERNEL_END - gap[0]) / PANEL)
+    begin = PANEL * np.arange(panels)
+    steps = gap[0] + np.arange(len(gap) + (panels - 1) * half) / KNOTS_PER_SIGMA
+    values = kernel_at(kernel, steps[:, None] + PANEL * _places())
+    result = np.zeros((4, len(gap)))
+    for panel, weights in enumerate((*_compressed(law, begin[:1], CLOSE), *_compressed(law, begin[1:], FAR))):
+        result += values[:, panel * half : panel * half + len(gap)] @ weights
+    if law.join > 0.0:
+        edges = np.linspace(-law.join, 0.0, math.ceil(law.join / PANEL) + 1)
+        rule = law.nodes(edges[:-1], edges[1:], *gauss_rule(CLOSE))
+        offset, weight = (each.reshape(1, -1) for each in rule)
+        result += _integrals(gap, (-law.join, law.join), offset, weight, kernel)[:, :, 0]
+    return result
+
+
+def _compressed(law: AsperityLaw, begin: Floats, count: int) -> Floats:
+    """Weights at the places of panels of compression, from a rule of so many nodes, shape (panels, PLACES)."""
+    offset, weight = law.nodes(begin, begin + PANEL, *gauss_rule(count))
+    return _at_places((offset - begin[:, None]) / PANEL, weight)
 
 
 def stretched_derivatives(joined: Floats, law: AsperityLaw, v: Floats, kernel: Kernel) -> Floats:
     """t(Z, S) and three derivatives in Z at fixed S = D (1 - v^2), shape (4, n, len(v))."""
     limit = law.detach - law.join
-    rule = gauss_rule(GAUSS)
-    result = np.empty((4, len(joined), len(v)))
-    panels = 1 + int(limit / PANEL)
-    for m, value in enumerate(v):
-        stretch = limit * (1.0 - value**2)
-        # rounding must not carry the first node beyond the fold
-        edges = np.linspace(max(-stretch - law.join, -law.detach), -law.join, panels + 1)
-        total = np.zeros((4, len(joined)))
-        for low, high in pairwise(edges):
-            delta, weight = law.nodes(low, high, *rule)
-            total += kernel_at(kernel, joined[:, None] + (stretch + delta)[None, :]) @ weight
-        result[:, :, m] = total
+    stretch = limit * (1.0 - v**2)
+    # rounding must not carry the first node beyond the fold
+    low = np.maximum(-stretch - law.join, -law.detach)
+    edges = np.linspace(low, -law.join, 2 + int(limit / PANEL), axis=1)
+    rule = law.nodes(edges[:, :-1], edges[:, 1:], *gauss_rule(STRETCHED))
+    delta, weight = (each.reshape(len(v), -1) for each in rule)
+    return _integrals(joined, (-law.join, limit), stretch[:, None] + delta, weight, kernel)
+
+
+def _integrals(
+    knots: Floats, reach: tuple[float, float], offset: Floats, weight: Floats, kernel: Kernel
+) -> Floats:
+    """Sums of the kernel with three derivatives at knots plus offsets, shape (4, n, m).
+
+    Parameters
+    ----------
+    knots : ndarray, shape (n,)
+    reach : tuple of float
+        Where the offsets begin, and over which length they lie.
+    offset, weight : ndarray, shape (m, nodes)
+        Offsets at which to take the kernel, and the weights of these values.
+    kernel : {"line", "plane"}
+    """
+    low, length = reach
+    panels = math.ceil(length / PANEL)
+    panel = length / panels
+    place = (offset - low) / panel
+    which = np.clip(place.astype(int), 0, panels - 1)
+    result = np.zeros((4, len(knots), len(offset)))
+    for k in range(panels):
+        own = which == k
+        weights = _at_places(np.where(own, place - k, 0.0), np.where(own, weight, 0.0))
+        result += kernel_at(kernel, knots[:, None] + (low + panel * (k + _places()))) @ weights.T
     return result
+
+
+@cache
+def _places() -> Floats:
+    """Chebyshev nodes of a panel, as parts of it."""
+    return np.asarray(0.5 * (np.polynomial.chebyshev.chebpts1(PLACES) + 1.0))
+
+
+@cache
+def _to_places() -> Floats:
+    """Matrix from integrals of Chebyshev polynomials to weights at the nodes."""
+    terms = np.polynomial.chebyshev.chebvander(2.0 * _places() - 1.0, PLACES - 1)
+    terms[:, 0] *= 0.5
+    return np.asarray(terms.T * (2.0 / PLACES))
+
+
+def _at_places(part: Floats, weight: Floats) -> Floats:
+    """Weights at a panel's `_places` that do for any smooth function what other weights do elsewhere in the panel.
+
+    Parameters
+    ----------
+    part, weight : ndarray, shape (m, nodes)
+        Where in the panel, from 0 to 1, and the weights there.
+
+    Returns
+    -------
+    ndarray, shape (m, PLACES)
+    """
+    terms = np.polynomial.chebyshev.chebvander(2.0 * part - 1.0, PLACES - 1)
+    return np.asarray((weight[:, None, :] @ terms)[:, 0] @ _to_places())

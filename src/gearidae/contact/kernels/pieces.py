@@ -87,12 +87,10 @@ def partial_pieces(
     """
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
-    out = np.empty((len(joined) - 1, division.pieces, 8, DEGREE + 1))
-    for piece in range(division.pieces):
-        v = np.asarray(division.at(piece, 0.5 * (nodes + 1.0)))
-        rest = (stretched_derivatives(joined, law, v, kernel) - end) / v**2
-        out[:, piece] = hermite_pieces(joined, rest) @ to_powers.T
-    return out
+    v = np.stack([np.asarray(division.at(piece, 0.5 * (nodes + 1.0))) for piece in range(division.pieces)])
+    rest = (stretched_derivatives(joined, law, v.ravel(), kernel) - end) / v.ravel() ** 2
+    pieces = hermite_pieces(joined, rest).reshape(-1, 8, *v.shape) @ to_powers.T
+    return np.moveaxis(pieces, 2, 1)
 
 
 @lru_cache(maxsize=2)

@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,19 +136,14 @@ def node_grid(
         Nodes on one side, the middle included; by depth if not given.
     """
     nodes = nodes or next(count for gap, count in NODES_BY_DEPTH if deepest >= gap)
-    sigma = scene.surface.roughness
-    modulus = contact_modulus(scene.surface.youngs_modulus, scene.surface.poisson_ratio)
-    unit = math.sqrt(2.0 * bounds.radius * sigma)
-    reach = unit * math.sqrt(TAIL + _stretch(scene) + max(-deepest, 0.0))
+    unit, reach = _extent(scene, bounds, deepest)
     orders = ORDERS if bounds.longest > bounds.shortest else 1
     middle = 0.5 * (bounds.longest + bounds.shortest)
     half = 0.5 * (bounds.longest - bounds.shortest) or 1.0
     places = np.polynomial.chebyshev.chebpts1(orders)
-    grids = [_line_grid(reach * (middle + half * p), bounds.width, modulus, nodes) for p in places]
-    # pressures are in reference loads per face width and unit length
-    pressure = force_unit / (bounds.width * unit)
     x, weights = place_nodes(reach / unit, nodes)
-    values = np.stack([_symmetric(grid.compliance, weights).T for grid in grids]) * (pressure / sigma)
+    influence = [_influence(scene, bounds, middle + half * p, deepest, nodes).T for p in places]
+    values = np.stack(influence) * force_unit
     powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
     finer, finer_weights = place_nodes(reach / unit, point_count(nodes))
     between = between_nodes(nodes, FINER)
@@ -155,13 +151,24 @@ def node_grid(
     return NodeGrid(nodes, orders, middle, half, np.concatenate(body))
 
 
-def _symmetric(compliance: Floats, weights: Floats) -> Floats:
-    """Return influence coefficients with ``w_i k_ij = w_j k_ji``, so that the force has a potential.
+def _extent(scene: Scene, bounds: ContactBounds, deepest: float) -> tuple[float, float]:
+    """``sqrt(2 R sigma)`` of a contact of unit length, and how far its outermost node lies from the middle [m]."""
+    unit = math.sqrt(2.0 * bounds.radius * scene.surface.roughness)
+    return unit, unit * math.sqrt(TAIL + _stretch(scene) + max(-deepest, 0.0))
+
+
+def _influence(scene: Scene, bounds: ContactBounds, length: float, deepest: float, nodes: int) -> Floats:
+    """Influence coefficients with ``w_i k_ij = w_j k_ji``, so that the force has a potential.
 
     Those of `line_grid` differ from it by the error of so few nodes. The mean of both sides has an error of that size.
+    Deflections are in roughnesses, pressures in newtons per face width and unit length.
     """
-    work = weights[:, None] * compliance
-    return np.asarray(0.5 * (work + work.T) / weights[:, None])
+    unit, reach = _extent(scene, bounds, deepest)
+    modulus = contact_modulus(scene.surface.youngs_modulus, scene.surface.poisson_ratio)
+    weights = place_nodes(reach / unit, nodes)[1]
+    work = weights[:, None] * _line_grid(reach * length, bounds.width, modulus, nodes).compliance
+    symmetric = 0.5 * (work + work.T) / weights[:, None]
+    return np.asarray(symmetric / (bounds.width * unit * scene.surface.roughness))
 
 
 def _stretch(scene: Scene) -> float:
@@ -188,10 +195,8 @@ def deepest_gap(scene: Scene, bounds: ContactBounds) -> float:
 
 def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
     """Gap at which a closing contact has taken up its energy or folds; NaN if it does neither down to a depth."""
-    grid, middle = _static(scene, bounds, -depth)
-    surfaces = _laws(scene, bounds, scene.materials())
-    n = grid.nodes
-    profile, weights = grid.body[:n], grid.body[n : 2 * n]
+    profile, weights, influence = _Widest.of(scene, bounds, -depth)
+    surfaces, n = _laws(scene, bounds, scene.materials()), NODES
     deflection = np.zeros(n)
     work = last = 0.0
     for gap in np.arange(_FAR, -depth - 0.5 * _STEP, -_STEP):
@@ -202,9 +207,9 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
                 q = _loading(table, gap + offset + profile + deflection)
                 pressure += scale * q[0]
                 slope += scale * q[1]
-            matrix = np.eye(n) - middle * slope
+            matrix = np.eye(n) - influence * slope
             try:
-                step = np.linalg.solve(matrix, deflection - middle @ pressure)
+                step = np.linalg.solve(matrix, deflection - influence @ pressure)
             except (
                 np.linalg.LinAlgError
             ):  # stiffness of bodies and adhesion just cancel: that is where it folds
@@ -223,13 +228,19 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
     return math.nan
 
 
-def _static(scene: Scene, bounds: ContactBounds, deepest: float) -> tuple[NodeGrid, Floats]:
-    """Nodes of the widest contact in newtons, and its influence coefficients."""
-    grid = node_grid(scene, bounds, 1.0, deepest, NODES)
-    n = grid.nodes
-    powers = grid.body[2 * n : (2 + grid.orders * n) * n].reshape(grid.orders, n, n)
-    x = (bounds.longest - grid.middle) / grid.half
-    return grid, np.tensordot(x ** np.arange(grid.orders), powers, axes=1).T
+class _Widest(NamedTuple):
+    """Nodes of the widest contact: profile, weights, and influence coefficients of pressures in newtons."""
+
+    profile: Floats
+    weights: Floats
+    influence: Floats
+
+    @classmethod
+    def of(cls, scene: Scene, bounds: ContactBounds, deepest: float) -> Self:
+        """Lay them out for contacts that are pressed to a gap, in roughnesses."""
+        unit, reach = _extent(scene, bounds, deepest)
+        x, weights = place_nodes(reach / unit, NODES)
+        return cls(x**2, weights, _influence(scene, bounds, bounds.longest, deepest, NODES))
 
 
 def _laws(
@@ -271,30 +282,30 @@ def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     enough : bool
         Whether neither an impact nor the load is certain to press the teeth closer than that, nor do they begin there.
     """
-    grid, kappa = _static(scene, bounds, -4.0)
+    widest = _Widest.of(scene, bounds, -4.0)
     materials = scene.materials()
     mixtures: list[tuple[Material, ...]] = [materials]
     if scene.coating.by_place:
         mixtures = [(one._replace(share=1.0),) for one in materials if one.share > 0.0]
-    limits = [_limit_of(scene, bounds, grid, kappa, one) for one in mixtures]
+    limits = [_limit_of(scene, bounds, widest, one) for one in mixtures]
     return max(lowest for lowest, _ in limits), all(enough for _, enough in limits)
 
 
 def _limit_of(
-    scene: Scene, bounds: ContactBounds, grid: NodeGrid, kappa: Floats, materials: Sequence[Material]
+    scene: Scene, bounds: ContactBounds, widest: _Widest, materials: Sequence[Material]
 ) -> tuple[float, bool]:
     """`rigid_limit` of an interface of some materials."""
-    profile, weights = grid.body[: grid.nodes], grid.body[grid.nodes : 2 * grid.nodes]
+    profile, weights, influence = widest
     step = 0.125
     gaps = np.arange(GAP_HIGH, -4.0, -step)
-    pressure = np.zeros((gaps.size, grid.nodes))
+    pressure = np.zeros((gaps.size, NODES))
     for table, scale, offset in _laws(scene, bounds, materials):
         pressure += scale * _loading(table, np.add.outer(gaps + offset, profile).ravel())[0].reshape(
             pressure.shape
         )
     force = bounds.longest * (pressure @ weights)
     work = np.cumsum(0.5 * (force + np.concatenate([[0.0], force[:-1]])) * step * scene.surface.roughness)
-    deflected = np.flatnonzero(np.abs(pressure @ kappa[0]) > RIGID_DEFLECTION)
+    deflected = np.flatnonzero(np.abs(pressure @ influence[0]) > RIGID_DEFLECTION)
     if not deflected.size:
         return -4.0, bounds.start > -4.0
     first = deflected[0]
