@@ -67,7 +67,7 @@ def ensemble(
         ``min_gear_speed`` or ``largest_mesh_force``.
     executor, jobs, backend, progress, archive, overwrite, resume
         As for `gearidae.sweep`. Threads work side by side where the runs share their surface; if keys of the surface
-        vary, most of the time goes into tables of the force law, and processes are faster.
+        vary, much of the time goes into tables of the force law, and processes are faster.
 
     Returns
     -------

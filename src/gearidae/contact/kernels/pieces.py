@@ -72,7 +72,10 @@ def hermite_pieces(knots: Floats, derivatives: Floats) -> Floats:
         for span in (slice(None, -1), slice(1, None))
         for k in range(4)
     ]
-    return np.moveaxis(np.tensordot(hermite_matrix(), np.stack(ends), axes=1), 0, 1)
+    ends_of_pieces = np.stack(ends, axis=1)
+    # piece by piece: one product of all would start threads, which runs side by side have no use for
+    pieces = hermite_matrix() @ ends_of_pieces.reshape(*ends_of_pieces.shape[:2], -1)
+    return np.asarray(pieces.reshape(ends_of_pieces.shape))
 
 
 def partial_pieces(
