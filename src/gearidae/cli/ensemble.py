@@ -114,8 +114,8 @@ def executor_for(
 ) -> Iterator[Executor | None]:
     """Provide the executor that suits an ensemble; None leaves the choice to the solver.
 
-    Where members differ in their surface each makes tables of the force law, which takes as long as a short run and which
-    threads do side by side in part only.
+    Where members differ in their surface each makes tables of the force law, which takes as long as a short run, and
+    which threads do side by side in part only.
 
     Parameters
     ----------
