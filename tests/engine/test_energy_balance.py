@@ -281,9 +281,12 @@ def test_residual_stays_within_its_bound(name):
 @pytest.mark.parametrize("name", ["high bare", "slow roller"])
 def test_residual_falls_with_the_tolerance(name):
     scene = CASES_OF_ALL_KINDS[name].replace({"run.samples": "off"})
-    coarse, fine = (solve(scene, rtol=rtol).balance for rtol in (1e-5, 1e-10))
-    # five decades of tolerance; the residual's sign and size change from run to run by a factor of some
-    assert fine.imbalance < 3e-3 * coarse.imbalance
+    # five decades of tolerance; the residual's sign changes from run to run, so that one alone may be close to zero
+    coarse, fine = (
+        max(solve(scene, rtol=share * rtol).balance.imbalance for share in (1.0, 0.7, 0.5, 0.3))
+        for rtol in (1e-5, 1e-10)
+    )
+    assert fine < 3e-3 * coarse
 
 
 def test_both_backends_keep_the_same_balance(monkeypatch):

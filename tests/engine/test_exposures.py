@@ -80,11 +80,15 @@ def test_sliding_work_and_pressure_are_those_of_the_samples(sampled):
         np.maximum.at(pressure[pair % 19], np.minimum((where * places).astype(int), places - 1), pressing)
         # on its way from one place to the next the pressure changes by percents between two samples
         within = (where > 0.0) & (where < 1.0)
-        edges = np.arange(1, places) / places
-        passed = edges[(edges > where[within].min(initial=1.0)) & (edges < where[within].max(initial=0.0))]
-        for edge, there in zip(passed, CubicSpline(where[within], pressing[within])(passed), strict=True):
-            for place in (round(edge * places) - 1, round(edge * places)):
-                pressure[pair % 19, place] = max(pressure[pair % 19, place], there)
+        passed = [
+            k
+            for k in range(1, places)
+            if np.any(where[within] < k / places) and np.any(where[within] > k / places)
+        ]
+        if passed:
+            there = CubicSpline(where[within], pressing[within])(np.array(passed) / places)
+            for before in (1, 0):
+                np.maximum.at(pressure[pair % 19], np.array(passed) - before, there)
     ours = (sampled.sliding_work * sampled.flank_area).sel(flank="drive").values
     # the sum over samples is good to 1e-5; a contact on its way from one place to the next is divided between them
     assert ours.sum() == pytest.approx(work.sum(), rel=1e-4, abs=0)
