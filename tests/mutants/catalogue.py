@@ -369,4 +369,18 @@ MUTANTS = (
         "            h.joined -= 0.0 * state[",
         ("engine/test_returning.py",),
     ),
+    Mutant(
+        "weights at the places of a panel with the mean counted twice",
+        "contact/kernels/knots.py",
+        "terms[:, 0] *= 0.5",
+        "terms[:, 0] *= 1.0",
+        ("contact/test_knots.py",),
+    ),
+    Mutant(
+        "Ctrl-C while a scene is written left as an error of pydantic",
+        "scene/group.py",
+        "raise (error.__cause__ or error) from None",
+        "raise",
+        ("scene/test_bad_input.py::test_an_interrupt_stays_one",),
+    ),
 )
