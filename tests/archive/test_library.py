@@ -1,4 +1,4 @@
-"""Ctrl-C while an archive is opened or written: heeded when the file is whole and no lock is left taken."""
+"""netCDF's library: Ctrl-C is heeded when the file is whole and no lock is left taken; threads and locks of others."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import contextmanager
 
 import pytest
 import xarray as xr
@@ -117,3 +118,34 @@ def test_threads_write_and_read_archives_side_by_side(tmp_path):
     """In a process of its own: netCDF's library ended it by a signal, each time."""
     done = subprocess.run([sys.executable, "-c", THREADS, str(tmp_path)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+@contextmanager
+def locked(path, seconds):
+    """HDF5's lock on a file of a writer that has closed it, as a process that was started meanwhile has it."""
+    fcntl = pytest.importorskip("fcntl")
+    script = "import sys, time; sys.stdout.write('.'); sys.stdout.flush(); time.sleep(float(sys.argv[1]))"
+    with path.open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        heir = subprocess.Popen(
+            [sys.executable, "-c", script, str(seconds)], pass_fds=[file.fileno()], stdout=subprocess.PIPE
+        )
+        assert heir.stdout.read(1) == b"."  # it runs
+    try:
+        yield
+    finally:
+        heir.kill()
+        heir.communicate()
+
+
+def test_a_lock_that_a_process_inherited_is_waited_for(ds, tmp_path):
+    path = gd.save(ds, tmp_path / "roller.nc")
+    with locked(path, 0.2):
+        xr.testing.assert_identical(gd.open_archive(path), ds)
+
+
+def test_a_lock_that_lasts_is_an_error(ds, tmp_path):
+    path = gd.save(ds, tmp_path / "roller.nc")
+    with locked(path, 60.0), pytest.raises(gd.SceneError, match="damaged or not a netCDF4 file"):
+        gd.open_archive(path)
+    xr.testing.assert_identical(gd.open_archive(path), ds)

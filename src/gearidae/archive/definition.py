@@ -15,7 +15,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.library import uninterrupted
+from gearidae.archive.library import LIBRARY, await_lock, opened, uninterrupted
 
 __all__ = ["CHUNK", "chunked", "define", "offsets"]
 
@@ -51,7 +51,7 @@ def define(
         template.drop_encoding().to_netcdf(
             sample, engine="netcdf4", encoding={name: {"_FillValue": None} for name in template.coords}
         )
-        with netCDF4.Dataset(sample) as old, netCDF4.Dataset(path, "x", format="NETCDF4") as new:
+        with opened(sample) as old, netCDF4.Dataset(path, "x", format="NETCDF4") as new:
             new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
             lengths = {name: len(dimension) for name, dimension in old.dimensions.items()} | dict(sizes)
             for name, size in lengths.items():
@@ -100,14 +100,16 @@ def chunked(name: str, dtype: np.dtype[Any], shape: tuple[int, ...], nbytes: int
 
 def offsets(path: Path) -> dict[str, int]:
     """Where in the file the data of every variable begin [bytes]; all must be contiguous and have been claimed."""
-    import h5py
-
     found: dict[str, int] = {}
-    with h5py.File(path, "r") as file:
-        for name, variable in file.items():
-            place = variable.id.get_offset()
-            if place is not None:  # a dimension without a variable has no data
-                found[name] = int(place)
+    with LIBRARY:
+        import h5py  # starts a process, which must not inherit a file that another thread is writing
+
+        await_lock(path)
+        with h5py.File(path, "r") as file:
+            for name, variable in file.items():
+                place = variable.id.get_offset()
+                if place is not None:  # a dimension without a variable has no data
+                    found[name] = int(place)
     return found
 
 

@@ -17,7 +17,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Self
 
-import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -27,7 +26,7 @@ from gearidae.archive.disk import commit, disk_errors, open_file, read_at, sync,
 from gearidae.archive.growing_layout import COPIED, lay_out
 from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import HEADER, Checkpoint, newest
-from gearidae.archive.library import LIBRARY
+from gearidae.archive.library import opened
 from gearidae.archive.lock import WriterLock, take_or_refuse
 from gearidae.archive.variables import EVENTS
 from gearidae.records import Block, Statistics
@@ -237,7 +236,7 @@ class GrowingArchive:
 
     def _compact(self, template: xr.Dataset, part: Path) -> None:
         define(with_checksums(template), part, {"time": self.samples, "event": self.events})
-        with LIBRARY, netCDF4.Dataset(part, "a") as file:
+        with opened(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():
                 if set(variable.dimensions) & {"time", "event"} and variable.size:
@@ -249,7 +248,7 @@ class GrowingArchive:
         descriptor = open_file(path)
         try:
             self._places = offsets(path)
-            with LIBRARY, netCDF4.Dataset(path) as file:
+            with opened(path) as file:
                 self._sizes = {name: len(dimension) for name, dimension in file.dimensions.items()}
                 self._types = {name: variable.dtype for name, variable in file.variables.items()}
         except BaseException:
@@ -300,7 +299,7 @@ class GrowingArchive:
     def _copy_all(self, part: Path) -> None:
         """Copy everything that is committed into another file of this kind."""
         places, slots = offsets(part), [self._slot(k) for k in (0, 1)]
-        with LIBRARY, netCDF4.Dataset(part) as file:
+        with opened(part) as file:
             slot_size = 8 * len(file.dimensions["checkpoint_word"])
         descriptor = open_file(part)
         try:

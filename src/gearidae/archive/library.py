@@ -1,15 +1,27 @@
-"""netCDF's library: one thread at a time, and no Ctrl-C in the middle."""
+"""netCDF's library: one thread at a time, no Ctrl-C in the middle, and files whose locks outlive their closing."""
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
-from typing import Final
+from typing import Final, Literal
 
-__all__ = ["LIBRARY", "uninterrupted"]
+import netCDF4
+
+if sys.platform != "win32":
+    import fcntl
+
+__all__ = ["LIBRARY", "await_lock", "opened", "uninterrupted"]
+
+_PATIENCE: Final = 1.0
+"""Time [s] for which a file's lock is waited for."""
 
 LIBRARY: Final = threading.RLock()
 """To be held while netCDF's library is used, which may end the program if two threads do so at once."""
@@ -36,3 +48,47 @@ def uninterrupted() -> Iterator[None]:
         signal.signal(signal.SIGINT, usual)
         if came:
             usual(signal.SIGINT, came[0])
+
+
+@contextmanager
+def opened(path: Path, mode: Literal["r", "a"] = "r") -> Iterator[netCDF4.Dataset]:
+    """Open a netCDF4 file that this program wrote, with `LIBRARY` held.
+
+    Parameters
+    ----------
+    path : Path
+    mode : {"r", "a"}, optional
+        To read, or to write into it.
+    """
+    with LIBRARY:
+        await_lock(path)
+        with netCDF4.Dataset(path, mode) as file:
+            yield file
+
+
+def await_lock(path: Path) -> None:
+    """Wait, a second at most, until a file can be opened for reading or writing beside nobody who writes it.
+
+    HDF5 locks the files that it writes, and a process that another thread starts meanwhile has its copy of the lock
+    until it closes what it inherited: the file, closed by then, could not be opened. Windows' processes inherit none.
+    """
+    if sys.platform == "win32":
+        return
+    end = time.monotonic() + _PATIENCE
+    try:
+        descriptor = os.open(path, os.O_RDONLY)
+    except OSError:
+        return  # whoever opens it says why
+    try:
+        while time.monotonic() < end:
+            try:
+                # shared, so that others who only read are not disturbed
+                fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            except BlockingIOError:
+                time.sleep(0.001)
+            else:
+                return
+    except OSError:
+        return  # no locks on this file system
+    finally:
+        os.close(descriptor)  # which lifts the lock

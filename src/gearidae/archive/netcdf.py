@@ -17,7 +17,7 @@ from gearidae.archive.growing_layout import is_growing, trimmed
 from gearidae.archive.heaps import check_heaps
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
 from gearidae.archive.keep import kept_in
-from gearidae.archive.library import uninterrupted
+from gearidae.archive.library import await_lock, uninterrupted
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
@@ -171,6 +171,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
 
 def _opened(source: Path) -> xr.Dataset:
     """Open a file without reading more than it takes to describe it."""
+    await_lock(source)
     store = CheckedStore.open(str(source))  # type: ignore[no-untyped-call]
     try:
         variables = store.ds.variables
