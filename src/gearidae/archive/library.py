@@ -72,23 +72,25 @@ def await_lock(path: Path) -> None:
     HDF5 locks the files that it writes, and a process that another thread starts meanwhile has its copy of the lock
     until it closes what it inherited: the file, closed by then, could not be opened. Windows' processes inherit none.
     """
-    if sys.platform == "win32":
-        return
     end = time.monotonic() + _PATIENCE
     try:
         descriptor = os.open(path, os.O_RDONLY)
     except OSError:
         return  # whoever opens it says why
     try:
-        while time.monotonic() < end:
-            try:
-                # shared, so that others who only read are not disturbed
-                fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-            except BlockingIOError:
-                time.sleep(0.001)
-            else:
-                return
+        while not _is_free(descriptor) and time.monotonic() < end:
+            time.sleep(0.001)
     except OSError:
         return  # no locks on this file system
     finally:
         os.close(descriptor)  # which lifts the lock
+
+
+def _is_free(descriptor: int) -> bool:
+    """Whether nobody holds a writer's lock on an open file, which is then locked as a reader does it."""
+    if sys.platform != "win32":
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+    return True
