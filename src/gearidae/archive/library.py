@@ -15,9 +15,6 @@ from typing import Final, Literal
 
 import netCDF4
 
-if sys.platform != "win32":
-    import fcntl
-
 __all__ = ["LIBRARY", "await_lock", "opened", "uninterrupted"]
 
 _PATIENCE: Final = 1.0
@@ -80,8 +77,8 @@ def await_lock(path: Path) -> None:
     try:
         while not _is_free(descriptor) and time.monotonic() < end:
             time.sleep(0.001)
-    except OSError:
-        return  # no locks on this file system
+    except (ImportError, OSError):
+        return  # no locks on this system, or file system
     finally:
         os.close(descriptor)  # which lifts the lock
 
@@ -89,6 +86,8 @@ def await_lock(path: Path) -> None:
 def _is_free(descriptor: int) -> bool:
     """Whether nobody holds a writer's lock on an open file, which is then locked as a reader does it."""
     if sys.platform != "win32":
+        import fcntl
+
         try:
             fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
         except BlockingIOError:
