@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.heaps import check_heaps
-from gearidae.archive.library import uninterrupted
+from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
 __all__ = ["read_signal"]
@@ -69,9 +69,8 @@ def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
 def _from_netcdf(source: Path) -> xr.Dataset:
     check_heaps("signal", source)
     try:
-        with uninterrupted(), xr.open_dataset(source, decode_times=False) as opened:
-            ds = opened.load()
-    except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
+        ds = loaded(source)
+    except Exception as error:
         raise SceneError("signal", source, f"is damaged or not a netCDF file ({error})") from error
     for name in _SI:
         if name not in ds.variables:

@@ -14,8 +14,9 @@ from types import FrameType
 from typing import Final, Literal
 
 import netCDF4
+import xarray as xr
 
-__all__ = ["LIBRARY", "await_lock", "opened", "uninterrupted"]
+__all__ = ["LIBRARY", "await_lock", "loaded", "opened", "uninterrupted"]
 
 _PATIENCE: Final = 1.0
 """Time [s] for which a file's lock is waited for."""
@@ -61,6 +62,19 @@ def opened(path: Path, mode: Literal["r", "a"] = "r") -> Iterator[netCDF4.Datase
         await_lock(path)
         with netCDF4.Dataset(path, mode) as file:
             yield file
+
+
+def loaded(path: Path) -> xr.Dataset:
+    """Read the whole of any netCDF file into memory; what a damaged one makes the netCDF stack raise may be anything.
+
+    Parameters
+    ----------
+    path : Path
+    """
+    with uninterrupted():
+        await_lock(path)
+        with xr.open_dataset(path, decode_times=False) as file:
+            return file.load()
 
 
 def await_lock(path: Path) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import xarray as xr
 
 from gearidae.archive.heaps import check_heaps
-from gearidae.archive.library import uninterrupted
+from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
 __all__ = ["read_product"]
@@ -59,9 +59,8 @@ def read_product(
         raise SceneError(name, path, f"is no {what} but another kind of file; make one with {command}")
     check_heaps(name, source)
     try:
-        with uninterrupted(), xr.open_dataset(source, decode_times=False) as opened:
-            found = opened.load()
-    except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
+        found = loaded(source)
+    except Exception as error:
         raise SceneError(name, path, f"is damaged ({type(error).__name__})") from error
     try:
         return check(found)
