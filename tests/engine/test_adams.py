@@ -109,18 +109,26 @@ def test_a_step_that_was_not_accepted_leaves_no_trace():
 
 @pytest.mark.parametrize(("name", "gain"), [("low_sam", 3.0), ("high_bare", 4.0)])
 def test_the_same_tolerance_means_a_smaller_error(name, gain):
-    """Than with IDA's own formulas, in half the steps: measured 3 to 30 times smaller at 1e-4 to 1e-10."""
+    """Than with IDA's own formulas, in half the steps: measured 3 to 30 times smaller at 1e-4 to 1e-10.
+
+    Rounding alone moves a single ratio by half of itself: the mean of twelve is within a fifth of 5 and of 9.
+    """
     reference = load_reference(REFERENCES / f"{name}.npz")
-    errors, steps = {}, {}
-    for as_ida in (False, True):
-        problem, statistics = make_problem(SCENES[name].scene), Statistics()
-        samples = reference.time.size
-        rows = np.concatenate([b.rows for b in native.run(problem, 1e-7, samples, statistics, as_ida=as_ida)])
-        speed, position = (rows[:, problem.columns.index(c)] for c in ("gear_speed", "transmission_error"))
-        errors[as_ida] = run_error(reference.speed, reference.position, speed, position, reference.length)
-        steps[as_ida] = statistics.steps
-    assert gain * errors[False] < errors[True]
-    assert steps[False] < 0.6 * steps[True]
+    ratios = []
+    for rtol in 10.0 ** -np.linspace(6.5, 8.0, 12):
+        errors, steps = {}, {}
+        for as_ida in (False, True):
+            problem, statistics = make_problem(SCENES[name].scene), Statistics()
+            blocks = native.run(problem, rtol, reference.time.size, statistics, as_ida=as_ida)
+            rows = np.concatenate([b.rows for b in blocks])
+            speed, position = (
+                rows[:, problem.columns.index(c)] for c in ("gear_speed", "transmission_error")
+            )
+            errors[as_ida] = run_error(reference.speed, reference.position, speed, position, reference.length)
+            steps[as_ida] = statistics.steps
+        ratios.append(errors[True] / errors[False])
+        assert steps[False] < 0.6 * steps[True]
+    assert np.exp(np.mean(np.log(ratios))) > gain
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5])
