@@ -20,6 +20,7 @@ PROBLEM = make_problem(SCENES["high_sam"].scene)
     way=st.sampled_from([1.0, -1.0]),
 )
 @example(path=2.0, coast=0.0, start=-1.1e-171, way=-1.0)  # less a mark, this is a whole number
+@example(path=1.01, coast=0.0, start=2.01, way=1.0)  # on a mark; its distance from the one before is rounded
 def test_a_phase_that_has_crossed_a_mark_is_on_its_far_side(path, coast, start, way):
     """By one rounding error: else the guard would stay below zero and no further mark be seen."""
     m, y, events = PROBLEM.shortened(1.0).model, PROBLEM.start.copy(), np.empty((64, 5))

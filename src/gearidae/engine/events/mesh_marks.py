@@ -51,6 +51,8 @@ def set_marks(m: Model, phase: float) -> None:
         whole = math.floor(phase - mark)
         if whole + mark > phase:  # the difference was rounded up to a whole number
             whole -= 1
+        elif whole + 1 + mark <= phase:  # down from one
+            whole += 1
         low, high = max(low, whole + mark), min(high, whole + 1 + mark)
     m.state.mark_low, m.state.mark_high = low, high
 
