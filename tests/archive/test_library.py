@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
+from gearidae.archive import library
 from gearidae.archive.integrity import CheckedStore
 from gearidae.archive.library import uninterrupted
 
@@ -138,13 +139,15 @@ def locked(path, seconds):
         heir.communicate()
 
 
-def test_a_lock_that_a_process_inherited_is_waited_for(ds, tmp_path):
+def test_a_lock_that_a_process_inherited_is_waited_for(ds, tmp_path, monkeypatch):
+    monkeypatch.setattr(library, "_PATIENCE", 30.0)  # the process may be kept waiting itself
     path = gd.save(ds, tmp_path / "roller.nc")
     with locked(path, 0.2):
         xr.testing.assert_identical(gd.open_archive(path), ds)
 
 
-def test_a_lock_that_lasts_is_an_error(ds, tmp_path):
+def test_a_lock_that_lasts_is_an_error(ds, tmp_path, monkeypatch):
+    monkeypatch.setattr(library, "_PATIENCE", 0.5)
     path = gd.save(ds, tmp_path / "roller.nc")
     with locked(path, 60.0), pytest.raises(gd.SceneError, match="damaged or not a netCDF4 file"):
         gd.open_archive(path)

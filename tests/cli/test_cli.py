@@ -5,10 +5,8 @@ from __future__ import annotations
 import dataclasses
 import errno
 import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -292,25 +290,3 @@ def test_what_the_system_refuses_is_one_line(monkeypatch, capfd):
     err = capfd.readouterr().err
     assert one_line(err), err
     assert "No space left" in err
-
-
-@pytest.mark.slow
-def test_ctrl_c_ends_the_program(low, folder):
-    """A sweep of long runs, interrupted while they compute: exit code 130, one line, no litter."""
-    arguments = [
-        "sweep",
-        low,
-        "--over",
-        "coating.sam_fraction=1,0.9",
-        "--set",
-        "run.duration=3000",
-        "run.samples=101",
-    ]
-    process = program(*arguments)
-    time.sleep(6.0)  # imports take two, the runs an hour
-    assert process.poll() is None
-    os.kill(process.pid, signal.SIGINT)
-    _, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert one_line(err), err
-    assert files(folder) in (["low.nc", "low.toml"], ["low.toml"])

@@ -18,7 +18,7 @@ import xarray as xr
 
 __all__ = ["LIBRARY", "await_lock", "loaded", "opened", "uninterrupted"]
 
-_PATIENCE: Final = 1.0
+_PATIENCE: Final = 5.0
 """Time [s] for which a file's lock is waited for."""
 
 LIBRARY: Final = threading.RLock()
@@ -78,7 +78,7 @@ def loaded(path: Path) -> xr.Dataset:
 
 
 def await_lock(path: Path) -> None:
-    """Wait, a second at most, until a file can be opened for reading or writing beside nobody who writes it.
+    """Wait for some seconds at most until a file can be opened for reading or writing beside nobody who writes it.
 
     HDF5 locks the files that it writes, and a process that another thread starts meanwhile has its copy of the lock
     until it closes what it inherited: the file, closed by then, could not be opened. Windows' processes inherit none.
