@@ -126,6 +126,7 @@ class _Place(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
 
     def __init__(self, function: Callable[..., Any], file: str, declared: _Declared) -> None:
         path = Path(file).resolve()
+        self._py_file = file  # numba names it where it says that a function's code cannot be kept
         kind = "called" if declared.called else "linked"
         self._which, self._stamp = f"{function.__code__.co_firstlineno}-{kind}", ""
         known = [root.resolve() for root in (_ROOT, *declared.sources)]

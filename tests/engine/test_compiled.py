@@ -1,5 +1,6 @@
 """Compiled code is kept on disk, found again, and never stale; and no index in it lies outside its array."""
 
+import importlib
 import os
 import re
 import shutil
@@ -9,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 import pytest
+from numba.core.errors import NumbaWarning
 
 from gearidae import compiled
 from reference.small_scenes import SCENES
@@ -189,6 +191,27 @@ def test_what_cannot_be_kept_is_compiled_anew_and_never_stale(tmp_path):
     assert first.stdout == same.stdout
     assert edited.stdout.split()[3] != first.stdout.split()[3]
     assert not list((tmp_path / "one").rglob("*.nb?"))
+
+
+FOREIGN = """
+import ctypes
+from gearidae.compiled import compiled
+root = ctypes.CDLL(None).cbrt
+root.argtypes, root.restype = (ctypes.c_double,), ctypes.c_double
+@compiled
+def edge(volume):
+    return root(volume)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the C library's name is another one there")
+def test_a_function_that_numba_cannot_keep_works_and_is_named(tmp_path, monkeypatch):
+    """An extension that calls C by an address, which differs from process to process."""
+    (tmp_path / "edges.py").write_text(FOREIGN)
+    monkeypatch.syspath_prepend(tmp_path)
+    edge = importlib.import_module("edges").edge
+    with pytest.warns(NumbaWarning, match='Cannot cache compiled function "edge"'):
+        assert edge(27.0) == pytest.approx(3.0, rel=1e-15)  # one rounding
 
 
 ALL = """
