@@ -258,6 +258,13 @@ MUTANTS = (
         ("engine/test_marks.py",),
     ),
     Mutant(
+        "a step that may be longer than a pair takes to part",
+        "engine/events/events.py",
+        " or outruns_relief(m, t, y)",
+        "",
+        ("engine/test_parting_between_steps.py",),
+    ),
+    Mutant(
         "Newton correction without the effect of tip relief on the gear",
         "engine/integrate/correction.py",
         "torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase",

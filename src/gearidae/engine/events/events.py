@@ -1,8 +1,9 @@
 """The guard function monitored by the solver, and the handling of its roots.
 
 `guard` is the root function; `handle` deals with what the root found there stands for: it records events, takes the
-joined heights at turning points and tells the driver whether the equations have jumped, which is the only reason to
-restart the integration. Between events `gearidae.engine.events.histories` follows the pairs.
+joined heights at turning points and tells the driver whether to restart the integration: where the equations have
+jumped, or where the present step is too long for what is to come. Between events
+`gearidae.engine.events.histories` follows the pairs.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.energy.adhesion import sample_joining
 from gearidae.engine.energy.balance import sample_radius_power
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
-from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard
+from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import handle_pair, newly_stretched, pair_guard
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, MATERIALS, ROLLER, Floats, Model
@@ -89,7 +90,7 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
     Returns
     -------
     count, action : int
-        New number of events, and `CONTINUE`, `RESTART` (the equations have jumped) or `CROWDED`.
+        New number of events, and `CONTINUE`, `RESTART` or `CROWDED`.
     """
     action = CONTINUE
     lost, crossed = m.state.energy.adhesion_loss, False
@@ -99,7 +100,8 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
             count = cross_mark(m, t, y, events, count)
             if m.scene.nodes > 0 and _light(m):
                 m.state.light = 1
-            if m.scene.radius_force != 0 and not in_flight(m):  # the force of the pair there jumps
+            # the force of a pair there jumps, or it would part unseen
+            if not in_flight(m) and (m.scene.radius_force != 0 or outruns_relief(m, t, y)):
                 action = RESTART
         if m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0:
             action = RESTART

@@ -7,15 +7,28 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import record
-from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model
+from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model, W
 from gearidae.engine.model.tooth_pairs import gap_and_rate
 from gearidae.records import EventKind
 
-__all__ = ["MARKS", "cross_mark", "crossed_mark", "first_mark", "mark_guard", "set_marks"]
+__all__ = [
+    "MARKS",
+    "cross_mark",
+    "crossed_mark",
+    "first_mark",
+    "mark_guard",
+    "outruns_relief",
+    "relief_step",
+    "set_marks",
+]
 
 _MESH_ENTRY, _MESH_EXIT = float(EventKind.MESH_ENTRY), float(EventKind.MESH_EXIT)
 MARKS: Final = 4
 """Kinds of marks in each pitch."""
+RELIEF_PER_STEP: Final = 0.25
+"""How far the tip relief may open a gap in one step after a mesh mark, over the roughness: asperities part over one to
+three of it."""
+_TINY: Final = 1e-300
 
 
 @compiled(inline=True)
@@ -85,3 +98,21 @@ def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int
             low, high = max(low, here - 1.0), min(high, max(here, crossed))
     m.state.mark_low, m.state.mark_high = low, high
     return count
+
+
+@compiled
+def relief_step(m: Model, y: Floats) -> float:
+    """Step in which the tip relief opens a gap by `RELIEF_PER_STEP`, from a mesh mark on, at the present speed."""
+    along = math.sqrt(2.0 * RELIEF_PER_STEP / m.scene.relief_curvature)
+    return along / max(m.scene.phase_rate * abs(y[W]), _TINY)
+
+
+@compiled
+def outruns_relief(m: Model, t: float, y: Floats) -> bool:
+    """Whether a pair may part between both ends of the present step, which the error test sees nothing of.
+
+    A motion may be so smooth that the solver's steps are longer than the tip relief takes to part a pair. The present
+    step is at least as long as it has been up to t, and about as long as the one before.
+    """
+    driver = m.work.driver
+    return bool(max(driver.step, t - driver.step_end) > relief_step(m, y))

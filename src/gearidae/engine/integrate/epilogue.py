@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.energy.adhesion import follow_joining
-from gearidae.engine.energy.balance import accumulate_energy, close_balance
+from gearidae.engine.energy.balance import accumulate_energy, close_balance, restart_quadrature
 from gearidae.engine.energy.exposures import expose_step, follow_exposures
 from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
-from gearidae.engine.extremes.follow import follow_extremes, note_rest
+from gearidae.engine.extremes.follow import follow_extremes, note_rest, restart_extremes
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT
-from gearidae.engine.integrate.start import PHASE_HIGH, rebase
+from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, W
 from gearidae.engine.model.tooth_pairs import in_flight
 
-__all__ = ["ROOT", "STOP", "finish_step", "has_room", "prepare_restart"]
+__all__ = ["ROOT", "STOP", "finish_step", "has_room", "prepare_restart", "prepare_start"]
 
 STOP, ROOT = 1, 2
 """IDA's flags for a stop and for a root."""
@@ -79,7 +79,9 @@ def finish_step(
             driver.done = 1
         if m.state.light != 0 and driver.done == 0 and driver.error == 0:
             driver.error = LIGHT
-    elif flag == STOP:
+    else:
+        driver.step, driver.step_end = t - driver.step_end, t
+    if flag == STOP:
         if m.state.next_knot < m.scene.knot_count:
             if keeps_checkpoint(m):
                 driver.since = CHECKPOINT_STEPS
@@ -116,6 +118,15 @@ def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floa
                 expose_step(m, t, y, yp)
         elif m.work.quadrature.time == t:  # forces have to be evaluated for it
             follow_exposures(m, t, y, yp)
+
+
+@compiled
+def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Set consistent rates, and what the followers of a run know of the time before, for a start at t."""
+    set_rates(m, t, y, yp)
+    restart_quadrature(m, t, y, yp)
+    restart_extremes(m, t, y, yp)
+    m.work.driver.step_end, m.work.driver.step = t, 0.0
 
 
 @compiled

@@ -15,9 +15,7 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.elimination import begin_deflections
 from gearidae.engine.elastic.static_solve import fold_gap
-from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
-from gearidae.engine.extremes.follow import restart_extremes
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.by_address import observe_at
 from gearidae.engine.integrate.driver import (
@@ -32,9 +30,9 @@ from gearidae.engine.integrate.driver import (
     sample_time,
     update_statistics,
 )
-from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
+from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart, prepare_start
 from gearidae.engine.integrate.root_finding import SHARPNESS, Arrays, Stepper, next_time, start_search
-from gearidae.engine.integrate.start import first_step, set_rates
+from gearidae.engine.integrate.start import first_step
 from gearidae.engine.integrate.step_control import configure_ida
 from gearidae.engine.model.observe import observe
 from gearidae.engine.model.problem import Problem
@@ -89,9 +87,7 @@ def _count(s: Stepper) -> None:
 def restart(s: Stepper, stop: float) -> int:
     """Set consistent rates and the first step, and (re-)initialise IDA at the time reached; its flag is returned."""
     ida, m, t = s.handles[IDA], s.m, s.clock[0]
-    set_rates(m, t, s.y, s.yp)
-    restart_quadrature(m, t, s.y, s.yp)
-    restart_extremes(m, t, s.y, s.yp)
+    prepare_start(m, t, s.y, s.yp)
     flag = sun.IDAReInit(ida, t, s.handles[Y], s.handles[YP])
     flag |= sun.IDASetInitStep(ida, first_step(m, t, s.y, s.yp, stop - t))
     flag |= sun.IDASetStopTime(ida, stop)

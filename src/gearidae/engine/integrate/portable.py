@@ -18,9 +18,7 @@ from sksundae.ida import IDA
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.elastic.static_solve import fold_gap
-from gearidae.engine.energy.balance import restart_quadrature
 from gearidae.engine.events.schedule_knots import next_stop
-from gearidae.engine.extremes.follow import restart_extremes
 from gearidae.engine.integrate.by_address import (
     finish_step_at,
     guard_at,
@@ -40,8 +38,8 @@ from gearidae.engine.integrate.driver import (
     sample_time,
     update_statistics,
 )
-from gearidae.engine.integrate.epilogue import ROOT, STOP, has_room, prepare_restart
-from gearidae.engine.integrate.start import first_step, set_rates
+from gearidae.engine.integrate.epilogue import ROOT, STOP, has_room, prepare_restart, prepare_start
+from gearidae.engine.integrate.start import first_step
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.sundials.memory import Located
@@ -148,9 +146,7 @@ class _Solver:
     def start(self, y: Floats) -> None:
         """Set consistent rates and the first step, and start a fresh IDA at the time reached."""
         m, t, yp = self.m, float(self._driver.time), np.zeros_like(y)
-        set_rates(m, t, y, yp)
-        restart_quadrature(m, t, y, yp)
-        restart_extremes(m, t, y, yp)
+        prepare_start(m, t, y, yp)
         stop = next_stop(m)
         self._make(y.size, first_step(m, t, y, yp, stop - t))
         self._ida.init_step(t, y, yp)

@@ -8,14 +8,17 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.calls import node_rates
+from gearidae.engine.events.mesh_marks import relief_step
 from gearidae.engine.model.residual import residual
 from gearidae.engine.model.state import EMPTY, GEARS, PHASE, ROLLER, Floats, Model, V, W
-from gearidae.engine.model.tooth_pairs import nearest_gap
+from gearidae.engine.model.tooth_pairs import in_flight, nearest_gap
 
 __all__ = ["first_step", "rebase", "set_rates"]
 
 PHASE_HIGH = 16.0
 """Pitches at which whole ones are taken out of the phase: it is held to absolute tolerances, down to 1e-15."""
+FIRST_RELIEF = 0.25
+"""First step, over that in which the tip relief may part a pair."""
 
 
 @compiled(makes_arrays=True)
@@ -65,6 +68,8 @@ def first_step(m: Model, t: float, y: Floats, yp: Floats, longest: float) -> flo
         change = abs(later[W] - yp[W]) / probe
         if change > 0.0:
             step = min(step, 0.25 * abs(yp[W]) / change)
+    if m.scene.kind == GEARS and not in_flight(m):
+        step = min(step, FIRST_RELIEF * relief_step(m, y))
     for coast in range(1 if m.scene.kind == ROLLER else 2):
         # free flight has no curvature, and the flank at its end comes without warning
         apart = nearest_gap(m, coast, y) - m.scene.cutoff

@@ -111,6 +111,8 @@ DRIVER: Final = record_type(
     ("done", INT),
     ("error", INT),  # IDA's flag, or one of the driver's own
     ("since", INT),  # steps since the last checkpoint
+    ("step_end", REAL),  # where the last whole step has ended, or the last start was,
+    ("step", REAL),  # and the length of that step, 0 at a start
 )
 
 POINT: Final = record_type(  # of an accepted time, what extremes are located from
