@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 
 _CHECKED_SAMPLES = 24
 _GAP_TOLERANCE = 1e-7  # of the roughness: rounding of angles and radii
+_FAR = 10.0  # lengths of adhesion, by which every law's asperities have let go
 _FORCE_TOLERANCE = 1e-5  # of what pushes and pulls: e^6 of the gap's tolerance per roughness, and the tables
 _NEGLECTED = (
     1e-11  # of the scene's reference force: beyond the cut-off the engine takes less than 1e-13 as nothing
@@ -137,17 +138,22 @@ def _limits(scene: Scene, gaps: Floats, radii: Floats, width: float) -> tuple[Fl
     low, high, size = np.zeros_like(gaps), np.zeros_like(gaps), np.zeros_like(gaps)
     near = gaps < 14.0 * scene.surface.roughness
     law = scene.contact.asperity
+    if not near.any():
+        return low, high, size
+    anywhere = scene.coating.by_place  # where coverage is a table, any share of each material
+    found = []
     for surface, share, offset, _ in scene.materials():
-        if share == 0.0 or not near.any():
-            continue
-        unit, own_gaps = share * np.sqrt(radii[near]), gaps[near] + offset
+        unit, own_gaps = (1.0 if anywhere else share) * np.sqrt(radii[near]), gaps[near] + offset
         loading = unit * line_force(own_gaps, 0.0, 1.0, width, surface, law)
-        stretch = asperity_of(surface).stretch_limit
+        stretch = _FAR * (asperity_of(surface).stretch_limit + surface.interaction_range)
         parting = unit * line_force(own_gaps, stretch, 1.0, width, surface, law)
         pushing = unit * line_force(own_gaps, 0.0, 1.0, width, surface, "hertz")
-        low[near] += np.minimum(parting, loading)
-        high[near] += np.maximum(parting, loading)
-        size[near] += np.abs(pushing) + np.abs(parting) + np.abs(loading)
+        sizes = np.abs(pushing) + np.abs(parting) + np.abs(loading)
+        found.append((np.minimum(parting, loading), np.maximum(parting, loading), sizes))
+    lows, highs, sizes = (np.array(one) for one in zip(*found, strict=True))
+    low[near] = lows.min(axis=0) if anywhere else lows.sum(axis=0)
+    high[near] = highs.max(axis=0) if anywhere else highs.sum(axis=0)
+    size[near] = sizes.max(axis=0) if anywhere else sizes.sum(axis=0)
     return low, high, size
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome
 from gearidae.analysis.verdict_table import Outcomes
@@ -35,3 +36,11 @@ def test_what_stands_in_a_label_is_escaped():
     odd = GearOutcome({"<b>": "<i>"}, "finished", "sticks", -1.0, 1.5, 4, 0.1, 0.258, 5, 0.3)
     assert "<b>" not in odd._repr_html_()
     assert "<i>" not in odd._repr_html_()
+
+
+def test_an_energy_balance_that_does_not_close_is_said_beside_the_verdict():
+    sound, wrong = replace(STUCK, imbalance=0.99), replace(STUCK, imbalance=101.3)
+    assert sound.words == STUCK.words == "sticks at 0.258 s (5 mesh exits)"
+    assert wrong.words == f"{STUCK.words}, energy balance out by 1e+02 times its bound"
+    roller = RollerOutcome({}, "finished", "rebounds", 1e-6, 1e-6, 0.4, 1, 0.04, imbalance=3.0)
+    assert roller.words == "rebounds, energy balance out by 3 times its bound"

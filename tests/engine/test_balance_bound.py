@@ -16,6 +16,7 @@ from gearidae.records import (
     ROLLER_BOUND,
     ROUNDING_BOUND,
     TABLE_BOUND,
+    TORQUE_BOUND,
     EnergyBalance,
 )
 
@@ -84,6 +85,9 @@ def test_the_bound_is_the_sum_of_its_parts():
     assert replace(moved, speed_work=4.0).bound(1e-6, roller=False) == pytest.approx(
         9.0 * (GEAR_BOUND * 1e-6 + ROUNDING_BOUND), rel=1e-12
     )
+    assert replace(moved, torque_work=8.0).bound(1e-6, roller=False) - moved.bound(
+        1e-6, roller=False
+    ) == pytest.approx(8.0 * TORQUE_BOUND * 1e-6, rel=1e-9)
     # no tolerance makes the tables any better
     assert moved.bound(1e-12, roller=False) == moved.bound(TABLE_BOUND, roller=False)
 
@@ -114,6 +118,28 @@ def test_a_heavy_gear_is_known_no_better_than_its_speed():
     unit = problem.model.scene.length_unit / problem.model.scene.time_unit
     assert speed == pytest.approx(unit, rel=1e-3)
     assert bound(scene, replace(heavy, speed_work=0.0)) < abs(heavy.residual) <= bound(scene, heavy)
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        {"drive.speed": 6.0, "drive.speed_gain": 1e-13},
+        {"drive.law": {"name": "motor", "parameters": [6e-13, 6.0]}},  # the same slope
+    ],
+)
+def test_a_stiff_drive_makes_work_of_errors_of_the_speed(drive):
+    """Its slope, times the speed to which the tolerance refers, times how far the pinion has turned."""
+    scene = LOW.replace({"drive.harmonic": None, "run.duration": "5 ms", "run.samples": "off", **drive})
+    stiff = solve(scene).balance
+    problem = make_problem(scene)
+    unit = problem.model.scene.length_unit / problem.model.scene.time_unit
+    radius = scene.geometry.base_radius_pinion
+    assert stiff.torque_work == pytest.approx(1e-13 / radius**2 * unit * 6.0 * radius * 0.005, rel=0.1)
+    assert abs(stiff.residual) <= bound(scene, stiff)
+
+
+def test_torques_that_know_no_speed_make_no_work_of_its_errors(balances):
+    assert all(balance.torque_work == 0.0 for balance in balances.values())
 
 
 def test_the_largest_energies_are_those_of_the_motion(balances):

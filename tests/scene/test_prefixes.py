@@ -33,3 +33,17 @@ from gearidae.scene.prefixes import with_prefix
 )
 def test_prefixes(value, unit, text):
     assert with_prefix(value, unit) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (-4.8e-19, "-480 zJ"),
+        (9.96e-17, "100 aJ"),
+        (9.96e-19, "1 aJ"),
+        (1.26e-17, "13 aJ"),
+        (1.26e-18, "1.3 aJ"),
+    ],
+)
+def test_fewer_digits_than_places_before_the_point(value, text):
+    assert with_prefix(value, "J", 2) == text

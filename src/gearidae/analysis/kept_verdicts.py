@@ -8,6 +8,7 @@ from typing import Any
 
 import xarray as xr
 
+from gearidae.archive.energy import imbalance
 from gearidae.archive.select import is_roller, swept_dims
 
 __all__ = ["kept_fields"]
@@ -45,6 +46,7 @@ def kept_fields(ds: xr.Dataset) -> list[dict[str, Any]]:
             fields["restitution"] = math.nan
         else:
             fields["window"] = float(ds.attrs["t_end"])
+        fields["imbalance"] = imbalance(row.get("residual", math.nan), row.get("residual_bound", math.nan))
         found.append({"label": label, **fields})
     return found
 
@@ -65,4 +67,4 @@ _ROLLER = _BOTH | {
     "peak_force": ("largest_mesh_force", math.nan),
     "pull_off_force": ("smallest_mesh_force", math.nan),
 }
-_NAMES = {name for name, _ in (*_GEAR.values(), *_ROLLER.values())}
+_NAMES = {name for name, _ in (*_GEAR.values(), *_ROLLER.values())} | {"residual", "residual_bound"}

@@ -15,6 +15,7 @@ import xarray as xr
 from gearidae.analysis.kept_verdicts import kept_fields
 from gearidae.analysis.sampled_extremes import extremes_of_samples
 from gearidae.analysis.verdict_table import Outcomes, Shown
+from gearidae.archive.energy import doubt, imbalance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of
@@ -61,6 +62,8 @@ class GearOutcome(Shown):
         Mesh exits on the drive flank, until then if it has.
     window : float
         Simulated time of the run [s].
+    imbalance : float
+        Residual of the energy balance over its bound [1]: above 1 the run is not to be relied on; NaN if unknown.
     """
 
     label: dict[str, Any]
@@ -73,10 +76,15 @@ class GearOutcome(Shown):
     stick_time: float
     mesh_exits: int
     window: float
+    imbalance: float = math.nan
 
     @property
     def words(self) -> str:
-        """The verdict in words, with the window that it holds for."""
+        """The verdict in words, with its window, and a doubt where the energy balance does not close."""
+        return self._verdict_in_words + doubt(self.imbalance)
+
+    @property
+    def _verdict_in_words(self) -> str:
         exits = "1 mesh exit" if self.mesh_exits == 1 else f"{self.mesh_exits} mesh exits"
         if self.verdict == "unfinished":
             return f"not followed to its end ({self.status})"
@@ -131,6 +139,8 @@ class RollerOutcome(Shown):
         Contacts made (onset events).
     wall_time : float
         Wall time in the solver [s].
+    imbalance : float
+        Residual of the energy balance over its bound [1]: above 1 the run is not to be relied on; NaN if unknown.
     """
 
     label: dict[str, Any]
@@ -141,11 +151,13 @@ class RollerOutcome(Shown):
     restitution: float
     impacts: int
     wall_time: float
+    imbalance: float = math.nan
 
     @property
     def words(self) -> str:
-        """The verdict in words."""
-        return f"not followed to its end ({self.status})" if self.verdict == "unfinished" else self.verdict
+        """The verdict in words, with a doubt where the energy balance does not close."""
+        words = f"not followed to its end ({self.status})" if self.verdict == "unfinished" else self.verdict
+        return words + doubt(self.imbalance)
 
 
 def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
@@ -189,6 +201,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcom
         stick_time=found.stick_time if found else math.nan,
         mesh_exits=found.stick_exits if found else 0,
         window=float(label.get("duration", run.attrs["t_end"])),
+        imbalance=imbalance_of(run),
     )
 
 
@@ -210,4 +223,5 @@ def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
         restitution=restitution,
         impacts=impacts,
         wall_time=float(run_value(run, "wall_time")),
+        imbalance=imbalance_of(run),
     )

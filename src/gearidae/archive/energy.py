@@ -12,7 +12,15 @@ from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.records import Solution
 from gearidae.scene import Scene
 
-__all__ = ["balance_attribute", "balance_in_attributes", "balance_numbers", "balance_of"]
+__all__ = [
+    "balance_attribute",
+    "balance_in_attributes",
+    "balance_numbers",
+    "balance_of",
+    "doubt",
+    "imbalance",
+    "imbalance_of",
+]
 
 
 def balance_numbers(scene: Scene, solution: Solution) -> dict[str, float]:
@@ -62,3 +70,34 @@ def balance_of(ds: xr.Dataset) -> dict[str, float] | None:
         found = {name: float(ds[name]) for name in ENERGY_BALANCE}
         return None if any(map(math.isnan, found.values())) else found
     return None
+
+
+def imbalance(residual: float, bound: float) -> float:
+    """Size of a residual over its bound [1]; NaN without either, and 0 where nothing has moved."""
+    if residual == 0.0:
+        return 0.0
+    return abs(residual) / bound if bound != 0.0 else math.inf
+
+
+def imbalance_of(ds: xr.Dataset) -> float:
+    """Size of the energy balance's residual over its bound, of one run [1].
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        As in `balance_of`.
+
+    Returns
+    -------
+    float
+        NaN if there is no balance.
+    """
+    kept = balance_of(ds)
+    return math.nan if kept is None else imbalance(kept["residual"], kept["residual_bound"])
+
+
+def doubt(out_by: float) -> str:
+    """Words to add to what is said of a run whose `imbalance` is above one; empty if it is not, or not known."""
+    if not out_by > 1.0:
+        return ""
+    return f", energy balance out by {out_by:.2g} times its bound"

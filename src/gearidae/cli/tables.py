@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
-from gearidae.archive.energy import balance_in_attributes
+from gearidae.archive.energy import balance_in_attributes, imbalance
 from gearidae.archive.select import swept_dims
 from gearidae.cli.output import complain, show
 from gearidae.scene.prefixes import with_prefix
@@ -79,7 +79,13 @@ def _balance_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
         if kept[name] != 0.0:
             yield name.replace("_", " "), with_prefix(kept[name], "J", 5), remark
     bound = with_prefix(kept["residual_bound"], "J", 2)
-    yield "residual", with_prefix(kept["residual"], "J", 2), f"bound {bound}"
+    out_by = imbalance(kept["residual"], kept["residual_bound"])
+    remark = (
+        f"{out_by:.2g} times its bound of {bound}: do not rely on this run"
+        if out_by > 1.0
+        else f"bound {bound}"
+    )
+    yield "residual", with_prefix(kept["residual"], "J", 2), remark
 
 
 def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:

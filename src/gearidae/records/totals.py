@@ -13,6 +13,7 @@ __all__ = [
     "ROLLER_BOUND",
     "ROUNDING_BOUND",
     "TABLE_BOUND",
+    "TORQUE_BOUND",
     "TRAVEL_BOUND",
     "EnergyBalance",
     "Extremes",
@@ -21,6 +22,9 @@ __all__ = [
 GEAR_BOUND = 10.0
 """Tolerances by which a gear pair's motion may put its energies out, over the energy that has moved: errors of single
 steps are a fraction of the tolerance, and add up from step to step as the energies do that they are compared with."""
+TORQUE_BOUND = 0.1
+"""Tolerances by which torques that depend on the speed may put the balance out, over `EnergyBalance.torque_work`:
+errors of the speed have either sign. The largest measured is a seventh of this."""
 ROLLER_BOUND = 100.0
 """The same of a roller, all of whose energy goes through the many steps of one impact; the largest measured is 30."""
 QUADRATURE_BOUND = 3.0
@@ -70,6 +74,9 @@ class EnergyBalance:
     speed_work : float
         Kinetic energy that the speed to which the tolerance refers makes of the largest momenta: speeds are held to
         absolute tolerances, which of a gear that is very much heavier than the other are much energy. 0 of a roller.
+    torque_work : float
+        Work along the way that torques which depend on the speed do on a difference of that speed. A drive that holds
+        its speed stiffly turns errors of the speed into work. 0 of a roller.
     """
 
     time: float
@@ -87,6 +94,7 @@ class EnergyBalance:
     largest: float = 0.0
     pitch_work: float = 0.0
     speed_work: float = 0.0
+    torque_work: float = 0.0
 
     @property
     def residual(self) -> float:
@@ -105,12 +113,12 @@ class EnergyBalance:
 
         .. math::
 
-            (a \max(\mathrm{rtol}, a_t) + a_r)\, E + a_q D + a_p P
+            (a \max(\mathrm{rtol}, a_t) + a_r)\, E + a_w\,\mathrm{rtol}\, W + a_q D + a_p P
 
         with E the energy that has moved: `throughput`, `largest`, `adhesion_loss` and the size of `stored_change`, with
-        `speed_work`; D, `quadrature_error`; and P, `pitch_work`. The
-        first term is what errors of the motion leave: speeds and gaps are held to rtol, step by step, and the tables
-        of force and energy agree no better than :math:`a_t`. The others are what the balance itself adds, by its
+        `speed_work`; W, `torque_work`; D, `quadrature_error`; and P, `pitch_work`. The
+        first two terms are what errors of the motion leave: speeds and gaps are held to rtol, step by step, and the
+        tables of force and energy agree no better than :math:`a_t`. The others are what the balance itself adds, by its
         quadratures and by rounding.
 
         Parameters
@@ -123,14 +131,17 @@ class EnergyBalance:
         Returns
         -------
         float
-            With a `ROLLER_BOUND` or `GEAR_BOUND`, :math:`a_t` `TABLE_BOUND`, :math:`a_r` `ROUNDING_BOUND`, :math:`a_q`
-            `QUADRATURE_BOUND` and :math:`a_p` `TRAVEL_BOUND`.
+            With a `ROLLER_BOUND` or `GEAR_BOUND`, :math:`a_t` `TABLE_BOUND`, :math:`a_r` `ROUNDING_BOUND`, :math:`a_w`
+            `TORQUE_BOUND`, :math:`a_q` `QUADRATURE_BOUND` and :math:`a_p` `TRAVEL_BOUND`.
         """
         of_motion = (ROLLER_BOUND if roller else GEAR_BOUND) * max(rtol, TABLE_BOUND) + ROUNDING_BOUND
         moved = (
             self.throughput + self.largest + self.adhesion_loss + abs(self.stored_change) + self.speed_work
         )
-        return of_motion * moved + QUADRATURE_BOUND * self.quadrature_error + TRAVEL_BOUND * self.pitch_work
+        of_motion_and_torque = of_motion * moved + TORQUE_BOUND * rtol * self.torque_work
+        return (
+            of_motion_and_torque + QUADRATURE_BOUND * self.quadrature_error + TRAVEL_BOUND * self.pitch_work
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -126,8 +126,10 @@ def simulate(
 
     from gearidae.archive import reached, to_dataset
     from gearidae.archive.run_summary import with_account
+    from gearidae.runs.imbalance import log_imbalance
 
     ds = with_account(to_dataset(scene, solution))
+    log_imbalance(ds)
     if started is not None:
         ds.attrs["started_from"] = started.fingerprint
     if solution.status == "interrupted":

@@ -17,6 +17,7 @@ from gearidae.archive.run_summary import account_of
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
+from gearidae.runs.imbalance import log_imbalance
 from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.running import early_end, unsolved
 
@@ -185,6 +186,7 @@ class _Run:
                 ended.extremes,
             )
             template.attrs["account"] = told.as_json()
+        log_imbalance(template)
         return template
 
     def _not_written(self, archive: GrowingArchive, reached: float, error: DiskError) -> SolverError:

@@ -18,6 +18,7 @@ from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.batch import Batch
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, stop
+from gearidae.runs.imbalance import log_imbalance
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.running import prepare, runs_in_threads
@@ -198,7 +199,9 @@ def run_plan(
                 interrupted = batch.run(own, threads=workers if releases_gil else 0)
                 if interrupted and own is not None:
                     stop(own)
-    return batch.dataset(), interrupted
+    ds = batch.dataset()
+    log_imbalance(ds)
+    return ds, interrupted
 
 
 def prepare_archive(

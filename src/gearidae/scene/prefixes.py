@@ -47,8 +47,9 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
     if value == 0.0 or math.isinf(value) or unit.startswith("kg"):
         return f"{value:.{digits}g} {unit}"
     rounded = float(f"{value:.{digits - 1}e}")
-    power = 3 * math.floor(math.log10(abs(rounded)) / 3.0 + 1e-12)
+    order = math.floor(math.log10(abs(rounded)) + 1e-12)
+    power = 3 * (order // 3)
     if power not in PREFIXES:
         return f"{value:.{digits}g} {unit}"
     number = rounded / 10.0**power
-    return f"{number:.{digits}g} {PREFIXES[power]}{unit}"
+    return f"{number:.{max(digits, order - power + 1)}g} {PREFIXES[power]}{unit}"

@@ -250,7 +250,7 @@ def close_balance(m: Model, t: float, y: Floats, yp: Floats) -> None:
     accumulate_energy(m, t, y, yp, True)
 
 
-BALANCE: Final = 4
+BALANCE: Final = 5
 """Numbers that `balance_at` leaves besides the sums: stored and pending energy, energy of motion, lag of joining."""
 
 
@@ -273,6 +273,19 @@ def balance_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None
     close_balance(m, t, y, yp)
     out[0], out[1] = stored_energy(m, y)
     out[2], out[3] = kinetic_energy(m, y), joining_lag(m)
+    out[4] = _torque_slopes(m, t, y)
+
+
+@compiled
+def _torque_slopes(m: Model, t: float, y: Floats) -> float:
+    """By how much the torques differ, over their base radii, at speeds that differ by one; 0 of a roller."""
+    total = 0.0
+    if m.scene.kind != ROLLER:
+        for shaft in range(2):
+            if not is_constant(m, shaft):
+                speed = y[W] if shaft == LOAD else y[V] + y[W]
+                total += abs(torque_force(m, shaft, t, speed + 1.0) - torque_force(m, shaft, t, speed))
+    return total
 
 
 @compiled

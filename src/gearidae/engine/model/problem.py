@@ -165,7 +165,7 @@ class Problem:
         return balance, extremes
 
     def _in_joules(
-        self, time: float, stored: float, pending: float, kinetic: float, lag: float
+        self, time: float, stored: float, pending: float, kinetic: float, lag: float, slope: float
     ) -> EnergyBalance:
         e, scene = plain(self.model.state.energy), self.model.scene
         unit = float(scene.force_unit * scene.length_unit)
@@ -186,6 +186,7 @@ class Problem:
             # both shafts' torques are at most the unit of force
             pitch_work=unit * float(2.0 / scene.phase_rate) if scene.kind == GEARS else 0.0,
             speed_work=unit * self._momenta(e.peak_kinetic),
+            torque_work=unit * slope * self._top_speed(e.peak_kinetic) * time,
         )
 
     def _momenta(self, kinetic: float) -> float:
@@ -196,6 +197,14 @@ class Problem:
         return sum(
             math.sqrt(2.0 * kinetic / float(one)) for one in (s.pinion_inverse_mass, s.gear_inverse_mass)
         )
+
+    def _top_speed(self, kinetic: float) -> float:
+        """Speed of both base circles at a kinetic energy, scaled; 0 of a roller."""
+        s = self.model.scene
+        if s.kind != GEARS:
+            return 0.0
+        mass = 1.0 / float(s.pinion_inverse_mass) + 1.0 / float(s.gear_inverse_mass)
+        return math.sqrt(2.0 * kinetic / mass)
 
     def checkpoint(self, time: float, state: Floats) -> Floats:
         """Everything that changes in a run, as one vector.
