@@ -33,7 +33,10 @@ _RANGES = (
     " decades or none, 12 to 120 teeth, backlash 0 to 1 um, speeds up to 1e4 rad/s in either direction; tolerances 1e-3"
     " to 1e-10. Some scenes have dry resistance, drag, mesh damping, harmonics, schedules and static transmission"
     " error. One scene in seven is a roller. One scene in five has elastic bodies, with moduli from 2 GPa; the others"
-    " use the asperity model."
+    " use the asperity model. Half of the scenes also have some of these: Maugis asperities with an interaction range"
+    " from 17 pm to 5 nm, a monolayer as thick as 0 to 3 roughnesses, sides that are paired independently, coverage by"
+    " tooth and up to 64 places, exposures, a drive that holds a constant or scheduled speed with a gain over six"
+    " decades, viscous drag, cubic schedules of up to 60 knots, and conditions to stop."
 )
 _CHECKS = (
     "**Checks.** 24 samples of each run are checked. Gaps must agree with the geometry. Without elastic bodies, forces"
@@ -46,7 +49,7 @@ _ERRORS = (
     " difference is divided by the range of the motion; an error of an event time is divided by the elapsed time."
 )
 _REASON = (
-    "Large ratios belong to scenes whose adhesion is at least 1e8 times the load. The contact falls into a deep"
+    "Large ratios belong to scenes whose adhesion is 1e4 to 1e11 times the load. The contact falls into a deep"
     " potential well and leaves it by a small difference of large energies, which amplifies every error."
 )
 _ENERGY_BALANCE = (
@@ -161,7 +164,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "|---|---|---|---|---|---|",
         *map(_row, worst(outcomes)),
         "",
-        f"`gearidae_bench.random_scenes.random_scene({seed}, scene)` generates any of these scenes again.",
+        f"`gearidae_bench.wide_scenes.wide_scene({seed}, scene)` generates any of these scenes again.",
         "",
         _FURTHER,
         "",

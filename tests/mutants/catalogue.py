@@ -265,6 +265,20 @@ MUTANTS = (
         ("engine/test_parting_between_steps.py",),
     ),
     Mutant(
+        "work of a stiff drive on errors of the speed left out of the balance's bound",
+        "engine/energy/balance.py",
+        "out[4] = _torque_slopes(m, t, y)",
+        "out[4] = 0.0",
+        ("engine/test_balance_bound.py",),
+    ),
+    Mutant(
+        "an energy balance out of its bound that nothing is said of",
+        "archive/energy.py",
+        "if not out_by > 1.0:",
+        "if not out_by > 1e9:",
+        ("runs/test_imbalance.py",),
+    ),
+    Mutant(
         "Newton correction without the effect of tip relief on the gear",
         "engine/integrate/correction.py",
         "torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase",

@@ -17,6 +17,7 @@ from gearidae_bench.__main__ import main
 from gearidae_bench.random_scenes import random_scene
 from gearidae_bench.stress import Outcome, run_one, run_stress
 from gearidae_bench.stress_report import balance_quantiles, counts, page, quantiles, worst
+from gearidae_bench.wide_scenes import wide_scene
 
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
 
@@ -85,9 +86,39 @@ def test_the_same_numbers_give_the_same_scene():
     assert random_scene(3, 17).surface.roughness == random_scene(3, 18).surface.roughness
 
 
-def test_a_wrong_force_would_be_seen(monkeypatch):
+def test_half_of_the_wide_scenes_have_later_keys_and_the_others_are_as_before():
+    """Each key is drawn in some of a hundred scenes; the same numbers give the same scene."""
+    drawn = {n: wide_scene(3, n) for n in range(100)}
+    assert 30 < sum(scene == random_scene(3, n) for n, scene in drawn.items()) < 70
+    assert wide_scene(3, 17) == drawn[17]
+    gears = [scene for scene in drawn.values() if scene.roller is None]
+    for has_it in (
+        lambda scene: scene.contact.asperity == "maugis",
+        lambda scene: scene.coating.by_place,
+        lambda scene: scene.coating.pairing == "independent",
+        lambda scene: scene.coating.thickness > 0.0,
+        lambda scene: scene.drive.speed is not None,
+        lambda scene: scene.load.viscous > 0.0,
+        lambda scene: scene.run.exposures > 0,
+        lambda scene: scene.run.stop != "time",
+    ):
+        assert any(map(has_it, gears))
+
+
+@pytest.mark.parametrize("number", [0, 3, 12, 15, 17, 984])
+def test_scenes_with_later_keys_are_sound(number):
+    """Laws, sides, tables of coverage, held speeds and exposures together; the last has a very stiff drive."""
+    outcome = run_one(wide_scene(1, number), budget=BLOCK_STEPS)
+    assert outcome.sound, outcome.complaint
+    assert outcome.status in NAMED
+
+
+@pytest.mark.parametrize("law", ["jkr", "maugis"])
+def test_a_wrong_force_would_be_seen(law, monkeypatch):
     """The envelope of what a contact can do is narrow enough to catch forces that are off by a part in a thousand."""
-    scene = gd.preset("roller_slow").replace({"contact.model": "asperity", "run.samples": 401})
+    scene = gd.preset("roller_slow").replace(
+        {"contact.model": "asperity", "contact.asperity": law, "run.samples": 401}
+    )
     assert run_one(scene).sound
     honest = stress_checks.line_force
     monkeypatch.setattr(stress_checks, "line_force", lambda *a: 1.001 * honest(*a))
