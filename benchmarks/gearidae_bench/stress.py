@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate.driver import BLOCK_STEPS
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.problem import Problem
 from gearidae.errors import SceneError
@@ -34,9 +33,9 @@ __all__ = ["BALANCE_TOLERANCES", "ELASTIC_SHARE", "STEP_BUDGET", "Outcome", "run
 
 Floats = NDArray[np.float64]
 
-STEP_BUDGET = 5 * BLOCK_STEPS
-"""Steps after which a scene is left alone, or as many blocks of output full of samples or events."""
-ELASTIC_SHARE = 5
+STEP_BUDGET = 200_000
+"""Steps after which a scene is left alone, at the end of a block of output."""
+ELASTIC_SHARE = 100
 """With elastic bodies, steps take longer: the budget is divided by this."""
 
 BALANCE_TOLERANCES = 1e4
@@ -55,7 +54,7 @@ class Outcome:
     number : int
         Of the scene, for `wide_scene`.
     status : str
-        ``finished``, ``budget`` (stopped after `STEP_BUDGET` steps), ``refused`` (a SceneError), one of the engine's
+        ``finished``, ``budget`` (stopped after `STEP_BUDGET` steps or more), ``refused`` (a SceneError), one of the
         named endings, or ``raised`` and ``hung``, which are defects.
     message : str
         The reason in words.
@@ -220,12 +219,12 @@ class _Run:
 def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
     problem, statistics = make_problem(scene), Statistics()
     rows, events, reached, balance = [], [], 0.0, None
-    for spent, block in enumerate(run_blocks(problem, rtol, scene.run.sample_count, "native", statistics), 1):
+    for block in run_blocks(problem, rtol, scene.run.sample_count, "native", statistics):
         rows.append(block.rows)
         events.append(block.events)
         reached = block.time / (float(problem.model.scene.end) * problem.time_unit)
         balance = block.balance or balance
-        if spent * BLOCK_STEPS * (1 if _is_rigid(problem) else ELASTIC_SHARE) >= budget:
+        if statistics.steps * (1 if _is_rigid(problem) else ELASTIC_SHARE) >= budget:
             break
     table = np.concatenate(rows)
     return _Run(

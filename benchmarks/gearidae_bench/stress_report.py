@@ -17,7 +17,7 @@ __all__ = ["balance_quantiles", "counts", "page", "quantiles", "worst"]
 
 _MEANINGS = {ending.status: ending.message for ending in Ending} | {
     "finished": "reached the end of the run",
-    "budget": f"stopped after {STEP_BUDGET:,} steps"
+    "budget": f"stopped after at least {STEP_BUDGET:,} steps"
     f" ({STEP_BUDGET // ELASTIC_SHARE:,} with elastic bodies), correct until then",
     "refused": "rejected by a SceneError before the run",
     "raised": "**a defect**: an exception other than those for users",
@@ -49,8 +49,10 @@ _ERRORS = (
     " difference is divided by the range of the motion; an error of an event time is divided by the elapsed time."
 )
 _REASON = (
-    "Large ratios belong to scenes whose adhesion is 1e4 to 1e11 times the load. The contact falls into a deep"
-    " potential well and leaves it by a small difference of large energies, which amplifies every error."
+    "Nearly all large ratios belong to scenes whose adhesion is 1e4 to 1e11 times the load. The contact falls into a"
+    " deep potential well and leaves it by a small difference of large energies, which amplifies every error. The"
+    " others have elastic bodies, whose errors may be some hundreds of tolerances, or a fast harmonic that shakes free"
+    " gears for ten thousand periods and more, whose errors add up."
 )
 _ENERGY_BALANCE = (
     "The energy balance of a run sums all works, losses and stored energies. The table gives its imbalance at the end"

@@ -118,6 +118,7 @@ def test_laws_in_the_units_of_adhesion(name, join, detach, pull_off, loss):
     assert law.detach == pytest.approx(detach, abs=5e-6)
     assert law.pull_off == pytest.approx(pull_off, rel=1e-14, abs=0)
     assert law.loss == pytest.approx(loss, abs=5e-6)
+    assert not np.signbit(law.loss)
     assert law.load(-law.detach - 1e-9) == 0.0
 
 

@@ -45,6 +45,28 @@ def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
     np.testing.assert_array_equal(pieces[1], whole[1])
 
 
+COUNTS = ("steps", "residual_evaluations", "jacobian_evaluations", "guard_evaluations", "error_test_failures")
+
+
+def test_a_block_knows_the_steps_of_the_run_so_far(backend, monkeypatch):
+    """A run may be stopped after any block, and says then what it has done; nothing is counted twice."""
+    whole = Statistics()
+    collect(run_blocks(make_problem(SCENE), 1e-6, 301, backend, whole))
+    monkeypatch.setattr(native, "BLOCK_STEPS", 13)
+    monkeypatch.setattr(native, "FIRST_STEPS", 13)
+    monkeypatch.setattr(portable, "BLOCK_SECONDS", 0.0)  # a block for each step
+    cut = Statistics()
+    blocks = run_blocks(make_problem(SCENE), 1e-6, 301, backend, cut)
+    seen = [[getattr(cut, name) for name in COUNTS] for _ in blocks]
+    assert len(seen) > 40
+    gained = np.diff([[0] * len(COUNTS), *seen], axis=0)
+    assert (gained >= 0).all()
+    assert gained[:, 0].max() <= 13
+    assert gained[0, :4].min() > 0
+    assert seen[-1] == [getattr(whole, name) for name in COUNTS]
+    assert cut.convergence_failures == whole.convergence_failures
+
+
 @pytest.mark.parametrize("steps", [7, 100])
 @pytest.mark.parametrize("by_place", [False, True])
 def test_sums_do_not_depend_on_where_they_are_looked_at(steps, by_place, monkeypatch):

@@ -8,7 +8,6 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.integrate.driver import BLOCK_STEPS
 from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.build_torques import ROOT_LIMIT
 from gearidae.records import Ending, EventKind
@@ -19,11 +18,12 @@ from gearidae_bench.stress import Outcome, run_one, run_stress
 from gearidae_bench.stress_report import balance_quantiles, counts, page, quantiles, worst
 from gearidae_bench.wide_scenes import wide_scene
 
+ONE_BLOCK = 1  # steps: the first block of output has more
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
 
 
 def test_random_scenes_end_soundly():
-    outcomes = run_stress(30, seed=4, budget=BLOCK_STEPS)
+    outcomes = run_stress(30, seed=4, budget=ONE_BLOCK)
     assert [o for o in outcomes if not o.sound] == []
     assert {o.status for o in outcomes} <= NAMED
     assert sum(o.status in ("finished", "budget") for o in outcomes) >= 25
@@ -56,7 +56,7 @@ def test_an_overlap_beyond_the_force_laws_tables_is_named(seed, number):
 
 def test_a_flank_at_the_end_of_a_long_flight_is_met():
     """Found by the stress run: a start in flight took a step so long that Newton's iteration failed in the tooth."""
-    outcome = run_one(random_scene(2, 281), budget=BLOCK_STEPS)
+    outcome = run_one(random_scene(2, 281), budget=ONE_BLOCK)
     assert outcome.sound
     assert outcome.status in ("finished", "budget")
 
@@ -108,7 +108,7 @@ def test_half_of_the_wide_scenes_have_later_keys_and_the_others_are_as_before():
 @pytest.mark.parametrize("number", [0, 3, 12, 15, 17, 984])
 def test_scenes_with_later_keys_are_sound(number):
     """Laws, sides, tables of coverage, held speeds and exposures together; the last has a very stiff drive."""
-    outcome = run_one(wide_scene(1, number), budget=BLOCK_STEPS)
+    outcome = run_one(wide_scene(1, number), budget=ONE_BLOCK)
     assert outcome.sound, outcome.complaint
     assert outcome.status in NAMED
 
@@ -126,9 +126,9 @@ def test_a_wrong_force_would_be_seen(law, monkeypatch):
 
 
 def test_processes_share_the_scenes_and_one_that_does_not_come_back_is_a_defect(monkeypatch):
-    alone = run_stress(8, seed=4, budget=BLOCK_STEPS)
+    alone = run_stress(8, seed=4, budget=ONE_BLOCK)
     done = []
-    shared = run_stress(8, seed=4, jobs=2, budget=BLOCK_STEPS, report=done.extend)
+    shared = run_stress(8, seed=4, jobs=2, budget=ONE_BLOCK, report=done.extend)
     assert [(o.number, o.status) for o in shared] == [(o.number, o.status) for o in alone]
     assert sorted(o.number for o in done) == list(range(8))
     monkeypatch.setattr(stress, "_PATIENCE", 0.01)  # no process is even started in that time

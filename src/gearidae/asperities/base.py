@@ -142,4 +142,4 @@ class AsperityLaw(ABC):
     @property
     def loss(self) -> float:
         """Energy that an asperity loses when it joins; nothing more is lost when it lets go."""
-        return -float(self.energy(-self.join))
+        return 0.0 - float(self.energy(-self.join))  # a law that loses nothing says 0.0, not -0.0

@@ -52,7 +52,10 @@ def show_outcomes(ds: xr.Dataset) -> None:
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
     table = Table(box=box.SIMPLE, pad_edge=False)
     for heading in (*dims, *headings):
-        table.add_column(heading, justify="left" if heading == "outcome" else "right", no_wrap=True)
+        if heading == "outcome":
+            table.add_column(heading)  # a long one is wrapped; numbers are whole
+        else:
+            table.add_column(heading, justify="right", no_wrap=True)
     for outcome in judged:
         cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome)
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)

@@ -45,6 +45,7 @@ from gearidae.engine.sundials.ida_memory import (
     HANDLES,
     IDA,
     YP,
+    Ints,
     Places,
     Y,
     close_solver,
@@ -61,24 +62,32 @@ GROWTH_HIGH = 50
 __all__ = ["advance", "make_arrays", "restart", "run", "state_for_sample"]
 
 
+@compiled
+def _new(cell: Ints, counted: Ints, which: int) -> int:
+    """What one of IDA's counters has gained since it was last added."""
+    gained = int(cell[0] - counted[which])
+    counted[which] = cell[0]
+    return gained
+
+
 @compiled(makes_arrays=True)
 def _count(s: Stepper) -> None:
-    """Add IDA's counters, which start from zero at each re-initialisation, and those of formulas and root search."""
+    """Add what counters of IDA, which start from zero at each re-initialisation, formulas and root search gained."""
     progress, a, search, ida = s.m.state.progress, s.m.work.adams, s.m.work.search, s.handles[IDA]
-    cell = np.zeros(1, np.int64)
+    cell, counted = np.zeros(1, np.int64), s.m.work.driver.counted
     sun.IDAGetNumSteps(ida, cell.ctypes.data)
-    progress.steps += cell[0]
+    progress.steps += _new(cell, counted, 0)
     progress.residual_evaluations += a.evaluations  # of residual and Jacobian at once
     progress.jacobian_evaluations += a.evaluations
     if a.own == 0:
         sun.IDAGetNumResEvals(ida, cell.ctypes.data)
-        progress.residual_evaluations += cell[0]
+        progress.residual_evaluations += _new(cell, counted, 1)
         sun.IDAGetNumJacEvals(ida, cell.ctypes.data)
-        progress.jacobian_evaluations += cell[0]
+        progress.jacobian_evaluations += _new(cell, counted, 2)
     sun.IDAGetNumErrTestFails(ida, cell.ctypes.data)
-    progress.error_test_failures += cell[0]
+    progress.error_test_failures += _new(cell, counted, 3)
     sun.IDAGetNumNonlinSolvConvFails(ida, cell.ctypes.data)
-    progress.convergence_failures += cell[0] + a.failures
+    progress.convergence_failures += _new(cell, counted, 4) + a.failures
     progress.guard_evaluations += search.evaluations
     search.evaluations = a.evaluations = a.failures = 0
 
@@ -89,6 +98,7 @@ def restart(s: Stepper, stop: float) -> int:
     ida, m, t = s.handles[IDA], s.m, s.clock[0]
     prepare_start(m, t, s.y, s.yp)
     flag = sun.IDAReInit(ida, t, s.handles[Y], s.handles[YP])
+    m.work.driver.counted[:] = 0
     flag |= sun.IDASetInitStep(ida, first_step(m, t, s.y, s.yp, stop - t))
     flag |= sun.IDASetStopTime(ida, stop)
     if m.scene.longest_step > 0.0:
@@ -172,8 +182,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
                 driver.pending = -1
                 break
             driver.error = restart(s, next_stop(m))
-    if driver.done != 0 or driver.error != 0:
-        _count(s)
+    _count(s)
 
 
 def _next_budget(budget: int, seconds: float) -> int:

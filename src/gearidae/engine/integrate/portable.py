@@ -98,6 +98,7 @@ def run(
                 yield _ready(problem, m, out, statistics, y, yp)
             solver.start(y)
         if time.monotonic() - handed_out > BLOCK_SECONDS:
+            solver.count()
             update_statistics(statistics, progress)
             yield out.block(m, float(driver.time), None, problem.kept(float(driver.time), y, yp))
             handed_out = time.monotonic()
@@ -140,6 +141,7 @@ class _Solver:
         self._driver: Record = m.work.driver
         self._guard_calls = 0
         self._last: Any = None
+        self._counted = (0, 0)  # of its evaluations, what the run's counters already have
         self.ending: Ending | None = None
         self.trail = _Trail(self._driver.time, y, y)
 
@@ -151,7 +153,7 @@ class _Solver:
         self._make(y.size, first_step(m, t, y, yp, stop - t))
         self._ida.init_step(t, y, yp)
         self._stop = stop
-        self._last = None
+        self._last, self._counted = None, (0, 0)
         self.trail = _Trail(t, y, yp)
 
     def _make(self, n: int, step: float) -> None:
@@ -213,12 +215,13 @@ class _Solver:
         return flag if flag in (STOP, ROOT) else 0, result.y, result.yp
 
     def count(self) -> None:
-        """Add this solver's counters."""
+        """Add what this solver's counters have gained."""
         progress = self.m.state.progress
         if self._last is not None:
-            progress.residual_evaluations += int(self._last.nfev)
-            progress.jacobian_evaluations += int(self._last.njev)
-            self._last = None
+            residuals, jacobians = int(self._last.nfev), int(self._last.njev)
+            progress.residual_evaluations += residuals - self._counted[0]
+            progress.jacobian_evaluations += jacobians - self._counted[1]
+            self._counted = (residuals, jacobians)
         progress.guard_evaluations += self._guard_calls
         self._guard_calls = 0
 

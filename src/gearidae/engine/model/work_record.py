@@ -113,6 +113,7 @@ DRIVER: Final = record_type(
     ("since", INT),  # steps since the last checkpoint
     ("step_end", REAL),  # where the last whole step has ended, or the last start was,
     ("step", REAL),  # and the length of that step, 0 at a start
+    ("counted", INT, (5,)),  # of IDA's counters since its last start, what the run's own already have
 )
 
 POINT: Final = record_type(  # of an accepted time, what extremes are located from
