@@ -70,7 +70,17 @@ def test_gear_verdicts(speed, verdict):
     assert (outcome.min_speed, outcome.max_speed) == (speed.min(), speed.max())
 
 
-@pytest.mark.parametrize(("speed", "verdict"), [(10 * AT, "runs"), (10 * np.maximum(0.8 - AT, 0.0), "stops")])
+@pytest.mark.parametrize(
+    ("speed", "verdict"),
+    [
+        (10 * AT, "runs"),
+        (10 * np.maximum(0.8 - AT, 0.0), "stops"),
+        (10 * np.maximum(0.96 - AT, -0.01), "stops"),  # turned back by less than half a pitch
+        (100 * (0.5 - AT), "runs back"),
+        (-100 * np.ones(201), "runs back"),
+        (1e3 * np.abs(0.96 - AT), "irregular"),  # at rest for an instant, and turns on
+    ],
+)
 def test_a_schedule_may_change_the_speed(speed, verdict):
     (outcome,) = outcomes(gear_run(speed, SCHEDULED))
     assert outcome.verdict == verdict
@@ -118,6 +128,11 @@ STUCK = {"stick_time": 0.2124, "stick_exits": 4, "mesh_exits": 9, "reversals": 3
         (STUCK, "sticks", "sticks at 0.212 s (4 mesh exits)"),
         (STUCK | {"stick_exits": 1, "stick_time": 0.0123}, "sticks", "sticks at 12.3 ms (1 mesh exit)"),
         (STUCK | {"turned_back": 0.6}, "runs back", "runs back at 0.212 s (4 mesh exits)"),
+        (
+            {"stick_time": 0.0, "stick_exits": 2, "turned_back": 9.0},
+            "runs back",
+            "runs back from the start (2 mesh exits)",
+        ),
         ({"stick_time": 0.0, "stick_exits": 0}, "sticks", "does not start in 0.3 s"),
         (
             {"settled_spread": 0.5, "speed_fall": 0.5, "speed_rise": 0.4},

@@ -88,13 +88,14 @@ class GearOutcome(Shown):
         exits = "1 mesh exit" if self.mesh_exits == 1 else f"{self.mesh_exits} mesh exits"
         if self.verdict == "unfinished":
             return f"not followed to its end ({self.status})"
-        if self.verdict == "stops" and not math.isnan(self.stick_time):
-            return f"came to rest at {_seconds(self.stick_time)} ({exits})"
-        if self.verdict not in ("sticks", "runs back"):
-            return f"{_IN_WORDS[self.verdict]} through {exits} in {_seconds(self.window)}"
-        if self.stick_time == 0.0 and self.verdict == "sticks":
-            return f"does not start in {_seconds(self.window)}"
-        return f"{self.verdict} at {_seconds(self.stick_time)} ({exits})"
+        words = _IN_WORDS[self.verdict]
+        if self.verdict not in _STOOD or math.isnan(self.stick_time):
+            return f"{words} through {exits} in {_seconds(self.window)}"
+        if self.stick_time > 0.0:
+            return f"{words} at {_seconds(self.stick_time)} ({exits})"
+        if self.verdict == "runs back":
+            return f"runs back from the start ({exits})"
+        return f"does not start in {_seconds(self.window)}"
 
 
 _IN_WORDS = {
@@ -104,7 +105,10 @@ _IN_WORDS = {
     "running down": "was still running down",
     "runs": "turned to the end",
     "stops": "came to rest",
+    "sticks": "sticks",
+    "runs back": "runs back",
 }
+_STOOD = ("stops", "sticks", "runs back")
 
 
 def _seconds(time: float) -> str:

@@ -64,14 +64,15 @@ def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str
     scheduled : bool
         Whether speeds change because they are asked to, see `is_scheduled`.
     """
-    if found is None:
+    if found is None or (scheduled and status != "finished"):
         return "unfinished"
-    if scheduled:
-        if status != "finished":
-            return "unfinished"
-        return "runs" if found.last_min_gear_speed > 0.0 else "stops"
+    if scheduled and found.last_min_gear_speed > 0.0:
+        return "runs"
     if not math.isnan(found.stick_time):
-        return "runs back" if found.turned_back > BACK_FROM else "sticks"
+        held = "stops" if scheduled else "sticks"
+        return "runs back" if found.turned_back > BACK_FROM else held
+    if scheduled:  # its speed fell to zero at last, and it has turned on
+        return "irregular"
     return _turning(found) if status == "finished" else "unfinished"
 
 
