@@ -33,6 +33,8 @@ def run(folder, model, code=RUN, more=NOTHING):
         own = dict(os.environ) | own
     else:
         own |= {"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)}
+        # BLAS kernels decide the last bits of the tables
+        own |= {name: value for name, value in os.environ.items() if name.startswith("OPENBLAS_")}
     done = subprocess.run(
         [sys.executable, "-c", code.format(model=model)],
         env=own | more,
