@@ -8,7 +8,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
-from gearidae.cli.main import main
+from gearidae.cli import main
 from gearidae.records import EnergyBalance
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "2 ms", "run.samples": 11})

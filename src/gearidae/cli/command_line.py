@@ -1,4 +1,4 @@
-"""Entry point: runs a command and turns each error into one line and an exit code."""
+"""Runs a command and turns each error into one line and an exit code."""
 
 from __future__ import annotations
 
@@ -14,22 +14,11 @@ from gearidae.cli.session import app
 from gearidae.cli.values import spread
 from gearidae.errors import GearidaeError, SceneError
 
-__all__ = ["main"]
+__all__ = ["run_command_line"]
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Arguments after the program's name; by default those of the process.
-
-    Returns
-    -------
-    int
-        0 done, 2 bad input, 3 solver failure, 130 interrupted.
-    """
+def run_command_line(arguments: Sequence[str] | None) -> int:
+    """Run a command; arguments and exit code are those of `gearidae.cli.main`."""
     tokens = spread(sys.argv[1:] if arguments is None else arguments)
     try:
         with interrupts_kept():
