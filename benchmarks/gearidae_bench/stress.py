@@ -26,7 +26,7 @@ from gearidae.records import GEAR_BOUND, TORQUE_BOUND, EnergyBalance, EventKind,
 from gearidae.runs.executors import own_executor, stop
 from gearidae.scene import Scene
 from gearidae_bench.random_scenes import SCENES_PER_SURFACE
-from gearidae_bench.stress_checks import complaint_about
+from gearidae_bench.stress_checks import complaint_about, complaint_about_exposures
 from gearidae_bench.wide_scenes import wide_scene
 
 __all__ = ["BALANCE_TOLERANCES", "ELASTIC_SHARE", "STEP_BUDGET", "Outcome", "run_one", "run_stress"]
@@ -174,6 +174,7 @@ def run_one(scene: Scene, number: int = 0, budget: int = STEP_BUDGET) -> Outcome
         complaint = complaint_about(
             scene, run.rows, run.events, float(run.problem.model.scene.force_unit), rigid=run.rigid
         )
+        complaint = complaint or run.exposures
         if status == "finished" and run.imbalance > BALANCE_TOLERANCES * scene.run.rtol:
             complaint = complaint or f"the energy balance has an imbalance of {run.imbalance:.1e}"
         if len(run.rows) > 1 and not complaint:
@@ -209,6 +210,7 @@ class _Run:
     events: Floats
     reached: float  # share of the simulated time
     imbalance: float  # of the energy balance
+    exposures: str  # what is wrong with them
 
     @property
     def rigid(self) -> bool:
@@ -218,12 +220,14 @@ class _Run:
 
 def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
     problem, statistics = make_problem(scene), Statistics()
-    rows, events, reached, balance = [], [], 0.0, None
+    rows, events, reached, balance, wrong = [], [], 0.0, None, ""
     for block in run_blocks(problem, rtol, scene.run.sample_count, "native", statistics):
         rows.append(block.rows)
         events.append(block.events)
         reached = block.time / (float(problem.model.scene.end) * problem.time_unit)
         balance = block.balance or balance
+        if block.balance is not None and block.extremes is not None:
+            wrong = wrong or complaint_about_exposures(scene, block.balance, block.extremes)
         if statistics.steps * (1 if _is_rigid(problem) else ELASTIC_SHARE) >= budget:
             break
     table = np.concatenate(rows)
@@ -234,6 +238,7 @@ def _solve(scene: Scene, rtol: float, budget: int) -> _Run:
         np.concatenate(events),
         min(reached, 1.0),
         _imbalance(scene, balance, table),
+        wrong,
     )
 
 

@@ -3,6 +3,8 @@
 Gaps are worked out again from the angles. Forces of the asperity model must lie between those of a contact that has
 just been made and of one stretched to its limit, by quadrature and not by the engine's tables; with bodies that give
 way the force has no such bounds, as deflection can take a contact to either side of them.
+
+What flanks are exposed to must add up to what the energy balance has lost by adhesion.
 """
 
 from __future__ import annotations
@@ -13,9 +15,10 @@ from numpy.typing import NDArray
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
 from gearidae.mesh.involute import curvature_radii, separation
-from gearidae.scene import Scene
+from gearidae.records import EnergyBalance, Extremes
+from gearidae.scene import MATERIAL_NAMES, Scene
 
-__all__ = ["complaint_about"]
+__all__ = ["complaint_about", "complaint_about_exposures"]
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +29,9 @@ _FORCE_TOLERANCE = 1e-5  # of what pushes and pulls: e^6 of the gap's tolerance 
 _NEGLECTED = (
     1e-11  # of the scene's reference force: beyond the cut-off the engine takes less than 1e-13 as nothing
 )
+
+_ADHESION_TOLERANCE = 0.05  # of the adhesion loss: at an rtol of 1e-3 both have errors of some per cent
+_ADHESION_NEGLECTED = 1e-8  # of the energy exchanged: of contacts so light, tails decide
 
 
 def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, rigid: bool) -> str:
@@ -57,6 +63,39 @@ def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, 
         complaint = check(scene, row, unit, rigid)
         if complaint:
             return complaint
+    return ""
+
+
+def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Extremes) -> str:
+    """Name what is wrong with the exposures of a run, if anything is.
+
+    Every place's adhesion work is the loss of the contacts made there, so that over all places it is the adhesion loss
+    of the energy balance: but for shares that change with tooth and place, and for contacts that have been carried from
+    rigid to elastic bodies or back.
+
+    Parameters
+    ----------
+    scene : Scene
+    balance : EnergyBalance
+    extremes : Extremes
+        Of the same time.
+
+    Returns
+    -------
+    str
+        Empty if nothing is wrong, or if the scene asks for no exposures.
+    """
+    if not extremes.exposures or scene.gears is None:
+        return ""
+    count, teeth = len(MATERIAL_NAMES), scene.gears.pinion_teeth
+    sums = np.array(extremes.exposures).reshape(2, teeth, 2 * count + 2, scene.run.exposures)
+    if not np.isfinite(sums).all() or (sums < 0.0).any():
+        return "exposures that are negative or not finite"
+    if scene.coating.by_place or balance.model_change != 0.0:
+        return ""
+    work, loss = float(sums[:, :, count : 2 * count].sum()), balance.adhesion_loss
+    if abs(work - loss) > _ADHESION_TOLERANCE * abs(loss) + _ADHESION_NEGLECTED * balance.throughput:
+        return f"the adhesion work of all places is {work:.3e} J, the adhesion loss {loss:.3e} J"
     return ""
 
 

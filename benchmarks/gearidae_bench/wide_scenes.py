@@ -44,7 +44,7 @@ def wide_scene(seed: int, number: int) -> Scene:
     changes = _contact(rng, scene) | _coating(rng, scene)
     if scene.roller is None:
         changes |= _drive(rng, scene)
-        if rng.random() < 0.4:
+        if rng.random() < 0.8:
             changes["run.exposures"] = int(rng.choice([1, 7, 40]))
         if rng.random() < 0.2:
             changes["run.stop"] = str(rng.choice(["sticks", "turns 0.01", "time"]))

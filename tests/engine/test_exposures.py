@@ -12,6 +12,7 @@ from gearidae.archive.exposures import flank_areas
 from gearidae.asperities.jkr import JOINING
 from gearidae.contact import asperity_of, line_force
 from gearidae.engine import solve
+from gearidae.records import EventKind
 
 LOW = gd.preset("teodorescu2009_low_speed")
 OFF = {"run.samples": "off"}
@@ -132,6 +133,29 @@ def test_sums_at_a_usual_tolerance_are_those_at_a_tight_one():
     for name in NAMES:
         ours, other = (float(ds[name].sum()) for ds in (usual, tight))
         assert ours == pytest.approx(other, rel=2e-4, abs=0)  # the error of the motion at 1e-6 is 1e-4
+
+
+@pytest.fixture(scope="module")
+def rebounding():
+    """Driven so lightly that the gears fly apart, beyond all forces, and touch for a few steps at a time."""
+    changes = {**OFF, "run.exposures": 4, "run.duration": 1e-3, "run.rtol": 1e-4, "contact.model": "asperity"}
+    light = {"drive.torque": 1e-17, "load.torque": 0.0, "mesh.backlash": "0.2 um", "initial.gap": "90 nm"}
+    return gd.simulate(gd.preset("teodorescu2009").replace({**changes, **light}))
+
+
+def test_contacts_count_that_come_and_turn_between_two_looks(rebounding):
+    """A contact that is new, or was beyond all forces since the last look, begins with nothing joined."""
+    assert (rebounding.event_kind == EventKind.SEPARATION).sum() > 200
+    assert total(rebounding) == pytest.approx(_loss(rebounding), rel=1e-4, abs=0)
+
+
+def test_sliding_work_of_short_contacts():
+    """The integral begins at the onset and ends at the separation, whichever steps there are."""
+    light = {"drive.torque": 1e-20, "load.torque": 0.0, "initial.gap": "90 nm", "run.duration": 0.05}
+    scene = LOW.replace({**OFF, **light, "run.exposures": 4, "contact.model": "asperity"})
+    usual, tight = (gd.simulate(scene.replace({"run.rtol": rtol})) for rtol in (1e-4, 1e-8))
+    # the motion's error at 1e-4 makes 2e-4
+    assert float(usual.sliding_work.sum()) == pytest.approx(float(tight.sliding_work.sum()), rel=1e-3, abs=0)
 
 
 def test_adhesion_work_adds_up_to_the_loss(worn):

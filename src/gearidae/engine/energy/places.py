@@ -6,23 +6,13 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
 from gearidae.engine.model.tooth_pairs import contact_length
 
-__all__ = ["divide", "note_pressure", "place_at", "spread"]
+__all__ = ["divide", "note_pressure", "place_at"]
 
 
 @compiled(inline=True)
 def place_at(m: Model, inside: float) -> int:
     """Index of the place along the path of contact, whose end belongs to the last one."""
     return min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
-
-
-@compiled(inline=True)
-def spread(m: Model, row: int, before: float, after: float, amount: float) -> None:
-    """Add an amount to the places that a contact has passed, in proportion to the way in each."""
-    at = place_at(m, after)
-    if at == place_at(m, before):
-        m.rows[row + at] += amount
-    else:
-        divide(m, row, before, after, amount)
 
 
 @compiled

@@ -64,6 +64,7 @@ def clear_history(m: Model, coast: int) -> None:
     for k in range(m.scene.slots):
         m.state.history[coast * m.scene.slots + k].pair = EMPTY
         m.state.history[coast * m.scene.slots + k].lag = 0.0
+        m.work.exposing.pair[coast * m.scene.slots + k].known = 0
 
 
 @compiled
@@ -82,6 +83,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
             h.adhered_energy[material] = 0.0
         h.fully_stretched[material] = 0
     h.direction = h.lag = h.lag_power = h.lag_rate = 0.0
+    m.work.exposing.pair[k].known = 0
 
 
 @compiled(makes_arrays=True)

@@ -12,7 +12,7 @@ from gearidae.contact.history import joined_height
 from gearidae.engine.elastic.calls import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.energy.adhesion import book_joining
-from gearidae.engine.energy.exposures import expose_turning
+from gearidae.engine.energy.exposures import expose_touch, expose_turning
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.model.tooth_pairs import gap_and_rate, set_joined
@@ -68,6 +68,8 @@ def handle_pair(
     h = m.state.history[k]
     inside = gap <= m.scene.contact_gap if h.in_contact == 0 else gap < m.scene.contact_gap
     if inside != (h.in_contact != 0):
+        if m.scene.places > 0:
+            expose_touch(m, t, y, coast, pair, k)
         count = _change_contact(m, t, coast, pair, k, rate, events, count)
     if gap >= m.scene.cutoff:
         return count

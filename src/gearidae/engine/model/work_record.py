@@ -145,12 +145,12 @@ EXPOSED: Final = record_type(  # a pair where its exposures have last been added
     ("turned", INT),  # 1 from where it began to close until something joins
     ("lowest", REAL),  # least gap at a turning point in this place
     ("front", REAL, (MATERIALS,)),  # asperities in contact, over their density
+    ("gap", REAL),  # and its rate
+    ("gap_rate", REAL),
     ("force", REAL),  # and its rate
     ("force_rate", REAL),
     ("power", REAL),  # force times sliding speed, and its rate
     ("power_rate", REAL),
-    ("pull", REAL),  # least power since the gap has last turned round from closing to opening
-    ("adhesive", INT),  # whether it was a considerable part of the level before that
 )
 
 EXPOSING: Final = record_type(
@@ -158,7 +158,8 @@ EXPOSING: Final = record_type(
     ("begun", INT),  # 0 before the first start
     ("steps", INT),  # accepted since then
     ("wanted", INT),  # steps after which they are added up again
-    ("level", REAL),  # largest power of a pair in the last of these times
+    ("work", REAL),  # sliding work in the last of these intervals, and its error estimate
+    ("error", REAL),
     ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
 )
 
