@@ -371,7 +371,7 @@ MUTANTS = (
     ),
     Mutant(
         "pressure not noted where a contact passes from one place to the next",
-        "engine/energy/sliding.py",
+        "engine/energy/pressure.py",
         "        if pressing > 0.0:\n",
         "        if pressing > 1e300:\n",
         ("engine/test_exposures.py::test_sliding_work_and_pressure_are_those_of_the_samples",),
@@ -384,18 +384,25 @@ MUTANTS = (
         ("engine/test_exposures.py::test_contacts_count_that_come_and_turn_between_two_looks",),
     ),
     Mutant(
-        "exposures of a pair not begun anew after it was beyond all forces",
-        "engine/events/histories.py",
-        "        m.work.exposing.pair[coast * m.scene.slots + k].known = 0\n",
-        "",
-        ("engine/test_exposures.py::test_contacts_count_that_come_and_turn_between_two_looks",),
-    ),
-    Mutant(
         "sliding work not ended at a separation",
         "engine/events/pair_events.py",
         "            expose_touch(m, t, y, coast, pair, k)\n",
         "            pass\n",
         ("engine/test_exposures.py::test_sliding_work_of_short_contacts",),
+    ),
+    Mutant(
+        "what a contact has joined not shortened by the lag of its length",
+        "engine/energy/exposed_contacts.py",
+        "    return h.lag / lost if lost > 0.0 else 0.0\n",
+        "    return 0.0\n",
+        ("engine/test_exposures.py::test_adhesion_work_adds_up_to_the_loss",),
+    ),
+    Mutant(
+        "what a contact has joined lost at the end of a run",
+        "engine/integrate/epilogue.py",
+        "    if m.scene.places > 0 and (driver.done != 0 or driver.error != 0):\n",
+        "    if m.scene.places > 0 and driver.error != 0:\n",
+        ("engine/test_exposures.py::test_nothing_is_lost_where_a_stop_condition_ends_a_run",),
     ),
     Mutant(
         "error estimate of sliding work without effect",

@@ -21,15 +21,23 @@ contacts, and of sliding work, in proportion to the way. Contacts on the tip rel
 
 from __future__ import annotations
 
+import math
+
 from gearidae.compiled import compiled
-from gearidae.contact.history import joined_height
-from gearidae.contact.kernels.law import loading_value
-from gearidae.engine.elastic.calls import node_force, nodes_number
+from gearidae.engine.elastic.calls import node_force
+from gearidae.engine.energy.exposed_contacts import (
+    adds_often,
+    begin_contacts,
+    join,
+    joins,
+    joins_here,
+    turn_to_closing,
+)
 from gearidae.engine.energy.noted_force import begin_notes, note_force
-from gearidae.engine.energy.places import note_pressure, place_at
-from gearidae.engine.energy.sliding import PRESSURE, add_sliding, sliding_speeds, speeds_here
-from gearidae.engine.extremes.interpolation import cubic
-from gearidae.engine.model.coverage import note_shares, shares_of
+from gearidae.engine.energy.places import place_at, way_to_edge
+from gearidae.engine.energy.pressure import PRESSURE, note_pressure, see_pressure
+from gearidae.engine.energy.sliding import add_sliding, sliding_speeds, speeds_here
+from gearidae.engine.model.coverage import note_shares, place_inside, shares_of
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import (
     contact_length,
@@ -62,6 +70,10 @@ MODEST = 1.0 / 16.0
 """Of that, up to which more are."""
 FADING = 0.9
 """What is left of both from one interval to the next."""
+PER_PITCH = 100.0
+"""Intervals in a pitch, at least, where there are as many steps: as pairs meet, forces change within half of one."""
+LONGER = 1.5
+"""How much longer than the last one the steps may be until a contact leaves its place."""
 
 
 @compiled
@@ -71,7 +83,8 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         return
     m.work.exposing.time, m.work.exposing.begun = t, 1
     m.work.exposing.work = m.work.exposing.error = 0.0
-    _wait(m, 1)
+    m.work.exposing.often = 1 if adds_often(m) else 0
+    _take_single_steps(m)
     for k in range(m.scene.histories):
         m.work.exposing.pair[k].known = 0
     _note_forces(m, t, y)
@@ -79,16 +92,15 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         noted = m.work.notes.pair[i]
         k = noted.history
         _begin_pair(m, t, k, noted.pair, noted.place)
-        for material in range(MATERIALS):
-            if m.scene.material[material].force_scale > 0.0:
-                m.work.exposing.pair[k].front[material] = _front(m, y, k, noted.gap, material)
+        begin_contacts(m, y, k, noted.place, noted.gap)
         sliding = sliding_speeds(m, y, yp[V], yp[W])
         push = noted.force, noted.slope * noted.gap_rate
         add_sliding(m, t, k, sliding, noted.place, (noted.gap, noted.gap_rate), push)
+        see_pressure(m, t, k, noted.place, push)
 
 
 @compiled
-def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
+def follow_exposures(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
     """Add what the flanks have been exposed to since the last call, up to an accepted time.
 
     Parameters
@@ -99,15 +111,17 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         Time over tau.
     y, yp : ndarray
         State there and its rate.
+    whole : bool
+        Whether the contacts of pairs that are closing are added, too, for somebody who looks or a restart.
     """
     exposing = m.work.exposing
-    before = exposing.time
-    if exposing.begun == 0 or t <= before:
+    if exposing.begun == 0 or (t <= exposing.time and not whole):
         return
-    if m.work.notes.time != t or m.scene.nodes > 0:
+    if whole or m.work.notes.time != t or m.scene.nodes > 0:
         _note_forces(m, t, y)
     sliding = sliding_speeds(m, y, yp[V], yp[W])
-    moved = y[U] - m.work.notes.travel
+    moved, way = y[U] - m.work.notes.travel, math.inf
+    full = whole or m.scene.nodes > 0 or exposing.steps >= exposing.at_once
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         k = noted.history
@@ -116,12 +130,17 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _begin_new(m, k, noted.pair, noted.place)
         widened = -moved if k < m.scene.slots else moved
         gap = noted.gap + widened
-        if m.state.history[k].direction <= 0.0 and _joins(m, k, gap):
-            _join(m, t, y, k, noted.place, (gap, noted.gap_rate))
         push = noted.force + noted.slope * widened, noted.slope * noted.gap_rate
-        add_sliding(m, t, k, sliding, noted.place, (gap, noted.gap_rate), push)
-    exposing.time = t
-    _wait(m, _steps_at_once(m))
+        if full:
+            if joins_here(m, k, noted.place, gap) or (whole and m.state.history[k].direction <= 0.0):
+                join(m, t, y, k, noted.place, (gap, noted.gap_rate))
+            add_sliding(m, t, k, sliding, noted.place, (gap, noted.gap_rate), push)
+        see_pressure(m, t, k, noted.place, push)
+        if push[0] > 0.0:
+            way = min(way, way_to_edge(m, k, noted.place, sliding[2]))
+    if full:
+        exposing.time, exposing.steps, exposing.at_once = t, 0, _steps_at_once(m)
+    _wait(m, way, abs(sliding[2]) * m.work.driver.step)
 
 
 @compiled(inline=True)
@@ -132,60 +151,89 @@ def _steps_at_once(m: Model) -> int:
     exposing.error *= FADING
     allowed = ALLOWED * exposing.work
     if exposing.error > allowed:
-        return max(exposing.wanted // 2, 1)
+        return max(exposing.at_once // 2, 1)
     if exposing.error > MODEST * allowed:
-        return exposing.wanted
-    return min(exposing.wanted + 1, MOST_STEPS)
+        return int(exposing.at_once)
+    return min(2 * exposing.at_once, MOST_STEPS)
+
+
+@compiled(inline=True)
+def _wait(m: Model, way: float, gone: float) -> None:
+    """Want to look again after some steps, no more than until just before a contact leaves its place.
+
+    Parameters
+    ----------
+    m : Model
+    way : float
+        To the nearest edge of a place, in places.
+    gone : float
+        Way that contacts go in a step, in pitches.
+    """
+    exposing = m.work.exposing
+    if exposing.at_once * gone * PER_PITCH > 1.0:
+        exposing.at_once = max(int(1.0 / (PER_PITCH * gone)), 1)
+    left = exposing.at_once - exposing.steps
+    gone *= LONGER * m.scene.places_per_pitch
+    if way < left * gone:
+        left = max(int(way / gone), 1)
+    exposing.wanted = exposing.steps + left
+    _note_in_time(m)
+
+
+@compiled(inline=True)
+def _take_single_steps(m: Model) -> None:
+    """Begin to count steps anew, with one at once."""
+    m.work.exposing.steps, m.work.exposing.at_once, m.work.exposing.wanted = 0, 1, 1
+    _note_in_time(m)
+
+
+@compiled(inline=True)
+def _note_in_time(m: Model) -> None:
+    """Have the forces noted in the step at whose end they are looked at; those of elastic contacts are evaluated."""
+    last = m.scene.nodes == 0 and m.work.exposing.steps + 1 >= m.work.exposing.wanted
+    m.work.notes.wanted = 1 if last else 0
 
 
 @compiled(inline=True)
 def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Count an accepted step of rigid bodies, and follow the exposures where as many as wanted have been made."""
-    exposing = m.work.exposing
-    exposing.steps += 1
-    if exposing.steps >= exposing.wanted:
-        follow_exposures(m, t, y, yp)
-    m.work.notes.wanted = 1 if exposing.steps + 1 >= exposing.wanted else 0
+    m.work.exposing.steps += 1
+    if m.work.exposing.steps >= m.work.exposing.wanted:
+        follow_exposures(m, t, y, yp, False)
+    else:
+        _note_in_time(m)
 
 
 @compiled(inline=True)
-def _wait(m: Model, steps: int) -> None:
-    """Want to follow the exposures after some steps, and have the forces noted in the last of them."""
-    m.work.exposing.steps, m.work.exposing.wanted = 0, steps
-    m.work.notes.wanted = (
-        1 if steps == 1 and m.scene.nodes == 0 else 0
-    )  # those of elastic contacts are evaluated
+def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Add what a contact has been exposed to up to its turning point, before the history takes that."""
+    if m.state.history[k].direction < 0.0:
+        _expose_closed(m, t, y, coast, pair, k, gap)
+    elif m.work.exposing.often == 0:
+        m.work.exposing.pair[k].turned = 1
+    elif m.work.exposing.begun != 0:
+        _begin_new(m, k, pair, place_inside(m, coast, pair, y[PHASE]))
+        turn_to_closing(m, y, k, gap)
 
 
 @compiled
-def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> None:
-    """Add what a contact has been exposed to up to its turning point, before the history takes that.
-
-    The pressure is largest where the gap is least.
-    """
-    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-    if m.work.exposing.begun == 0 or gap >= m.scene.cutoff:
+def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Do so where a contact ceases to close: the pressure is largest where the gap is least."""
+    if m.work.exposing.begun == 0:
         return
-    own = m.work.exposing.pair[k]
+    own, inside = m.work.exposing.pair[k], place_inside(m, coast, pair, y[PHASE])
     _begin_new(m, k, pair, inside)
-    if m.state.history[k].direction > 0.0:
-        own.turned = 1
-        for material in range(MATERIALS):
-            law = m.scene.material[material]
-            if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
-                own.front[material] = _front(m, y, k, gap, material)
-        return
-    _join(m, t, y, k, inside, (gap, 0.0))
-    at, closely = place_at(m, inside), m.work.exposing.wanted < MOST_STEPS
-    if closely or gap < own.lowest or at != own.at:
+    if joins(m, k, gap):
+        join(m, t, y, k, inside, (gap, 0.0))
+    at, closely = place_at(m, inside), m.work.exposing.at_once < MOST_STEPS
+    if closely or gap < own.lowest or at != own.seen_at:
         own.lowest = min(own.lowest, gap)
-        if m.scene.nodes == 0:
-            rate = 0.0  # but for rounding, which is not to send the history through this point
-        force, _ = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
+        force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
         if closely:  # the slope of the force has a jump here
             add_sliding(m, t, k, speeds_here(m, y), inside, (gap, 0.0), (force, 0.0))
+            see_pressure(m, t, k, inside, (force, 0.0))
         elif force > 0.0:
-            note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force)
+            note_pressure(m, k, at, inside, force)
 
 
 @compiled
@@ -195,16 +243,19 @@ def expose_touch(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -
         return
     gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     _begin_new(m, k, pair, inside)
+    if joins_here(m, k, inside, gap):
+        join(m, t, y, k, inside, (gap, rate))
     force, slope = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
     add_sliding(m, t, k, speeds_here(m, y), inside, (gap, rate), (force, slope * rate))
-    _wait(m, 1)
+    see_pressure(m, t, k, inside, (force, slope * rate))
+    _take_single_steps(m)
 
 
 @compiled
 def close_exposures_at(place: int, t: float, y: Floats, yp: Floats) -> None:
     """`follow_exposures` of the model at a place, from `gearidae.engine.sundials.memory.Located`."""
     m = model_at(place)
-    follow_exposures(m, t, y, yp)
+    follow_exposures(m, t, y, yp, True)
 
 
 @compiled(inline=True)
@@ -221,11 +272,12 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     own = m.work.exposing.pair[k]
     own.known, own.pair, own.time = 1, pair, t
     own.place, own.at = inside, place_at(m, inside)
+    own.seen_time, own.seen_place, own.seen_at = t, own.place, own.at
     own.turned, own.lowest = 0, m.scene.cutoff
     own.power = own.power_rate = own.force = own.force_rate = own.gap_rate = 0.0
-    own.gap = m.scene.cutoff
+    own.gap, own.side = m.scene.cutoff, 1
     for material in range(MATERIALS):
-        own.front[material] = 0.0
+        own.front[material] = own.added[material] = 0.0
     coast = 0 if k < m.scene.slots else 1
     teeth = int(m.scene.pinion_teeth)
     tooth = (pair + int(m.state.turns)) % teeth
@@ -256,92 +308,3 @@ def _force(
         note_shares(m, k, coast, pair, inside)
         return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
     return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
-
-
-@compiled
-def _front(m: Model, y: Floats, k: int, gap: float, material: int) -> float:
-    """Asperities of a material in contact per length, over their density."""
-    own = m.scene.material[material]
-    if m.scene.nodes > 0:
-        return nodes_number(m, k, y, gap, material)
-    height = joined_height(m.state.history[k].joined[material], gap, own.stretch_limit)
-    return loading_value(m.tables, own.number_at, height + own.gap_offset)[0]
-
-
-@compiled(inline=True)
-def _joins(m: Model, k: int, gap: float) -> bool:
-    """Whether asperities of a closing contact join: below what has joined before."""
-    h, joins = m.state.history[k], m.scene.nodes > 0
-    for material in range(MATERIALS):
-        own = m.scene.material[material]
-        joins |= own.force_scale > 0.0 and (gap < h.joined[material] or own.stretch_limit == 0.0)
-    return joins
-
-
-@compiled
-def _join(m: Model, t: float, y: Floats, k: int, inside: float, gap: tuple[float, float]) -> None:
-    """Add what has come into contact since that was last noted, up to a gap, given with its rate."""
-    own, h = m.work.exposing.pair[k], m.state.history[k]
-    for material in range(MATERIALS):
-        law = m.scene.material[material]
-        if law.force_scale <= 0.0:
-            continue
-        if own.turned != 0 and law.stretch_limit > 0.0 and m.scene.nodes == 0:  # what is left of the contact
-            own.front[material] = -h.adhered_energy[material] / law.joining_energy
-        front = _front(m, y, k, gap[0], material)
-        if front <= own.front[material]:
-            continue
-        length = 0.5 * (contact_length(m, inside) + contact_length(m, own.place))
-        if place_at(m, inside) == own.at:
-            _add_joined(m, k, material, own.at, length * (front - own.front[material]))
-        else:
-            _divide_joined(m, t, y, k, material, (inside, gap[0], gap[1]), (front, length))
-        own.front[material] = front
-    own.turned = 0
-
-
-@compiled
-def _divide_joined(
-    m: Model,
-    t: float,
-    y: Floats,
-    k: int,
-    material: int,
-    there: tuple[float, float, float],
-    joined: tuple[float, float],
-) -> None:
-    """Divide what a pair has joined between the places that it has passed, by its gap on the way.
-
-    Parameters
-    ----------
-    m, t, y, k, material
-        As for `_join`.
-    there : tuple of float
-        Place, gap and gap rate at that time.
-    joined : tuple of float
-        Number of asperities in contact there, over their density, and the contact's length.
-    """
-    own, (inside, gap, rate), (last, length) = m.work.exposing.pair[k], there, joined
-    at, first = own.at, own.front[material]
-    step, before = 1 if inside > own.place else -1, first
-    while at != place_at(m, inside):
-        edge = (at + 1 if step > 0 else at) / m.scene.places_per_pitch
-        share = (edge - own.place) / (inside - own.place)
-        front = first + share * (last - first)
-        if m.scene.nodes == 0:  # of elastic contacts the deflection on the way is not known
-            passing = cubic(share, t - own.time, own.gap, own.gap_rate, gap, rate)
-            front = min(max(_front(m, y, k, passing, material), before), last)
-        _add_joined(m, k, material, at, length * (front - before))
-        at, before = at + step, front
-    _add_joined(m, k, material, at, length * (last - before))
-
-
-@compiled(inline=True)
-def _add_joined(m: Model, k: int, material: int, at: int, more: float) -> None:
-    """Add asperity contacts of a material to a place, and what they have lost."""
-    row, law = m.work.exposing.pair[k].row, m.scene.material[material]
-    m.rows[row + material * m.scene.places + at] += more
-    if law.stretch_limit > 0.0:
-        m.rows[row + (MATERIALS + material) * m.scene.places + at] += (
-            law.joining_energy * law.force_scale * more
-        )

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
-from gearidae.engine.model.tooth_pairs import contact_length
 
-__all__ = ["divide", "note_pressure", "place_at"]
+__all__ = ["place_at", "way_to_edge"]
 
 
 @compiled(inline=True)
@@ -15,20 +16,23 @@ def place_at(m: Model, inside: float) -> int:
     return min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
 
 
-@compiled
-def divide(m: Model, row: int, before: float, after: float, amount: float) -> None:
-    """Divide an amount between places, by the way from one point of the path of contact to another."""
-    places, scale = m.scene.places, m.scene.places_per_pitch
-    low, high = scale * min(before, after), scale * max(before, after)
-    for place in range(min(int(low), places - 1), min(int(high), places - 1) + 1):
-        way = min(high, place + 1.0) - max(low, float(place))
-        m.rows[row + place] += amount * way / (high - low)
-
-
 @compiled(inline=True)
-def note_pressure(m: Model, at: int, inside: float, force: float) -> None:
-    """Note the pressure of a contact in its place, among the rows, where it is the largest so far."""
-    radius = m.scene.start_radius + inside
-    # of squares: a root only where there is something to note
-    if force * force > m.rows[at] * m.rows[at] * (radius - radius * radius * m.scene.sum_curvature):
-        m.rows[at] = force / contact_length(m, inside)
+def way_to_edge(m: Model, k: int, inside: float, turn: float) -> float:
+    """Way to the end of the place that a pair is in, in places; infinite where the path of contact ends there.
+
+    Parameters
+    ----------
+    m : Model
+    k : int
+        Index of the pair's history, whose pressure has been looked at there.
+    inside : float
+        Place on the path of contact, in pitches.
+    turn : float
+        Direction in which the phase goes, by its sign.
+    """
+    edge = m.work.exposing.pair[k].seen_at
+    if (turn > 0.0) == (k < m.scene.slots):
+        edge += 1
+    if edge == 0 or edge == m.scene.places:
+        return math.inf
+    return abs(edge - m.scene.places_per_pitch * inside)

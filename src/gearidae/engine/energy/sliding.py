@@ -1,20 +1,23 @@
-"""Sliding work and largest pressure of a pair, from one look at its force to the next."""
+"""Sliding work of a pair, from one look at its power to the next.
+
+Between two looks the power is taken as the cubic with its values and rates. An interval is divided where the power
+changes its sign in it, or the sliding speed at the pitch point, and where a contact passes from one place to the next.
+"""
 
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.energy.places import divide, note_pressure, place_at
+from gearidae.engine.energy.places import place_at
 from gearidae.engine.energy.quadrature import error_estimate, integral
-from gearidae.engine.extremes.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import static_error
 
-__all__ = ["PRESSURE", "add_sliding", "sliding_speeds", "speeds_here"]
+__all__ = ["add_sliding", "sliding_speeds", "speeds_here"]
 
-SLIDING, PRESSURE = 2 * MATERIALS, 2 * MATERIALS + 1
-"""Places of their sums among the quantities."""
+SLIDING = 2 * MATERIALS
+"""Its place among the quantities."""
 PARTS = 16
-"""Parts of an interval in which a contact begins or ceases to push."""
+"""Parts of an interval in which a contact begins or ceases to push, or passes the pitch point."""
 
 
 @compiled(inline=True)
@@ -45,7 +48,7 @@ def add_sliding(
     gap: tuple[float, float],
     force: tuple[float, float],
 ) -> None:
-    """Add the sliding work of a pair up to a time, note its pressure, and go on from there.
+    """Add the sliding work of a pair up to a time, and go on from there.
 
     Parameters
     ----------
@@ -65,28 +68,27 @@ def add_sliding(
     speed, speed_rate = sliding[0] * away, sliding[1] * away
     if 0.0 < inside < m.scene.contact_ratio:
         speed_rate += sliding[0] * (sliding[2] if k < m.scene.slots else -sliding[2])
+    side = 1
     if speed < 0.0:
-        speed, speed_rate = -speed, -speed_rate
+        side, speed, speed_rate = -1, -speed, -speed_rate
     power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
     at, h = place_at(m, inside), t - own.time
     if power > 0.0 or own.power > 0.0 or _rises(h, own.power, own.power_rate, power, power_rate):
-        work = _pushing(h, own.power, own.power_rate, power, power_rate)
+        work = integral(h, own.power, power, own.power_rate, power_rate)
+        pushes = power >= 0.0 and own.power >= 0.0
+        if at == own.at and side == own.side:
+            if not pushes:
+                work = _pushing_partly(h, own.power, own.power_rate, power, power_rate)
+            m.rows[own.row + SLIDING * m.scene.places + at] += max(work, 0.0)
+        elif pushes and side == own.side:
+            _divide(m, k, h, inside, max(work, 0.0), (power, power_rate))
+        else:
+            work = _add_parts(m, k, h, inside, side, (power, power_rate))
         m.work.exposing.work += work
         m.work.exposing.error += error_estimate(h, own.power, power, own.power_rate, power_rate)
-        row = own.row + SLIDING * m.scene.places
-        if at == own.at:
-            m.rows[row + at] += work
-        else:
-            divide(m, row, own.place, inside, work)
-        if force[0] > 0.0:
-            note_pressure(m, own.row + PRESSURE * m.scene.places + at, inside, force[0])
-    if at != own.at:
-        if own.force > 0.0 or force[0] > 0.0:
-            _note_crossings(m, t, k, inside, force)
-        own.lowest = m.scene.cutoff  # another place
-    own.time, own.place, own.at, own.power, own.power_rate = t, inside, at, power, power_rate
+    own.time, own.place, own.at = t, inside, at
+    own.power, own.power_rate, own.side = power, power_rate, side
     own.gap, own.gap_rate = gap
-    own.force, own.force_rate = force
 
 
 @compiled(inline=True)
@@ -97,36 +99,46 @@ def _rises(h: float, power0: float, rate0: float, power1: float, rate1: float) -
 
 
 @compiled
-def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
-    """Note the pressure where a pair has passed from one place to the next, on the cubic of its force.
+def _divide(m: Model, k: int, h: float, inside: float, work: float, there: tuple[float, float]) -> None:
+    """Divide the work of an interval in which a contact pushes between places, by the integral of its power's cubic.
 
     Parameters
     ----------
-    m, t, k, inside, force
-        As for `add_sliding`.
+    m : Model
+    k : int
+        Index of the pair's history.
+    h : float
+        Length of the interval.
+    inside : float
+        Place on the path of contact at its end, in pitches.
+    work : float
+        Of the whole interval.
+    there : tuple of float
+        Power at its end, and its rate.
     """
-    own, scale = m.work.exposing.pair[k], m.scene.places_per_pitch
-    at, row = place_at(m, inside), own.row + PRESSURE * m.scene.places
-    for place in range(min(own.at, at) + 1, max(own.at, at) + 1):
-        edge = place / scale
+    own, end = m.work.exposing.pair[k], place_at(m, inside)
+    row, at, before = own.row + SLIDING * m.scene.places, own.at, 0.0
+    step = 1 if inside > own.place else -1
+    while at != end:
+        edge = (at + 1 if step > 0 else at) / m.scene.places_per_pitch
         share = (edge - own.place) / (inside - own.place)
-        pressing = cubic(share, t - own.time, own.force, own.force_rate, force[0], force[1])
-        if pressing > 0.0:
-            note_pressure(m, row + place - 1, edge, pressing)
-            note_pressure(m, row + place, edge, pressing)
+        until = min(max(_work_until(share, h, own.power, own.power_rate, there[0], there[1]), before), work)
+        m.rows[row + at] += until - before
+        at, before = at + step, until
+    m.rows[row + at] += work - before
 
 
 @compiled(inline=True)
-def _pushing(h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
-    """Sliding work over an interval of a contact while it pushes."""
-    if power0 >= 0.0 and power1 >= 0.0:
-        return max(integral(h, power0, power1, rate0, rate1), 0.0)
-    return _pushing_partly(h, power0, rate0, power1, rate1)
+def _work_until(s: float, h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
+    """Integral of a power's cubic over a share of an interval."""
+    rise, slope0, slope1 = power1 - power0, h * rate0, h * rate1
+    a, b = slope0 + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope0 - slope1
+    return h * s * (power0 + s * (slope0 / 2.0 + s * (b / 3.0 + s * a / 4.0)))
 
 
 @compiled
 def _pushing_partly(h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
-    """Do the same where it begins or ceases to push: of the power's cubic, what is above zero."""
+    """Work of an interval in which a contact begins or ceases to push: of the power's cubic, what is above zero."""
     rise, slope0, slope1 = power1 - power0, h * rate0, h * rate1
     a, b = slope0 + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope0 - slope1
     total = 0.0
@@ -134,3 +146,35 @@ def _pushing_partly(h: float, power0: float, rate0: float, power1: float, rate1:
         s = (part + 0.5) / PARTS
         total += max(power0 + s * (slope0 + s * (b + s * a)), 0.0)
     return h * total / PARTS
+
+
+@compiled
+def _add_parts(m: Model, k: int, h: float, inside: float, side: int, there: tuple[float, float]) -> float:
+    """Add the work of an interval in which the power changes its sign, or the sliding speed does; it is returned.
+
+    Of the cubic of force times signed speed counts what a pushing contact makes of it.
+
+    Parameters
+    ----------
+    m, k, h, inside, there
+        As for `_divide`.
+    side : int
+        Sign of the sliding speed at the end.
+    """
+    own = m.work.exposing.pair[k]
+    row, way = own.row + SLIDING * m.scene.places, inside - own.place
+    power0, slope0, slope1 = own.side * own.power, own.side * h * own.power_rate, side * h * there[1]
+    rise = side * there[0] - power0
+    a, b = slope0 + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope0 - slope1
+    pushes, total = own.power >= 0.0 and there[0] >= 0.0, 0.0
+    for part in range(PARTS):
+        s = (part + 0.5) / PARTS
+        power = power0 + s * (slope0 + s * (b + s * a))
+        if not pushes:
+            power *= own.side if s < 0.5 else side
+        elif side != own.side:
+            power = abs(power)
+        work = max(power, 0.0) * h / PARTS
+        m.rows[row + place_at(m, own.place + s * way)] += work
+        total += work
+    return total

@@ -64,7 +64,6 @@ def clear_history(m: Model, coast: int) -> None:
     for k in range(m.scene.slots):
         m.state.history[coast * m.scene.slots + k].pair = EMPTY
         m.state.history[coast * m.scene.slots + k].lag = 0.0
-        m.work.exposing.pair[coast * m.scene.slots + k].known = 0
 
 
 @compiled

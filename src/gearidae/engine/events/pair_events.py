@@ -80,7 +80,7 @@ def handle_pair(
             count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
     if h.direction != 0.0 and h.direction * rate <= 0.0:
         if m.scene.places > 0:
-            expose_turning(m, t, y, coast, pair, k)
+            expose_turning(m, t, y, coast, pair, k, gap)
         _turn_round(m, y, coast, pair, k, gap)
         count = record(m, events, count, t, _TURNING_POINT, pair, coast, rate)
     return count

@@ -89,6 +89,8 @@ def finish_step(
             afresh = True
         else:
             driver.done = 1
+    if m.scene.places > 0 and (driver.done != 0 or driver.error != 0):
+        follow_exposures(m, t, y, yp, True)
     return afresh
 
 
@@ -117,7 +119,7 @@ def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floa
             if flag != ROOT:
                 expose_step(m, t, y, yp)
         elif m.work.quadrature.time == t:  # forces have to be evaluated for it
-            follow_exposures(m, t, y, yp)
+            follow_exposures(m, t, y, yp, False)
 
 
 @compiled
@@ -134,6 +136,6 @@ def prepare_restart(m: Model, y: Floats, yp: Floats) -> None:
     """Close the energy balance's interval and move whole pitches out of the phase, before a start from here."""
     close_balance(m, m.work.driver.time, y, yp)
     if m.scene.places > 0:
-        follow_exposures(m, m.work.driver.time, y, yp)
+        follow_exposures(m, m.work.driver.time, y, yp, True)
     rebase(m, y)
     m.state.progress.restarts += 1

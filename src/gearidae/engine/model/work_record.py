@@ -144,20 +144,29 @@ EXPOSED: Final = record_type(  # a pair where its exposures have last been added
     ("at", INT),  # and the index of what it is divided into
     ("turned", INT),  # 1 from where it began to close until something joins
     ("lowest", REAL),  # least gap at a turning point in this place
-    ("front", REAL, (MATERIALS,)),  # asperities in contact, over their density
+    ("front", REAL, (MATERIALS,)),  # asperities in contact that have been added up, over their density
+    ("added", REAL, (MATERIALS,)),  # contacts that have been added since the last turning point
+    ("number", REAL, (MATERIALS,)),  # asperities in contact, over their density,
+    ("base", REAL, (MATERIALS,)),  # and at the last turning point
     ("gap", REAL),  # and its rate
     ("gap_rate", REAL),
-    ("force", REAL),  # and its rate
-    ("force_rate", REAL),
-    ("power", REAL),  # force times sliding speed, and its rate
+    ("power", REAL),  # force times magnitude of the sliding speed, and its rate
     ("power_rate", REAL),
+    ("side", INT),  # sign of the sliding speed
+    ("seen_time", REAL),  # when its pressure has last been looked at, and where
+    ("seen_place", REAL),
+    ("seen_at", INT),
+    ("force", REAL),  # there, with its rate
+    ("force_rate", REAL),
 )
 
 EXPOSING: Final = record_type(
     ("time", REAL),  # when the exposures of all pairs have last been added up
     ("begun", INT),  # 0 before the first start
+    ("often", INT),  # 1 where contacts are added up as often as sliding work
     ("steps", INT),  # accepted since then
-    ("wanted", INT),  # steps after which they are added up again
+    ("at_once", INT),  # steps over which the error estimate allows sliding work to be integrated
+    ("wanted", INT),  # steps after which pressures are looked at again, no more than that
     ("work", REAL),  # sliding work in the last of these intervals, and its error estimate
     ("error", REAL),
     ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
