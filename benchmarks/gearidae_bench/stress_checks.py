@@ -30,8 +30,10 @@ _NEGLECTED = (
     1e-11  # of the scene's reference force: beyond the cut-off the engine takes less than 1e-13 as nothing
 )
 
-_ADHESION_TOLERANCE = 0.05  # of the adhesion loss: at an rtol of 1e-3 both have errors of some per cent
-_ADHESION_NEGLECTED = 1e-8  # of the energy exchanged: of contacts so light, tails decide
+_ADHESION_TOLERANCE = 1e-6  # of the adhesion loss: both take how lengths change from the same integral
+_ELASTIC_TOLERANCE = 1e-2  # the same with elastic bodies, where each has its own
+_ADHESION_NEGLECTED = 1e-10  # of the energy exchanged: of contacts so light, tails decide
+_ROUNDING = 8.0 * float(np.finfo(float).eps)  # of sampled speeds, which have been scaled
 
 
 def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, rigid: bool) -> str:
@@ -94,7 +96,11 @@ def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Ex
     if scene.coating.by_place or balance.model_change != 0.0:
         return ""
     work, loss = float(sums[:, :, count : 2 * count].sum()), balance.adhesion_loss
-    if abs(work - loss) > _ADHESION_TOLERANCE * abs(loss) + _ADHESION_NEGLECTED * balance.throughput:
+    # a gap may widen by an error of the motion before it is taken to turn: then the balance has lost less than joined
+    tolerance = max(_ADHESION_TOLERANCE, scene.run.rtol)
+    if scene.contact.model != "asperity":
+        tolerance = max(tolerance, _ELASTIC_TOLERANCE)
+    if abs(work - loss) > tolerance * abs(loss) + _ADHESION_NEGLECTED * balance.throughput:
         return f"the adhesion work of all places is {work:.3e} J, the adhesion loss {loss:.3e} J"
     return ""
 
@@ -146,14 +152,18 @@ def _check_gears(scene: Scene, row: Floats, unit: float, rigid: bool) -> str:
 
 
 def _damping(scene: Scene, row: Floats) -> tuple[float, float]:
-    """Damping force of the mesh, and how far the rate of the static error, which is not sampled, may change it [N]."""
+    """Damping force of the mesh, and how far it may be out [N].
+
+    The rate of the static error is not sampled, and the speeds, of which the mesh takes the difference, are rounded.
+    """
     assert scene.gears
     assert scene.mesh
     gear_speed, pinion_speed = float(row[0]), float(row[1])
     radius = scene.geometry.base_radius_gear
     rate = scene.gears.pinion_base_radius * pinion_speed - radius * gear_speed
     slope = sum(one.amplitude * one.order * scene.gears.pinion_teeth for one in scene.mesh.static_error)
-    return scene.mesh.damping * rate, scene.mesh.damping * slope * abs(pinion_speed)
+    rounding = _ROUNDING * scene.gears.pinion_base_radius * abs(pinion_speed)
+    return scene.mesh.damping * rate, scene.mesh.damping * (slope * abs(pinion_speed) + rounding)
 
 
 def _pairs(scene: Scene, u: float, angle: float) -> tuple[Floats, Floats, Floats, Floats]:

@@ -43,7 +43,7 @@ _CHECKS = (
     " must lie between those of a contact that has just formed and of one stretched to its limit, both from quadrature."
     " All numbers must be finite and all events in order of time. The energy balance of a finished run must close to"
     f" {BALANCE_TOLERANCES:,.0f} tolerances. Where exposures are kept, the adhesion work of all places must be the"
-    " adhesion loss of the energy balance, to 5 %."
+    " adhesion loss of the energy balance, to 1e-6 or the run's tolerance, and to 1 % with elastic bodies."
 )
 _ERRORS = (
     "The motion up to its third turning point (or stick or slip) is compared with that at a tenth of the tolerance. The"
