@@ -86,7 +86,11 @@ def test_force_of_a_pair_is_that_of_the_contact_law(slow):
 
 
 def test_states_follow_the_events(slow):
-    """After a full stretch and until the pair turns round, some part of it is fully stretched."""
+    """After a full stretch and until the pair turns round, some part of it is fully stretched.
+
+    Samples less than a hundredth of their distance after the event are not asked: the joined height at the turning
+    point comes from the cubic between two samples, which is good to about a thousandth of the stretch limit.
+    """
     checked = 0
     of_pair = {}
     for time, kind, pair, flank in zip(
@@ -102,7 +106,7 @@ def test_states_follow_the_events(slow):
     asked = []
     for pair, events in of_pair.items():
         for (time, kind), (after, _) in itertools.pairwise(events):
-            sample = math.ceil(time / step) * step
+            sample = math.ceil(time / step + 0.01) * step
             if kind == EventKind.FULL_STRETCH and sample < after:
                 asked.append((sample, pair))
     for (_, pair), state in zip(asked, tooth_contacts(slow, [time for time, _ in asked]), strict=True):
