@@ -273,9 +273,8 @@ def test_a_table_of_one_fraction_is_that_fraction(worn):
     plain, table = gd.simulate(scene), gd.simulate(scene.replace({"coating.pinion_table": [[0.5]]}))
     for name in NAMES:
         ours, other = plain[name].values, table[name].values
-        # the runs take other steps: a pressure that is largest at the edge of a place is that of the last look before
-        share = 1e-2 if name == "largest_pressure" else 1e-4
-        np.testing.assert_allclose(ours, other, rtol=0, atol=share * np.abs(ours).max())
+        # the runs take other steps, and contacts at the edge of a place are divided there from step to step: 3e-5
+        np.testing.assert_allclose(ours, other, rtol=0, atol=1e-4 * np.abs(ours).max())
 
 
 def test_an_archive_and_a_resumed_run_have_them(worn, tmp_path, monkeypatch):
