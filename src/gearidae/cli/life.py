@@ -108,7 +108,7 @@ def _rows(found: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     yield "Passages of each tooth", "coverage", "mean speed, smallest speed, characteristic frequency"
     for number in range(found.sizes["passages"]):
         one = found.isel(passages=number)
-        shares = ", ".join(f"{100.0 * share:.4g} %" for share in one["coverage"].values)
+        shares = ", ".join(f"{round(100.0 * share, 6):.4g} %" for share in one["coverage"].values)
         speed = f"{float(one['mean_gear_speed']):.4g} rad/s, {float(one['min_gear_speed']):.4g} rad/s"
         rings = float(one["characteristic_frequency"]) if "characteristic_frequency" in one else math.nan
         more = "" if math.isnan(rings) else f", {rings:.4g} Hz"

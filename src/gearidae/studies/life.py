@@ -77,7 +77,8 @@ def life(
     passages : float, optional
         Passages of each tooth of the pinion after which the life ends in any case.
     fraction : float, optional
-        Mean coverage at which it ends.
+        Mean coverage at which it ends. At 0 it ends where no more is left than the absolute error of a jump, a tenth of
+        `tolerance`: a loss in proportion to what is left would never end.
     resolved : {"uniform", "place", "tooth"}, optional
         Whether coverage is the same everywhere, or followed along the flank, or by tooth and place.
     places : int, optional
