@@ -68,6 +68,14 @@ def test_a_posterior_is_written_shown_drawn_and_predicted_from(folder, expected,
     )
 
 
+def test_of_a_short_chain_no_number_of_independent_draws_is_promised(folder, capsys):
+    pytest.importorskip("emcee")
+    calibrate("--seen", SEEN, "--method", "emcee", "--steps", "8", "--set", "run.duration=0.02")
+    row = next(line for line in capsys.readouterr().out.splitlines() if "independent" in line)
+    assert "96" in row  # six steps of 16 walkers
+    assert "fewer than 96 independent" in row
+
+
 @pytest.mark.parametrize(("name", "text"), [("seen.csv", FILE), ("seen.toml", TABLES)])
 def test_observations_of_a_file_are_the_same(folder, expected, name, text):
     (folder / name).write_text(text)

@@ -44,8 +44,8 @@ def test_a_normal_prior_and_normal_errors_make_a_normal_posterior(seen):
     """The grid integrates a Gaussian by equal cells: spectrally, but for the 0.04 % of the prior left out."""
     found = gd.studies.calibrate(LOW, {TORQUE: stats.norm(5e-18, 5e-19)}, seen, points=61)
     mean, deviation = normal_posterior(5.0, 0.5, [4.2, 4.5, 4.4], 0.3)
-    assert float(found["mean"][0]) == pytest.approx(1e-18 * mean, rel=1e-4)
-    assert float(found.standard_deviation[0]) == pytest.approx(1e-18 * deviation, rel=2e-3)
+    assert float(found["mean"][0]) == pytest.approx(1e-18 * mean, rel=1e-4, abs=0)
+    assert float(found.standard_deviation[0]) == pytest.approx(1e-18 * deviation, rel=2e-3, abs=0)
     exact = 1e-18 * stats.norm(mean, deviation).ppf(LEVELS)
     np.testing.assert_allclose(found.quantiles[0], exact, atol=0.02 * 1e-18 * deviation)
     assert float(found.weight.sum()) == pytest.approx(1.0, rel=1e-12)
@@ -70,25 +70,25 @@ def test_two_keys_that_only_their_difference_is_seen_of_are_correlated():
 
 
 def test_the_sampler_finds_the_same(seen):
-    """1,900 draws, one in some 20 of them independent: the mean to 0.1 of the deviation, that to a tenth."""
+    """6,000 draws, one in 54 of them independent: the mean to 0.1 of the deviation, that to 7 %."""
     pytest.importorskip("emcee")
     priors = {
         TORQUE: stats.norm(5e-18, 5e-19),
         "initial.gear_speed": stats.uniform(1.0, 1.0),
         "load.drag": stats.lognorm(0.1, scale=8e-18),
     }
-    found = gd.studies.calibrate(LOW, priors, seen, steps=160, seed=3)
-    again = gd.studies.calibrate(LOW, priors, seen, steps=160, seed=3, method="emcee")
+    found = gd.studies.calibrate(LOW, priors, seen, steps=500, seed=3)
+    again = gd.studies.calibrate(LOW, priors, seen, steps=500, seed=3, method="emcee")
     assert np.array_equal(found.torque, again.torque)
     mean, deviation = normal_posterior(5.0, 0.5, [4.2, 4.5, 4.4], 0.3)
     assert float(found["mean"][0]) == pytest.approx(1e-18 * mean, abs=0.25 * 1e-18 * deviation)
-    assert float(found.standard_deviation[0]) == pytest.approx(1e-18 * deviation, rel=0.15)
+    assert float(found.standard_deviation[0]) == pytest.approx(1e-18 * deviation, rel=0.15, abs=0)
     assert float(found["mean"][1]) == pytest.approx(1.5, abs=0.08)  # nothing was seen of it: its prior
     assert float(found.initial_gear_speed.min()) >= 1.0
     assert float(found.initial_gear_speed.max()) <= 2.0
     assert 0.1 < found.attrs["acceptance"] < 0.9
     draws = posterior_draws(found, 500, seed=1)
-    assert draws[TORQUE].std() == pytest.approx(1e-18 * deviation, rel=0.2)
+    assert draws[TORQUE].std() == pytest.approx(1e-18 * deviation, rel=0.2, abs=0)
 
 
 def test_without_the_sampler_it_says_what_to_install(seen, monkeypatch):

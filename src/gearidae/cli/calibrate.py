@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -19,6 +20,7 @@ from gearidae.runs.executors import check_jobs
 from gearidae.scene import describe_key
 from gearidae.scene.literal import literal
 from gearidae.studies.observation_files import observation_of
+from gearidae.studies.posterior import STEPS_WANTED
 from gearidae.studies.posterior_file import calibrated_keys
 
 if TYPE_CHECKING:
@@ -173,7 +175,12 @@ def _rows(found: xr.Dataset, observations: int) -> Iterator[tuple[str, str, str]
         yield key, spread, f"median {middle}, 68 % in {inner_low} .. {inner_high}, 95 % in {low} .. {high}"
     if "autocorrelation_time" in found.attrs:
         time, draws = float(found.attrs["autocorrelation_time"]), found.sizes["draw"]
-        yield "draws", str(draws), f"some {draws / max(time, 1.0):.2g} of them independent"
+        many = f"{draws / max(time, 1.0):.2g}"
+        if found.attrs.get("steps_kept", math.inf) < STEPS_WANTED * time:
+            independent = f"fewer than {many} independent: few --steps"
+        else:
+            independent = f"some {many} of them independent"
+        yield "draws", str(draws), independent
 
 
 def _text(value: float, key: str) -> str:

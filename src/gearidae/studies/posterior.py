@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gearidae.errors import SceneError
 from gearidae.studies.distributions import Distribution
 
-__all__ = ["LEVELS", "grid_posterior", "sampled_posterior", "summary"]
+__all__ = ["LEVELS", "STEPS_WANTED", "grid_posterior", "sampled_posterior", "summary"]
 
 Floats = NDArray[np.float64]
 LogLikelihood = Callable[[Floats], Floats]
@@ -24,6 +24,8 @@ LEVELS: Final = (0.025, 0.16, 0.5, 0.84, 0.975)
 _TAIL: Final = 2e-4
 """Share of the prior that a grid leaves out at each end."""
 _WALKERS: Final = 16
+STEPS_WANTED: Final = 50
+"""Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
 
 
 def grid_posterior(
@@ -109,8 +111,9 @@ def sampled_posterior(
     Returns
     -------
     Dataset
-        A variable for each key along ``draw``, and ``log_likelihood``; attributes ``acceptance`` and
-        ``autocorrelation_time`` (steps between independent draws; a posterior needs some fifty times as many).
+        A variable for each key along ``draw``, and ``log_likelihood``; attributes ``acceptance``, ``steps_kept`` (of
+        each walker) and ``autocorrelation_time`` (steps between independent draws, which is found too small where
+        fewer than `STEPS_WANTED` times as many are kept).
 
     Raises
     ------
@@ -155,7 +158,8 @@ def sampled_posterior(
         log_likelihood=("draw", likelihood, {"long_name": "logarithm of the likelihood", "units": "1"})
     )
     ds = ds.merge(summary(draws, np.full(len(draws), 1.0 / len(draws)), [each.key for each in priors]))
-    return ds.assign_attrs(acceptance=float(sampler.acceptance_fraction.mean()), autocorrelation_time=time)
+    acceptance = float(sampler.acceptance_fraction.mean())
+    return ds.assign_attrs(acceptance=acceptance, steps_kept=steps - burnt, autocorrelation_time=time)
 
 
 def summary(
