@@ -1,4 +1,5 @@
 import signal
+from numbers import Real
 
 import numpy as np
 import pytest
@@ -11,6 +12,28 @@ from reference.surface import PlainSurface
 # Compilation, once per machine, falls into whichever example comes first.
 settings.register_profile("gearidae", deadline=None)
 settings.load_profile("gearidae")
+
+SMALL = 1e-10
+"""Of which pytest's own absolute tolerance is more than a percent."""
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _refuse_vacuous_comparisons():
+    """Refuse a comparison with a tiny value that names no absolute tolerance: pytest's own is 1e-12.
+
+    In SI units nearly everything about a micro-gear is smaller than that, and would be equal to anything.
+    """
+    compared = pytest.approx
+
+    def approx(expected, rel=None, **tolerances):
+        told = tolerances.get("abs") is not None
+        if not told and isinstance(expected, Real) and 0.0 < abs(expected) < SMALL:
+            raise ValueError(f"say abs=0, or what is allowed: 1e-12 is much beside {expected}")
+        return compared(expected, rel=rel, **tolerances)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pytest, "approx", approx)
+        yield
 
 
 @pytest.fixture(autouse=True, scope="session")
