@@ -28,7 +28,7 @@ PROMPT = 1.5
 imports: a quarter to a half is found, also on a busy machine. A good half of it is what closing the archive imports."""
 
 PROGRAM = """
-import importlib, signal, sys
+import importlib, os, signal, sys
 
 from gearidae.cli import main
 
@@ -38,7 +38,7 @@ module = importlib.import_module(place)
 real = getattr(module, name)
 
 def marked(*arguments, **options):
-    print("there", flush=True)
+    os.write(1, b"there\\n")  # at once: a sweep's threads come here side by side
     return real(*arguments, **options)
 
 setattr(module, name, marked)
