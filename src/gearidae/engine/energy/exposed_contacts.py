@@ -13,7 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.calls import nodes_number
-from gearidae.engine.energy.places import place_at
+from gearidae.engine.energy.places import place_at, share_at_edge
 from gearidae.engine.extremes.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.model.tooth_pairs import contact_length
@@ -150,8 +150,7 @@ def _divide(
     last, first = own.number[material], own.front[material]
     at, step, before = own.at, 1 if inside > own.place else -1, first
     while at != place_at(m, inside):
-        edge = (at + 1 if step > 0 else at) / m.scene.places_per_pitch
-        share = (edge - own.place) / (inside - own.place)
+        share = share_at_edge(m, at, own.place, inside)
         front = first + share * (last - first)
         if m.scene.nodes == 0:  # of elastic contacts the deflection on the way is not known
             passing = cubic(share, t - own.time, own.gap, own.gap_rate, gap, rate)

@@ -7,13 +7,20 @@ import math
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
 
-__all__ = ["place_at", "way_to_edge"]
+__all__ = ["place_at", "share_at_edge", "way_to_edge"]
 
 
 @compiled(inline=True)
 def place_at(m: Model, inside: float) -> int:
     """Index of the place along the path of contact, whose end belongs to the last one."""
     return min(int(m.scene.places_per_pitch * inside), m.scene.places - 1)
+
+
+@compiled(inline=True)
+def share_at_edge(m: Model, at: int, start: float, end: float) -> float:
+    """Share of the way from one point of the path to another at which a contact leaves a place, given by its index."""
+    edge = (at + 1 if end > start else at) / m.scene.places_per_pitch
+    return (edge - start) / (end - start)
 
 
 @compiled(inline=True)

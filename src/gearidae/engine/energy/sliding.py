@@ -7,8 +7,9 @@ changes its sign in it, or the sliding speed at the pitch point, and where a con
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.energy.places import place_at
+from gearidae.engine.energy.places import place_at, share_at_edge
 from gearidae.engine.energy.quadrature import error_estimate, integral
+from gearidae.engine.extremes.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import static_error
 
@@ -120,8 +121,7 @@ def _divide(m: Model, k: int, h: float, inside: float, work: float, there: tuple
     row, at, before = own.row + SLIDING * m.scene.places, own.at, 0.0
     step = 1 if inside > own.place else -1
     while at != end:
-        edge = (at + 1 if step > 0 else at) / m.scene.places_per_pitch
-        share = (edge - own.place) / (inside - own.place)
+        share = share_at_edge(m, at, own.place, inside)
         until = min(max(_work_until(share, h, own.power, own.power_rate, there[0], there[1]), before), work)
         m.rows[row + at] += until - before
         at, before = at + step, until
@@ -139,12 +139,9 @@ def _work_until(s: float, h: float, power0: float, rate0: float, power1: float, 
 @compiled
 def _pushing_partly(h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
     """Work of an interval in which a contact begins or ceases to push: of the power's cubic, what is above zero."""
-    rise, slope0, slope1 = power1 - power0, h * rate0, h * rate1
-    a, b = slope0 + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope0 - slope1
     total = 0.0
     for part in range(PARTS):
-        s = (part + 0.5) / PARTS
-        total += max(power0 + s * (slope0 + s * (b + s * a)), 0.0)
+        total += max(cubic((part + 0.5) / PARTS, h, power0, rate0, power1, rate1), 0.0)
     return h * total / PARTS
 
 
@@ -163,13 +160,12 @@ def _add_parts(m: Model, k: int, h: float, inside: float, side: int, there: tupl
     """
     own = m.work.exposing.pair[k]
     row, way = own.row + SLIDING * m.scene.places, inside - own.place
-    power0, slope0, slope1 = own.side * own.power, own.side * h * own.power_rate, side * h * there[1]
-    rise = side * there[0] - power0
-    a, b = slope0 + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope0 - slope1
+    power0, rate0 = own.side * own.power, own.side * own.power_rate
+    power1, rate1 = side * there[0], side * there[1]
     pushes, total = own.power >= 0.0 and there[0] >= 0.0, 0.0
     for part in range(PARTS):
         s = (part + 0.5) / PARTS
-        power = power0 + s * (slope0 + s * (b + s * a))
+        power = cubic(s, h, power0, rate0, power1, rate1)
         if not pushes:
             power *= own.side if s < 0.5 else side
         elif side != own.side:
