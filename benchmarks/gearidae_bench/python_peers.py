@@ -170,7 +170,7 @@ def _sundials(
         place = located.place
 
         def eventsfn(t: float, y: Floats, *rest: Floats) -> None:
-            rest[-1][0] = guard_at(place, t, y)
+            rest[-1][0] = guard_at(place, t, y.copy())  # what scikit-sundae hands out is read-only
 
         watch: Any = (
             (lambda t, y, yp, out: eventsfn(t, y, out))
@@ -214,10 +214,10 @@ def _make_ida(problem: Problem, place: int, tolerance: float, watch: Any) -> Any
     columns = np.empty(n * n)
 
     def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
-        residual_at(place, t, y, yp, out)
+        residual_at(place, t, y.copy(), yp.copy(), out)
 
     def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
-        jacobian_at(place, t, cj, y, columns)
+        jacobian_at(place, t, cj, y.copy(), columns)
         out[:] = columns.reshape(n, n).T
 
     solver = IDA(
@@ -240,10 +240,10 @@ def _make_cvode(method: str) -> Callable[[Problem, int, float, Any], Any]:
         zero = np.zeros(problem.start.size)
 
         def rhsfn(t: float, y: Floats, yp: Floats) -> None:
-            _rates(place, t, y, zero, yp)
+            _rates(place, t, y.copy(), zero, yp)
 
         def jacfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
-            out[:] = _slope_jacobian(place, t, y)
+            out[:] = _slope_jacobian(place, t, y.copy())
 
         solver = CVODE(
             rhsfn,

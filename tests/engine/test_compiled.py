@@ -12,7 +12,7 @@ from types import MappingProxyType
 import pytest
 from numba.core.errors import NumbaWarning
 
-from gearidae import compiled
+from gearidae.compiled import cache, options
 from reference.small_scenes import SCENES
 
 RUN = (
@@ -26,9 +26,7 @@ NOTHING = MappingProxyType({})
 
 def run(folder, model, code=RUN, more=NOTHING):
     """Run a program with its compiled code in a folder, None for that of this process."""
-    own = {
-        "PYTHONPATH": str(Path(compiled.__file__).parents[1])
-    }  # the package that is tested, wherever it lies
+    own = {"PYTHONPATH": str(Path(cache.__file__).parents[2])}  # the package that is tested, wherever it lies
     if folder is None:
         own = dict(os.environ) | own
     else:
@@ -64,13 +62,15 @@ def first_runs(tmp_path_factory):
 
 @pytest.mark.slow
 def test_what_is_compiled_is_said(first_runs):
-    """What elastic contacts need is compiled with the first of them, and not before."""
+    """What elastic contacts need is compiled with the first of them, and not before; exposures are in neither run."""
     _, runs = first_runs
     for model, message in zip(MODELS, ("the solver", "elastic contacts"), strict=True):
         told, kept = runs[model]
         assert told.stderr.count("compiling") == told.stderr.count("functions compiled in") >= 1
         assert f"compiling {message} for this machine" in told.stderr
-        assert any(path.name.startswith("service.") for path in kept) == (model == "elastic")
+        names = [path.name for path in kept]
+        assert any(name.startswith("nodes.node_force-") for name in names) == (model == "elastic")
+        assert not any(name.startswith("exposures.follow_exposures-") for name in names)
 
 
 @pytest.mark.slow
@@ -104,30 +104,28 @@ def test_the_folder_is_named_after_everything_that_goes_in(monkeypatch, tmp_path
     names = set()
 
     def note():
-        compiled.cache_folder.cache_clear()
-        names.add(compiled.cache_folder().name)
+        cache.cache_folder.cache_clear()
+        names.add(cache.cache_folder().name)
 
     note()
     note()
     assert len(names) == 1
     for package in ("numba", "llvmlite", "scikit-sundae"):
-        real = compiled.version
+        real = cache.version
         with monkeypatch.context() as patch:
-            patch.setattr(
-                compiled, "version", lambda name, p=package, r=real: "0.0" if name == p else r(name)
-            )
+            patch.setattr(cache, "version", lambda name, p=package, r=real: "0.0" if name == p else r(name))
             note()
     with monkeypatch.context() as patch:
-        patch.setattr(compiled, "COMPILED_PACKAGES", ("contact",))  # other sources
+        patch.setattr(cache, "COMPILED_PACKAGES", ("contact",))  # other sources
         note()
     assert len(names) == 5
-    compiled.cache_folder.cache_clear()
+    cache.cache_folder.cache_clear()
 
 
 def test_other_peoples_numba_cache_is_left_alone():
     import numba
 
-    assert str(compiled.cache_folder()) != numba.config.CACHE_DIR
+    assert str(cache.cache_folder()) != numba.config.CACHE_DIR
 
 
 SMALL = """
@@ -148,7 +146,7 @@ print(evaluate.__file__, cache_folder(), count.n, value)
 
 def copied(folder):
     """Another environment: the same sources at another place, with other times."""
-    package = Path(compiled.__file__).parent
+    package = Path(cache.__file__).parents[1]
     shutil.copytree(package, folder / "gearidae", copy_function=shutil.copyfile)
     return {"PYTHONPATH": str(folder)}
 
@@ -232,22 +230,22 @@ print([r.status for r in runs], len(runs[0].events), runs[0].samples["gear_speed
 @pytest.mark.by_hand
 def test_both_drivers_do_without_numbas_undocumented_options(tmp_path):
     """Slower, and equal to the last bit; to compile without the options takes three minutes."""
-    plain = run(tmp_path, "", ALL, {compiled.PLAIN: "1"})
+    plain = run(tmp_path, "", ALL, {cache.PLAIN: "1"})
     usual = run(None, "", ALL.replace("assert numba_options() == frozenset()", "assert numba_options()"))
     assert "finished" in plain.stdout
     assert plain.stdout == usual.stdout
 
 
 def test_an_option_that_numba_does_not_know_is_done_without(tmp_path, monkeypatch, caplog):
-    monkeypatch.setattr(compiled, "_UNDOCUMENTED", {"_nrt": False, "_gone": True})
-    monkeypatch.setattr(compiled, "cache_folder", lambda sources=(): tmp_path)
-    compiled.numba_options.cache_clear()
+    monkeypatch.setattr(options, "_UNDOCUMENTED", {"_nrt": False, "_gone": True})
+    monkeypatch.setattr(options, "cache_folder", lambda sources=(): tmp_path)
+    options.numba_options.cache_clear()
     try:
-        assert compiled.numba_options() == {"_nrt"}
+        assert options.numba_options() == {"_nrt"}
         assert "_gone" in caplog.text
         caplog.clear()
-        compiled.numba_options.cache_clear()
-        assert compiled.numba_options() == {"_nrt"}  # known now
+        options.numba_options.cache_clear()
+        assert options.numba_options() == {"_nrt"}  # known now
         assert caplog.text == ""
     finally:
-        compiled.numba_options.cache_clear()
+        options.numba_options.cache_clear()

@@ -170,7 +170,7 @@ def test_force_of_a_pair_of_teeth_is_that_of_its_radius(phase):
             sam_fraction=0.5,
             nodes=32,
         )[0]
-    force = mesh_forces(m, 0.0, y)[0] * m.scene.force_unit
+    force = mesh_forces(m, 0.0, y, False)[0] * m.scene.force_unit
     # six powers of length for the coefficients; pairs outside the path are held off by the tip relief
     assert force == pytest.approx(total, rel=5e-6, abs=0)
 

@@ -34,7 +34,7 @@ def pressed(direction, *, gap=3.0, joined=None, fraction=0.5):
 def test_force_is_the_slope_of_the_energy_along_the_path(direction, joined):
     """Closing; stretched in part; stretched in full. The energy is that of the balance, from its own tables."""
     m, y = pressed(direction, joined=joined)
-    ours = mesh_forces(m, 0.0, y)[1]  # no pair is on its tip relief
+    ours = mesh_forces(m, 0.0, y, False)[1]  # no pair is on its tip relief
 
     def energy(step):
         moved = y.copy()

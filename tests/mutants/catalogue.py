@@ -328,11 +328,11 @@ MUTANTS = (
         ("engine/test_search.py",),
     ),
     Mutant(
-        "energy of an elastic contact in place of its force",
-        "engine/elastic/calls.py",
-        "question = Question(FORCE, k,",
-        "question = Question(STORED, k,",
-        ("engine/test_elastic.py",),
+        "deflections settled at the end of a step, and not noted for the next ones",
+        "engine/elastic/elimination.py",
+        "elif kind == PREDICT:",
+        "elif kind == FINISH:",
+        ("engine/test_elimination.py",),
     ),
     Mutant(
         "curvature of a measured surface averaged as if it had one direction",

@@ -8,13 +8,19 @@ import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from time import monotonic
-from typing import Any
+from typing import Any, Final
 
 from numba.core import event
 
-__all__ = ["compiling"]
+from gearidae.compiled import make_ready
+
+__all__ = ["ELASTIC", "EXPOSURES", "compiling", "make_part_ready"]
 
 log = logging.getLogger(__name__)
+
+ELASTIC: Final = "elastic contacts"
+EXPOSURES: Final = "exposures"
+"""Parts of the engine that are compiled with the first scene that needs them."""
 
 _one_at_a_time = threading.RLock()
 _depth = 0
@@ -44,6 +50,12 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
         stack.callback(told.end)
         stack.enter_context(event.install_listener("numba:compile", told))
         yield
+
+
+def make_part_ready(part: str) -> None:
+    """Compile a part of the engine, or take it from the cache, before the first scene that needs it is run."""
+    with compiling(part, "some ten seconds"):
+        make_ready(part)
 
 
 def _leave() -> None:

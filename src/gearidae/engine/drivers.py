@@ -23,7 +23,7 @@ ADAMS, BDF = "adams", "bdf"
 
 TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
 
-_solver_compiling = partial(compiling, "the solver", "a minute or two")
+_solver_compiling = partial(compiling, "the solver", "about a minute")
 """Says so while the solver is compiled."""
 
 

@@ -18,7 +18,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import ELASTIC
 from gearidae.engine.elastic.newton_step import (
     FOLLOW,
     STEP,
@@ -27,7 +28,7 @@ from gearidae.engine.elastic.newton_step import (
     influence_space,
     newton_step,
 )
-from gearidae.engine.elastic.nodes import influence, node_force
+from gearidae.engine.elastic.nodes import force_of_nodes, influence
 from gearidae.engine.elastic.rows import (
     BEFORE,
     BEFORE_TANGENT,
@@ -40,7 +41,11 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import EMPTY, Floats, Model
 
-__all__ = ["begin_deflections", "finish_pair", "predict", "settle_pair"]
+__all__ = ["FINISH", "PREDICT", "SETTLE", "begin_deflections", "pair_deflections", "predict", "settle_pair"]
+
+SETTLE: Final = 0  # what to do with a pair's deflections: solve for them,
+PREDICT: Final = 1  # only interpolate or extrapolate them,
+FINISH: Final = 2  # or set them at the end of a step, and note them
 
 TRIES: Final = 12  # steps of Newton's
 STRIDE: Final = 0.25  # longest, in roughnesses
@@ -64,7 +69,24 @@ def begin_deflections(m: Model, t: float, y: Floats) -> None:
             last[i], tangent[i] = y[first + i], 0.0
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
+def pair_deflections(
+    m: Model, kind: int, k: int, known: bool, t: float, y: Floats, gap: float, rate: float
+) -> None:
+    """Do what `kind` says with a pair's deflections, at the contact length that its history has.
+
+    `SETTLE`, `PREDICT` or `FINISH`; the other parameters are those of `settle_pair`.
+    """
+    length = m.state.history[k].length
+    if kind == SETTLE:
+        settle_pair(m, k, known, t, y, gap, rate, length)
+    elif kind == PREDICT:
+        predict(m, k, known, t, y, gap, rate)
+    else:
+        _finish_pair(m, k, known, t, y, gap, rate, length)
+
+
+@compiled_once(ELASTIC, makes_arrays=True)
 def settle_pair(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> tuple[float, float]:
@@ -96,7 +118,7 @@ def settle_pair(
     force = slope = 0.0
     settled = False
     for _ in range(TRIES):
-        force, slope = node_force(m, k, known, t, y, gap, rate, length)
+        force, slope = force_of_nodes(m, k, known, t, y, gap, rate, length)
         stable = newton_step(m, k, y)
         largest = 0.0
         for i in range(n):
@@ -120,7 +142,7 @@ def settle_pair(
 
 
 @compiled(makes_arrays=True)
-def finish_pair(
+def _finish_pair(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> None:
     """Set a pair's deflections at the end of a step and note them; the parameters are those of `settle_pair`."""

@@ -21,11 +21,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import loading_value
-from gearidae.engine.elastic.nodes import farthest_joined, node_force, pressure_shares
+from gearidae.engine.compiling import ELASTIC
+from gearidae.engine.elastic.nodes import farthest_joined, force_of_nodes, pressure_shares
 from gearidae.engine.elastic.rows import (
     ADHERED_ENERGY,
     JOINED,
@@ -53,14 +54,14 @@ __all__ = [
 ]
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float, length: float) -> float:
     """Energy of one pair per length at given deflections.
 
     What a closing contact has lost since its last turning point is still in it. The pressures that go with it are left
     in the pair's rows.
     """
-    node_force(m, k, True, t, y, gap, rate, length)
+    force_of_nodes(m, k, True, t, y, gap, rate, length)
     first, profile, weights = first_unknown(m, k), node_profile(m), node_weights(m)
     pressure, shares = row(m, k, PRESSURE), noted_shares(m, k)
     energy = 0.0
@@ -86,7 +87,7 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
     return energy
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def nodes_joining_loss(m: Model, k: int, y: Floats, gap: float) -> float:
     """Adhesion loss per length of the asperities that came into contact since the last turning point."""
     gaps, shares = np.empty(m.scene.points), noted_shares(m, k)
@@ -113,7 +114,7 @@ def _add_joining_loss(m: Model, k: int, gaps: Floats, material: int, scale: floa
     return loss
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def nodes_material_loss(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
     """Do the same for one material, as if it covered everything."""
     own, gaps = m.scene.material[material], np.empty(m.scene.points)
@@ -123,7 +124,7 @@ def nodes_material_loss(m: Model, k: int, y: Floats, gap: float, material: int) 
     return _add_joining_loss(m, k, gaps, material, own.force_scale, 0.0)
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def nodes_material_energy(
     m: Model, k: int, y: Floats, gap: float, rate: float, material: int
 ) -> tuple[float, float]:
@@ -156,7 +157,7 @@ def nodes_material_energy(
     return energy, slope * rate
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def nodes_length_force(
     m: Model, k: int, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> tuple[float, float]:
@@ -184,7 +185,7 @@ def nodes_length_force(
     return energy - scale * bodies, -(push + scale * change) * rate
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def nodes_number(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
     """Asperities of a material in contact per length, over their density."""
     finer, gaps = point_weights(m), np.empty(m.scene.points)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.compiling import ELASTIC
 from gearidae.engine.elastic.rows import (
     ADHERED_ENERGY,
     GAP,
@@ -26,7 +27,7 @@ LARGEST_SHARE = 4.0
 """Largest share of a node in the motion of its pair."""
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def init_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
     """Start the histories along a contact: nothing is joined yet."""
     first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, SHARE)
@@ -39,7 +40,7 @@ def init_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
         book_points(m, k, material)
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def follow_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
     """Note the nodes' gaps at an accepted time, before the pair's own, and how far they have moved with it."""
     first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, SHARE)
@@ -51,7 +52,7 @@ def follow_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
         before[i] = h
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def join_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
     """Take the joined heights at a turning point."""
     points = m.scene.points

@@ -68,7 +68,7 @@ def influence_space(m: Model) -> Floats:
 
 @compiled(makes_arrays=True)
 def newton_step(m: Model, k: int, y: Floats) -> bool:
-    """Work out a step, and how the deflections follow the gap, after `node_force` and `influence`.
+    """Work out a step, and how the deflections follow the gap, after `force_of_nodes` and `influence`.
 
     Parameters
     ----------

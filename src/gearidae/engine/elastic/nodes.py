@@ -31,7 +31,7 @@ import math
 
 import numpy as np
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.bulk import STENCIL
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.lanes import add_lanes
@@ -43,6 +43,7 @@ from gearidae.contact.kernels.law import (
     set_branch,
     stretched_value,
 )
+from gearidae.engine.compiling import ELASTIC
 from gearidae.engine.elastic.rows import (
     POINT_ADDED,
     POINT_GAPS,
@@ -70,6 +71,7 @@ from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 
 __all__ = [
     "farthest_joined",
+    "force_of_nodes",
     "influence",
     "mark_out_of_reach",
     "middle_gap",
@@ -105,8 +107,16 @@ def mark_out_of_reach(m: Model) -> None:
         m.state.history[k].loaded = 0
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def node_force(
+    m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
+) -> tuple[float, float]:
+    """`force_of_nodes` for the rest of the engine."""
+    return force_of_nodes(m, k, known, t, y, gap, rate, length)
+
+
+@compiled(makes_arrays=True)
+def force_of_nodes(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> tuple[float, float]:
     """Force of one pair at given deflections and its slope in the pair's gap, scaled.
@@ -218,7 +228,7 @@ def point_branch(m: Model, k: int, material: int, point: int) -> int:
 
 @compiled(makes_arrays=True)
 def stiffness_matrix(m: Model, k: int, out: Floats) -> None:
-    """Slopes of a pair's pressures in the gaps of its nodes, after `node_force`.
+    """Slopes of a pair's pressures in the gaps of its nodes, after `force_of_nodes`.
 
     Parameters
     ----------
@@ -267,7 +277,7 @@ def weighed_stiffness(m: Model, k: int, out: Floats, width: int) -> None:
 
 @compiled(makes_arrays=True)
 def pressure_shares(m: Model, k: int, out: Floats) -> None:
-    """Slopes of the nodes' pressures in the pair's gap along its last motion, after `node_force`."""
+    """Slopes of the nodes' pressures in the pair's gap along its last motion, after `force_of_nodes`."""
     share, slope, stiff = row(m, k, SHARE), row(m, k, SLOPE), row(m, k, STIFFNESS)
     moved = np.empty(m.scene.points)
     to_points(m, share, moved)
@@ -302,7 +312,7 @@ def influence(m: Model, length: float, out: Floats) -> None:
             flat[i] = flat[i] * x + kappa[i]
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def node_residual(m: Model, y: Floats, out: Floats) -> None:
     """Equations of the nodes, from the pressures that the forces have just left: deflections are those they cause."""
     n, orders = m.scene.nodes, m.scene.orders
@@ -326,7 +336,7 @@ def node_residual(m: Model, y: Floats, out: Floats) -> None:
             power *= x
 
 
-@compiled(makes_arrays=True)
+@compiled_once(ELASTIC, makes_arrays=True)
 def node_rates(m: Model, yp: Floats) -> None:
     """Rates of the deflections at an accepted time, as far as the nodes' shares in the last motion tell."""
     for k in range(m.scene.histories):

@@ -9,9 +9,9 @@ length times share :math:`\ell s`, and with :math:`\ell B` of its bodies, change
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.evaluate import three_values
-from gearidae.engine.elastic.calls import nodes_length_force, nodes_material_energy, nodes_material_loss
+from gearidae.engine.elastic.energy import nodes_length_force, nodes_material_energy, nodes_material_loss
 from gearidae.engine.energy.contacts import free_material_energy, material_energy, turning_point
 from gearidae.engine.energy.lengths import length_and_rates, material_lengths
 from gearidae.engine.model.coverage import Shares, note_shares, place_inside, potentials_of, shares_of
@@ -21,7 +21,7 @@ from gearidae.engine.model.tooth_pairs import history_of
 __all__ = ["coverage_force", "coverage_power", "losses_by_material"]
 
 
-@compiled(inline=True)
+@compiled_once()
 def coverage_power(
     m: Model, potentials: tuple[Shares, Shares], coast: int, pair: int, t: float, y: Floats, w_rate: float
 ) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
-from gearidae.engine.elastic.calls import nodes_number
+from gearidae.engine.elastic.energy import nodes_number
 from gearidae.engine.energy.places import place_at, share_at_edge
 from gearidae.engine.extremes.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model

@@ -23,8 +23,9 @@ from __future__ import annotations
 
 import math
 
-from gearidae.compiled import compiled
-from gearidae.engine.elastic.calls import node_force
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import EXPOSURES
+from gearidae.engine.elastic.nodes import node_force
 from gearidae.engine.energy.exposed_contacts import (
     adds_often,
     begin_contacts,
@@ -76,11 +77,9 @@ LONGER = 1.5
 """How much longer than the last one the steps may be until a contact leaves its place."""
 
 
-@compiled
+@compiled_once(EXPOSURES)
 def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Note what is in contact at a start; nothing is exposed yet."""
-    if m.scene.places == 0:
-        return
     m.work.exposing.time, m.work.exposing.begun = t, 1
     m.work.exposing.work = m.work.exposing.error = 0.0
     m.work.exposing.often = 1 if adds_often(m) else 0
@@ -99,7 +98,7 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
         see_pressure(m, t, k, noted.place, push)
 
 
-@compiled
+@compiled_once(EXPOSURES)
 def follow_exposures(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
     """Add what the flanks have been exposed to since the last call, up to an accepted time.
 
@@ -204,7 +203,7 @@ def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _note_in_time(m)
 
 
-@compiled(inline=True)
+@compiled_once(EXPOSURES)
 def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
     """Add what a contact has been exposed to up to its turning point, before the history takes that."""
     if m.state.history[k].direction < 0.0:
@@ -236,7 +235,7 @@ def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int,
             note_pressure(m, k, at, inside, force)
 
 
-@compiled
+@compiled_once(EXPOSURES)
 def expose_touch(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> None:
     """Add what a contact has been exposed to up to its onset or separation, and take single steps from there."""
     if m.work.exposing.begun == 0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.energy.motion import kinetic_energy
 from gearidae.engine.events.record import record
 from gearidae.engine.model.residual import mesh_forces
@@ -27,16 +27,16 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
     return y[W] * m.state.slip + (0.0 if m.state.slipping != 0 else 2.0 * m.scene.rest_speed)
 
 
-@compiled
+@compiled_once()
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
     return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
 
 
-@compiled
+@compiled_once()
 def _push(m: Model, t: float, y: Floats) -> float:
     """Force on a gear at rest, from the mesh."""
-    force, relief, _, _, _, _ = mesh_forces(m, t, y)
+    force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
     return force + m.scene.damping * y[V] + relief
 
 

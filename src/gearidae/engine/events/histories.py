@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gearidae.compiled import compiled
-from gearidae.engine.elastic.calls import follow_nodes, init_nodes
+from gearidae.engine.elastic.histories import follow_nodes, init_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.dry_resistance import dry_guard, note_slip, stick_or_slip
 from gearidae.engine.events.mesh_marks import set_marks

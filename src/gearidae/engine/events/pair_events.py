@@ -9,7 +9,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
-from gearidae.engine.elastic.calls import join_nodes
+from gearidae.engine.elastic.histories import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.energy.adhesion import book_joining
 from gearidae.engine.energy.exposures import expose_touch, expose_turning

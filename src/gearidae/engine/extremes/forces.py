@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.extremes.interpolation import cubic, quintic, vertex
 from gearidae.engine.model.residual import mesh_forces, roller_force
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
@@ -133,12 +133,12 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
     return float(_force_of_law(m, t, y))
 
 
-@compiled
+@compiled_once()
 def _force_of_law(m: Model, t: float, y: Floats) -> float:
     """Force at a state, by the contact law, mesh damping included."""
     if m.scene.kind == ROLLER:
-        return roller_force(m, t, y)[0]
-    return mesh_forces(m, t, y)[0] + m.scene.damping * y[V]
+        return roller_force(m, t, y, False)[0]
+    return mesh_forces(m, t, y, False)[0] + m.scene.damping * y[V]
 
 
 @compiled

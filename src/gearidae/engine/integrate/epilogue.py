@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.energy.adhesion import follow_joining
 from gearidae.engine.energy.balance import accumulate_energy, close_balance, restart_quadrature
 from gearidae.engine.energy.exposures import expose_step, follow_exposures
@@ -122,7 +122,7 @@ def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floa
             follow_exposures(m, t, y, yp, False)
 
 
-@compiled
+@compiled_once()
 def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Set consistent rates, and what the followers of a run know of the time before, for a start at t."""
     set_rates(m, t, y, yp)

@@ -159,21 +159,26 @@ class _Solver:
     def _make(self, n: int, step: float) -> None:
         m, place = self.m, self.located.place
         column_major = np.empty(n * n)
+        # what scikit-sundae hands out is read-only, which is another type to numba
+        state, rates = np.empty(n), np.empty(n)
         blocks = np.empty(store_size(m) if m.scene.nodes > 0 else 0)
 
         def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
-            residual_at(place, t, y, yp, out)
+            state[:], rates[:] = y, yp
+            residual_at(place, t, state, rates, out)
 
         def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
+            state[:] = y
             if blocks.size > 0:
-                dense_jacobian(m, t, cj, y, blocks, out)
+                dense_jacobian(m, t, cj, state, blocks, out)
                 return
-            jacobian_at(place, t, cj, y, column_major)
+            jacobian_at(place, t, cj, state, column_major)
             out[:] = column_major.reshape(n, n).T
 
         def falling(t: float, y: Floats, yp: Floats, out: Floats) -> None:
             self._guard_calls += 1
-            out[0] = guard_at(place, t, y)
+            state[:] = y
+            out[0] = guard_at(place, t, state)
 
         vars(falling)["direction"] = [-1]
         self._history = vars(falling)  # scikit-sundae keeps the events there

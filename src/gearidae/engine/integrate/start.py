@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from gearidae.compiled import compiled
-from gearidae.engine.elastic.calls import node_rates
+from gearidae.engine.elastic.nodes import node_rates
 from gearidae.engine.events.mesh_marks import relief_step
 from gearidae.engine.model.residual import residual
 from gearidae.engine.model.state import EMPTY, GEARS, PHASE, ROLLER, Floats, Model, V, W

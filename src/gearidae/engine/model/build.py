@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearidae.contact.kernels.law import GAP_LOW
-from gearidae.engine.elastic.calls import service
+from gearidae.engine.compiling import ELASTIC, EXPOSURES, make_part_ready
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.elastic.static_solve import settle_nodes
@@ -301,8 +301,10 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
     s = m.scene
     y = np.concatenate([motion, np.zeros(int(s.nodes * s.histories))])
     if s.nodes > 0:
-        m.work.elastic_service = service()
+        make_part_ready(ELASTIC)
         settle_nodes(m, 0.0, y)
+    if s.places > 0:
+        make_part_ready(EXPOSURES)
     begin(m, 0.0, y)
     open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]

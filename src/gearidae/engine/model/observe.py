@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled_once
 from gearidae.engine.extremes.separation import separation
 from gearidae.engine.model.residual import mesh_forces, roller_force
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
@@ -18,7 +18,7 @@ _GEARS: Final = len(GEAR_COLUMNS)
 _ROLLER: Final = len(ROLLER_COLUMNS)
 
 
-@compiled
+@compiled_once()
 def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     """Write one sample.
 
@@ -36,13 +36,13 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
     u, v = y[U], y[V]
     if m.scene.kind == ROLLER:
-        force, _ = roller_force(m, t, y)
+        force, _ = roller_force(m, t, y, False)
         row[0], row[1], row[2] = u * length, v * speed, force * m.scene.force_unit
         if row.size > _ROLLER:
             row[_ROLLER] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
-    force, relief, _, _, _, _ = mesh_forces(m, t, y)
+    force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
     force += m.scene.damping * v
     e1 = 0.0
     if m.scene.error_count != 0:

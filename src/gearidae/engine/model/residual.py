@@ -14,17 +14,9 @@ contact adds the deflections at its nodes, which have no rates: the system is th
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
-from gearidae.engine.elastic.calls import (
-    FINISH,
-    PREDICT,
-    SETTLE,
-    node_force,
-    node_residual,
-    pair_deflections,
-    settle_pair,
-)
-from gearidae.engine.elastic.nodes import mark_out_of_reach
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.elastic.elimination import FINISH, PREDICT, SETTLE, pair_deflections, settle_pair
+from gearidae.engine.elastic.nodes import mark_out_of_reach, node_force, node_residual
 from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.energy.noted_force import begin_notes, note_force
 from gearidae.engine.energy.radius import radius_force
@@ -56,8 +48,8 @@ __all__ = [
 ]
 
 
-@compiled
-def roller_force(m: Model, t: float, y: Floats, settling: bool = False) -> tuple[float, float]:
+@compiled_once()
+def roller_force(m: Model, t: float, y: Floats, settling: bool) -> tuple[float, float]:
     """Force on a roller and its slope in the height, scaled; `settling` as for `mesh_forces`."""
     height, speed = y[U], y[V]
     elastic = m.scene.nodes > 0
@@ -75,7 +67,7 @@ def roller_force(m: Model, t: float, y: Floats, settling: bool = False) -> tuple
 
 @compiled(inline=True)
 def mesh_forces(
-    m: Model, t: float, y: Floats, settling: bool = False
+    m: Model, t: float, y: Floats, settling: bool
 ) -> tuple[float, float, float, float, float, float]:
     """Sum the forces of all pairs within reach, with their slopes.
 
@@ -86,7 +78,7 @@ def mesh_forces(
         Time over tau.
     y : ndarray
         State.
-    settling : bool, optional
+    settling : bool
         Whether the deflections of elastic contacts are solved for, with slopes along which they follow; otherwise they
         are those of the state, and the slopes are at fixed deflection.
 
@@ -165,7 +157,7 @@ def held(m: Model) -> bool:
 
 @compiled(inline=True)
 def motion(
-    m: Model, t: float, y: Floats, yp: Floats, out: Floats, settling: bool = False
+    m: Model, t: float, y: Floats, yp: Floats, out: Floats, settling: bool
 ) -> tuple[float, float, float, float]:
     """F(t, y, y') of the motion, in the first places of `out`, and the slopes of its forces.
 
@@ -235,9 +227,9 @@ def finish_deflections(m: Model, t: float, y: Floats) -> None:
     _ask_for_deflections(m, t, y, FINISH)
 
 
-@compiled
+@compiled_once()
 def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
-    """Ask for the deflections of all pairs within reach, in one of the ways of `gearidae.engine.elastic.calls`."""
+    """Ask for the deflections of all pairs within reach, in one of the ways of `pair_deflections`."""
     for j in range(first_unknown(m, 0), y.size):  # those of pairs out of reach are zero
         y[j] = 0.0
     reach = pairs_touching(m, y)
@@ -268,7 +260,7 @@ def residual(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
     y, yp, out : ndarray, shape (4,) or (2,), and the nodes
         State, its rate, and where the residual goes.
     """
-    motion(m, t, y, yp, out)
+    motion(m, t, y, yp, out, False)
     if m.scene.nodes > 0:
         node_residual(m, y, out)
 
@@ -291,12 +283,12 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     out : ndarray, shape (16,) or (4,)
     """
     if m.scene.kind == ROLLER:
-        _, slope = roller_force(m, t, y)
+        _, slope = roller_force(m, t, y, False)
         out[0], out[1] = cj, -m.scene.gear_inverse_mass * slope
         out[2], out[3] = -1.0, cj
         return
     w = y[W]
-    _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y)
+    _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y, False)
     a1, a2, damping = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, m.scene.damping
     out[:16] = 0.0
     out[0], out[1] = cj, a1 * force_u

@@ -116,10 +116,9 @@ def plain(record: Record) -> SimpleNamespace:
 
 
 def blank_work(work: Record) -> None:
-    """Forget what a run has left in the work records; how a driver searches and where compiled code lies stay."""
+    """Forget what a run has left in the work records; how a driver searches and where torque laws lie stay."""
     fresh = np.zeros(1, WORK)[0]
-    for name in ("elastic_service", "torque_law"):
-        fresh[name] = work[name]
+    fresh["torque_law"] = work["torque_law"]
     for name in ("as_ida", "sharpness"):
         fresh.search[name] = work.search[name]
     fresh.driver.pending = -1  # the driver is to start

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import (
     B_PIECES,
@@ -270,7 +270,7 @@ def energy_branch(m: Model, k: int, material: int) -> int:
     return m.scene.branches_at + (2 * MATERIALS * k + MATERIALS + material) * m.scene.branch_length
 
 
-@compiled
+@compiled_once()
 def static_error(m: Model, u: float, phase: float) -> tuple[float, float, float, float]:
     """Pinion's angle, static transmission error e, and its first two derivatives over R1 and R1^2, scaled.
 

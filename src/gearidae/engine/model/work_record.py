@@ -244,6 +244,5 @@ WORK: Final = record_type(
     ("search", SEARCH),
     ("driver", DRIVER),
     ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins
-    ("elastic_service", INT),  # where the compiled code of elastic contacts lies in this process
-    ("torque_law", INT, (2,)),  # and that of the torque law of either shaft; 0 without one
+    ("torque_law", INT, (2,)),  # where the compiled torque law of either shaft lies; 0 without one
 )

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.model.state import Floats, Model, Record
 
 __all__ = [
@@ -102,7 +102,7 @@ def _piece(m: Model, which: int, t: float) -> int:
     return j
 
 
-@compiled
+@compiled_once()
 def _cubic_value(m: Model, which: int, t: float) -> float:
     """Value of a cubic schedule within its knots."""
     j = _piece(m, which, t)
@@ -112,7 +112,7 @@ def _cubic_value(m: Model, which: int, t: float) -> float:
     return m.tables[k + 1] + s * (m.tables[c] + s * (m.tables[c + 1] + s * m.tables[c + 2]))
 
 
-@compiled
+@compiled_once()
 def _cubic_rate(m: Model, which: int, t: float) -> float:
     """Rate of change of a cubic schedule within its knots."""
     j = _piece(m, which, t)

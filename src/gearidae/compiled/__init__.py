@@ -1,0 +1,29 @@
+"""Compile with numba, once per machine, and never run what has gone stale.
+
+Numba's own cache looks at the file of the function it compiles, not at the files of the functions that this one
+calls, and not at the SUNDIALS library. So gearidae keeps its compiled code in a folder of its own, see `cache`. Some
+options of numba's that are not documented are used where it takes them, see `options`.
+
+What a compiled function calls is compiled into it again, and with it into all its callers. A function that is called
+rarely can be declared as `compiled_once` instead, see `once`.
+"""
+
+from gearidae.compiled.cache import cache_folder, is_cached
+from gearidae.compiled.functions import Function, compiled, compiled_callback
+from gearidae.compiled.kinds import ReadOnly, name_type
+from gearidae.compiled.once import compiled_once
+from gearidae.compiled.options import numba_options
+from gearidae.compiled.ready import make_ready
+
+__all__ = [
+    "Function",
+    "ReadOnly",
+    "cache_folder",
+    "compiled",
+    "compiled_callback",
+    "compiled_once",
+    "is_cached",
+    "make_ready",
+    "name_type",
+    "numba_options",
+]

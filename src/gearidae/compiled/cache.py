@@ -1,0 +1,165 @@
+"""Where compiled code is kept: a folder named after everything that went into it.
+
+Within that folder a function has its place by that in the package, not by the path of its file: environments with the
+same sources and versions share it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import os
+import sys
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numba
+from llvmlite import binding
+from numba.core import caching
+from platformdirs import user_cache_path
+
+__all__ = ["CAN_BE_ASKED", "PLAIN", "cache_folder", "is_cached", "own_cache"]
+
+log = logging.getLogger(__name__)
+
+COMPILED_PACKAGES: Final = ("asperities/ranges.py", "compiled", "contact", "engine", "records")
+PLAIN: Final = "GEARIDAE_PLAIN_NUMBA"
+"""Environment variable that makes gearidae do without numba's undocumented options."""
+
+_ROOT: Final = Path(__file__).parents[1]
+_OF_NO_EFFECT: Final = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS", "NUMBA_DEBUG_CACHE")  # on what is compiled
+
+
+@cache
+def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
+    """Where the compiled code of exactly these sources, library versions, settings and this processor is kept.
+
+    Under ``NUMBA_CACHE_DIR`` if that is set, else in the user's cache folder.
+
+    Parameters
+    ----------
+    sources : tuple of Path, optional
+        Folders or files besides gearidae's own whose functions are compiled, of a package that builds on it.
+    """
+    digest = hashlib.sha256(sys.version.encode())
+    for name in ("numba", "llvmlite", "numpy", "scikit-sundae"):
+        digest.update(f"{name} {version(name)}".encode())
+    digest.update(f"{binding.get_host_cpu_name()} {binding.get_host_cpu_features().flatten()}".encode())
+    for name, value in sorted(os.environ.items()):
+        if name.startswith(("NUMBA_", PLAIN)) and name not in _OF_NO_EFFECT:
+            digest.update(f"{name}={value}".encode())
+    for path in (*(_ROOT / package for package in COMPILED_PACKAGES), *sources):
+        for source in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+            digest.update(source.relative_to(path.parent).as_posix().encode())
+            digest.update(source.read_bytes())
+    base = os.environ.get("NUMBA_CACHE_DIR")
+    folder = Path(base) / "gearidae" if base else user_cache_path("gearidae")
+    return folder / digest.hexdigest()[:16]
+
+
+@cache
+def is_cached() -> bool:
+    """Whether compiled code can be kept; if not, each process compiles its own, which is said.
+
+    Numba would keep it beside the sources instead, where nothing tells whether a function that it calls has changed.
+    """
+    try:
+        cache_folder().mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=cache_folder()).close()
+    except OSError as error:
+        log.warning(
+            "compiled code cannot be kept in %s (%s): every process compiles its own; "
+            "let NUMBA_CACHE_DIR name a folder that can be written",
+            cache_folder().parent,
+            error.strerror,
+        )
+        return False
+    if getattr(numba.config, "CACHE_LOCATOR_CLASSES", ""):
+        log.warning(
+            "NUMBA_CACHE_LOCATOR_CLASSES is set, under which compiled code could go stale: none is kept"
+        )
+        return False
+    return True
+
+
+class _Declared(NamedTuple):
+    """What is being declared: what besides gearidae's own sources it is made of, and in which form."""
+
+    sources: tuple[Path, ...]
+    form: str
+
+
+_declaring = threading.RLock()
+_declared: _Declared | None = None  # nothing of ours
+
+
+class _Place(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
+    """Tells numba where the compiled code of one function is kept.
+
+    Of sources that are named the folder's name says all; a file from elsewhere, an extension, is looked at besides.
+    """
+
+    def __init__(self, function: Callable[..., Any], file: str, declared: _Declared) -> None:
+        path = Path(file).resolve()
+        self._py_file = file  # numba names it where it says that a function's code cannot be kept
+        self._which, self._stamp = f"{function.__code__.co_firstlineno}-{declared.form}", ""
+        known = [root.resolve() for root in (_ROOT, *declared.sources)]
+        roots = [root for root in known if path.is_relative_to(root)]
+        if roots:
+            inside = path.parent.relative_to(roots[0].parent) if path != roots[0] else Path(path.parent.name)
+            name = "_".join(inside.parts)
+        else:
+            name = hashlib.sha256(str(path.parent).encode()).hexdigest()[:16]
+            self._stamp = hashlib.sha256(path.read_bytes()).hexdigest()
+        self._folder = cache_folder(declared.sources) / name
+
+    def get_cache_path(self) -> str:
+        """Folder of the function's module."""
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        """What has to be the same for kept code to be fresh."""
+        return self._stamp
+
+    def get_disambiguator(self) -> str:
+        """What tells functions of one name in one module apart, and the forms of one function."""
+        return self._which
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], file: str) -> _Place | None:
+        """Return the place of a function that is declared here, and of no other."""
+        if _declared is None or not Path(file).exists():
+            return None
+        return cls(function, file, _declared)
+
+
+# numba asks the first of these that answers; its own name folders after the sources' absolute paths
+CAN_BE_ASKED: Final = hasattr(caching, "_CacheLocator") and hasattr(
+    caching.CompileResultCacheImpl, "_locator_classes"
+)
+if CAN_BE_ASKED:
+    _impl: Any = caching.CompileResultCacheImpl
+    _impl._locator_classes = [_Place, *_impl._locator_classes]
+
+
+@contextmanager
+def own_cache(sources: tuple[Path, ...], form: str) -> Iterator[None]:
+    """Have numba ask `_Place` while a function is being declared in a form, by one thread at a time.
+
+    A numba that cannot be made to ask keeps the code in the same folder, and shares it with nobody.
+    """
+    global _declared
+    config: Any = numba.config
+    with _declaring:
+        before = _declared, config.CACHE_DIR
+        _declared, config.CACHE_DIR = _Declared(sources, form), str(cache_folder(sources))
+        try:
+            yield
+        finally:
+            _declared, config.CACHE_DIR = before

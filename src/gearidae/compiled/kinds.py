@@ -1,0 +1,83 @@
+"""Numba's types of what functions take: short names of records' types, and signatures from annotations."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from typing import Annotated, Any, Final, TypeAlias, get_args, get_origin, get_type_hints
+
+import numba
+import numpy as np
+from numba import types
+from numpy.typing import NDArray
+
+__all__ = ["ReadOnly", "name_type", "signature_of"]
+
+ReadOnly: TypeAlias = Annotated[NDArray[np.float64], "read-only"]
+"""Annotation of an array that a function does not change, so that it takes those that must not be."""
+
+_KINDS: Final[dict[Any, Any]] = {
+    bool: types.boolean,
+    int: types.int64,
+    float: types.float64,
+    type(None): types.none,
+}
+"""Numba's type of each that an annotation may name, besides arrays and tuples."""
+
+_named: set[Any] = set()
+"""Types that have been given a name, which numba keeps for as long as somebody else does."""
+
+
+def name_type(value: Any, name: str) -> None:
+    """Give numba's type of a value a short name, and have annotations with the value's type mean it.
+
+    The name of a tuple of records lists all fields of all of them, and is part of the symbol of every function that
+    takes such a tuple: twelve thousand letters, of which nine tenths of all compiled code would consist.
+
+    Parameters
+    ----------
+    value : object
+        Of the type that is meant.
+    name : str
+        A digest of numba's own name is added: types that differ are never called the same.
+    """
+    kind: Any = numba.typeof(value)  # type: ignore[no-untyped-call]
+    if kind not in _named:
+        _named.add(kind)
+        kind.name = f"{name}_{hashlib.sha256(kind.name.encode()).hexdigest()[:12]}"
+    _KINDS[type(value)] = kind
+
+
+def signature_of(function: Callable[..., Any]) -> Any:
+    """Return the signature that a function's annotations say.
+
+    They may name numbers, truth values, what `name_type` knows, tuples of these, and as arguments
+    arrays: contiguous ones of real numbers in one dimension, which can be changed or are `ReadOnly`.
+
+    Raises
+    ------
+    TypeError
+        If they name anything else.
+    """
+    hints = get_type_hints(function, include_extras=True)
+    answer = hints.pop("return")
+    if _is_array(answer):
+        raise TypeError(f"{function.__qualname__}: what it returns must not be an array")
+    return _kind(function, answer)(*(_kind(function, one) for one in hints.values()))
+
+
+def _is_array(annotation: Any) -> bool:
+    origin, inside = get_origin(annotation), get_args(annotation)
+    return annotation == ReadOnly or origin is np.ndarray or (origin is tuple and any(map(_is_array, inside)))
+
+
+def _kind(function: Callable[..., Any], annotation: Any) -> Any:
+    if annotation in _KINDS:
+        return _KINDS[annotation]
+    if annotation == ReadOnly:
+        return types.Array(types.float64, 1, "C", readonly=True)
+    if get_origin(annotation) is np.ndarray:
+        return types.float64[::1]
+    if get_origin(annotation) is tuple:
+        return types.Tuple([_kind(function, one) for one in get_args(annotation)])  # type: ignore[no-untyped-call]
+    raise TypeError(f"{function.__qualname__}: {annotation} in its annotations has no type of numba's")

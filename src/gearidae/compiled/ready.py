@@ -1,0 +1,42 @@
+"""Functions that are compiled once wait here until a part of the program that calls them is about to run."""
+
+from __future__ import annotations
+
+import threading
+from typing import Final, Protocol
+
+__all__ = ["make_ready", "wait"]
+
+
+class Waiting(Protocol):
+    """A function that has been declared and not yet compiled."""
+
+    def make_ready(self) -> None:
+        """Compile it, or take it from the cache, and say to its callers where it lies."""
+
+
+_waiting: Final[dict[str, list[Waiting]]] = {}
+_one_at_a_time = threading.RLock()
+
+
+def wait(part: str, function: Waiting) -> None:
+    """Have a function wait until its part is made ready."""
+    _waiting.setdefault(part, []).append(function)
+
+
+def make_ready(part: str = "") -> None:
+    """Compile what waits for a part of the program, or take it from the cache; nothing if it has been done.
+
+    Parameters
+    ----------
+    part : str
+        As said where the functions were declared. The empty string stands for what every run needs, which is made
+        ready before Python calls the first compiled function.
+    """
+    waiting = _waiting.get(part)
+    if waiting:
+        with _one_at_a_time:
+            while waiting:
+                one = waiting[-1]
+                one.make_ready()
+                waiting.remove(one)  # others may have come meanwhile

@@ -1,0 +1,233 @@
+"""Functions that are compiled once, and called at their address: what they take and return, and when they are ready."""
+
+import hashlib
+import importlib
+import subprocess
+import sys
+import threading
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gearidae.compiled import ReadOnly, cache_folder, compiled, compiled_once, make_ready, ready
+from gearidae.compiled.kinds import signature_of
+from gearidae.engine.model.state import Floats
+
+
+@compiled_once()
+def weigh(
+    flag: bool, count: int, size: float, numbers: Floats, pair: tuple[float, int]
+) -> tuple[float, int, bool]:
+    numbers[0] += size
+    return pair[0] * numbers[1] + size, count + pair[1], not flag
+
+
+@compiled
+def weigh_from_compiled(flag, count, size, numbers, pair):
+    return weigh(flag, count, size, numbers, pair)
+
+
+WHOLE = st.integers(-(2**30), 2**30)
+REAL = st.floats(-1e100, 1e100)
+
+
+@given(st.booleans(), WHOLE, REAL, st.lists(REAL, min_size=2, max_size=5), st.tuples(REAL, WHOLE))
+def test_a_call_hands_everything_over(flag, count, size, numbers, pair):
+    """The same to the last bit from Python, from compiled code and in Python."""
+    answers = []
+    for function in (weigh.py_func, weigh, weigh_from_compiled):
+        own = np.array(numbers)
+        answers.append((function(flag, count, size, own, pair), own.tolist()))
+    assert answers[0] == answers[1] == answers[2]
+
+
+@compiled_once()
+def add_to_all(numbers: Floats, more: float) -> None:
+    numbers += more
+
+
+@compiled_once()
+def total(numbers: ReadOnly) -> float:
+    return numbers.sum()
+
+
+@compiled
+def total_and_more(numbers, fixed):
+    add_to_all(numbers, 2)  # an integer that is written out becomes what the annotation says
+    return total(numbers) + total(fixed)
+
+
+def test_numbers_become_what_the_annotations_say_and_arrays_may_be_read_only():
+    numbers, fixed = np.arange(3.0), np.arange(4.0)
+    fixed.flags.writeable = False
+    assert total_and_more(numbers, fixed) == 9.0 + 6.0
+    assert numbers.tolist() == [2.0, 3.0, 4.0]
+
+
+def test_what_must_not_be_changed_is_not_handed_over_for_it():
+    @compiled
+    def change(numbers):
+        add_to_all(numbers, 1.0)
+
+    fixed = np.arange(3.0)
+    fixed.flags.writeable = False
+    with pytest.raises(Exception, match="readonly array"):
+        change(fixed)
+
+
+class Named(NamedTuple):
+    number: float
+
+
+def _untyped(one: Any) -> float: ...
+
+
+def _unnamed(one: Named) -> float: ...
+
+
+def _bare(one: float) -> Floats: ...
+
+
+def _inside(one: float) -> tuple[float, ReadOnly]: ...
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (_untyped, "typing.Any in its annotations"),
+        (_unnamed, "Named'> in its annotations"),
+        (_bare, "must not be an array"),
+        (_inside, "must not be an array"),
+    ],
+)
+def test_annotations_that_are_no_signature_are_refused(function, message):
+    with pytest.raises(TypeError, match=message) as refused:
+        signature_of(function)
+    assert function.__name__ in str(refused.value)
+
+
+@compiled_once("a part of this test")
+def late(number: float) -> float:
+    return 2.0 * number
+
+
+@compiled
+def call_late(number):
+    return late(number)
+
+
+def test_a_part_that_is_not_ready_raises_and_does_not_crash():
+    with pytest.raises(RuntimeError, match=r"test_compiled_once\.late has not been made ready"):
+        call_late(1.0)
+    make_ready("a part of this test")
+    assert call_late(1.0) == 2.0
+
+
+class Interrupted:
+    """A function whose compilation is interrupted at first."""
+
+    tries = 0
+
+    def make_ready(self):
+        self.tries += 1
+        if self.tries == 1:
+            raise KeyboardInterrupt
+
+
+def test_what_has_been_interrupted_still_waits():
+    one = Interrupted()
+    ready.wait("interrupted", one)
+    with pytest.raises(KeyboardInterrupt):
+        make_ready("interrupted")
+    for _ in range(2):
+        make_ready("interrupted")
+    assert one.tries == 2
+
+
+class Slow:
+    """A function that is being compiled while others ask for it."""
+
+    def __init__(self):
+        self.begun, self.go_on, self.calls = threading.Event(), threading.Event(), 0
+
+    def make_ready(self):
+        self.calls += 1
+        self.begun.set()
+        assert self.go_on.wait(60.0)
+
+
+def test_a_second_thread_waits_for_the_first():
+    """And what is declared meanwhile is not forgotten."""
+    slow, other = Slow(), Interrupted()
+    other.tries = 1
+    ready.wait("threads", slow)
+    done = []
+    threads = [
+        threading.Thread(target=lambda: (make_ready("threads"), done.append(other.tries))) for _ in range(2)
+    ]
+    for thread in threads:
+        thread.start()
+    assert slow.begun.wait(60.0)
+    ready.wait("threads", other)
+    assert done == []
+    slow.go_on.set()
+    for thread in threads:
+        thread.join(60.0)
+    assert slow.calls == 1
+    assert done == [2, 2]
+
+
+KEPT = """
+from gearidae.compiled import compiled, compiled_once
+@compiled_once()
+def twice(number: float) -> float:
+    return 2.0 * number
+@compiled
+def four_times(number: float) -> float:
+    return twice(twice(number))
+@compiled
+def eight_times(number: float) -> float:
+    return four_times(twice(number))
+"""
+USED = """
+from numba.core import event
+class Count(event.Listener):
+    n = 0
+    def on_start(self, begun): self.n += 1
+    def on_end(self, done): pass
+count = Count()
+event.register("numba:compile", count)
+import kept
+print(kept.eight_times(1.5), count.n)
+"""
+
+
+def test_kept_callers_find_what_they_call_in_another_process(tmp_path):
+    """Each function is compiled once, in the first process; the second has it at another address."""
+    (tmp_path / "kept.py").write_text(KEPT)
+    program = f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{USED}"
+    told = [
+        subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+        for _ in range(2)
+    ]
+    first, second = (line.split() for line in told)
+    assert first[0] == second[0] == "12.0"
+    assert int(first[1]) > 0
+    assert second[1] == "0"
+    names = {path.name.split("-")[0] for path in _kept_in(tmp_path)}
+    assert names == {"kept.twice", "kept.four_times", "kept.eight_times"}
+
+
+def _kept_in(folder):
+    name = hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:16]
+    return list((cache_folder() / name).glob("*.nbi"))
+
+
+def test_a_numba_that_compiles_nothing_gets_the_function_itself(monkeypatch):
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
+    plain = importlib.import_module("gearidae.compiled.once").compiled_once()(late.py_func)
+    assert plain is late.py_func
