@@ -10,19 +10,19 @@ rarely can be declared as `compiled_once` instead, see `once`.
 
 from gearidae.compiled.cache import cache_folder, is_cached
 from gearidae.compiled.functions import Function, compiled, compiled_callback
-from gearidae.compiled.kinds import ReadOnly, name_type
+from gearidae.compiled.kinds import name_type
 from gearidae.compiled.once import compiled_once
 from gearidae.compiled.options import numba_options
-from gearidae.compiled.ready import make_ready
+from gearidae.compiled.ready import is_ready, make_ready
 
 __all__ = [
     "Function",
-    "ReadOnly",
     "cache_folder",
     "compiled",
     "compiled_callback",
     "compiled_once",
     "is_cached",
+    "is_ready",
     "make_ready",
     "name_type",
     "numba_options",

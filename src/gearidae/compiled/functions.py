@@ -11,7 +11,6 @@ import numba
 
 from gearidae.compiled.cache import CAN_BE_ASKED, is_cached, own_cache
 from gearidae.compiled.options import numba_options
-from gearidae.compiled.ready import make_ready
 
 __all__ = ["Function", "compiled", "compiled_callback"]
 
@@ -35,7 +34,6 @@ class Function:
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python."""
-        make_ready()
         return self._called(*arguments)
 
     @property

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
-from typing import Annotated, Any, Final, TypeAlias, get_args, get_origin, get_type_hints
+from typing import Any, Final, get_args, get_origin, get_type_hints
 
 import numba
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
-__all__ = ["ReadOnly", "name_type", "signature_of"]
-
-ReadOnly: TypeAlias = Annotated[NDArray[np.float64], "read-only"]
-"""Annotation of an array that a function does not change, so that it takes those that must not be."""
+__all__ = ["name_type", "signature_of"]
 
 _KINDS: Final[dict[Any, Any]] = {
     bool: types.boolean,
@@ -52,14 +48,14 @@ def signature_of(function: Callable[..., Any]) -> Any:
     """Return the signature that a function's annotations say.
 
     They may name numbers, truth values, what `name_type` knows, tuples of these, and as arguments
-    arrays: contiguous ones of real numbers in one dimension, which can be changed or are `ReadOnly`.
+    arrays: contiguous ones of real numbers in one dimension, which can be changed.
 
     Raises
     ------
     TypeError
         If they name anything else.
     """
-    hints = get_type_hints(function, include_extras=True)
+    hints = get_type_hints(function)
     answer = hints.pop("return")
     if _is_array(answer):
         raise TypeError(f"{function.__qualname__}: what it returns must not be an array")
@@ -68,14 +64,12 @@ def signature_of(function: Callable[..., Any]) -> Any:
 
 def _is_array(annotation: Any) -> bool:
     origin, inside = get_origin(annotation), get_args(annotation)
-    return annotation == ReadOnly or origin is np.ndarray or (origin is tuple and any(map(_is_array, inside)))
+    return origin is np.ndarray or (origin is tuple and any(map(_is_array, inside)))
 
 
 def _kind(function: Callable[..., Any], annotation: Any) -> Any:
     if annotation in _KINDS:
         return _KINDS[annotation]
-    if annotation == ReadOnly:
-        return types.Array(types.float64, 1, "C", readonly=True)
     if get_origin(annotation) is np.ndarray:
         return types.float64[::1]
     if get_origin(annotation) is tuple:

@@ -97,7 +97,7 @@ class Once:
         return builder.call(builder.inttoptr(address, kind.as_pointer()), values)
 
 
-def compiled_once(part: str = "", *, makes_arrays: bool = False) -> Callable[[F], F]:
+def compiled_once(part: str, *, makes_arrays: bool = False) -> Callable[[F], F]:
     """Compile a numerical function on its own, and not into its callers; for what is called rarely or takes long.
 
     Its annotations are its signature, see `gearidae.compiled.kinds.signature_of`; callers give all arguments.
@@ -105,8 +105,8 @@ def compiled_once(part: str = "", *, makes_arrays: bool = False) -> Callable[[F]
     Parameters
     ----------
     part : str
-        What only some scenes need is compiled with the first that does: by `make_ready` with the same name.
-        Without a name it is compiled before Python calls any compiled function.
+        Of the program, by any name. The function is compiled by `make_ready` with the same name, before the first call
+        from compiled code.
     makes_arrays : bool
         As for `compiled`.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Final, Protocol
 
-__all__ = ["make_ready", "wait"]
+__all__ = ["is_ready", "make_ready", "wait"]
 
 
 class Waiting(Protocol):
@@ -24,14 +24,18 @@ def wait(part: str, function: Waiting) -> None:
     _waiting.setdefault(part, []).append(function)
 
 
-def make_ready(part: str = "") -> None:
+def is_ready(part: str) -> bool:
+    """Whether nothing waits for a part of the program."""
+    return not _waiting.get(part)
+
+
+def make_ready(part: str) -> None:
     """Compile what waits for a part of the program, or take it from the cache; nothing if it has been done.
 
     Parameters
     ----------
     part : str
-        As said where the functions were declared. The empty string stands for what every run needs, which is made
-        ready before Python calls the first compiled function.
+        As said where the functions were declared.
     """
     waiting = _waiting.get(part)
     if waiting:

@@ -12,15 +12,19 @@ from typing import Any, Final
 
 from numba.core import event
 
-from gearidae.compiled import make_ready
+from gearidae.compiled import is_ready, make_ready
 
-__all__ = ["ELASTIC", "EXPOSURES", "compiling", "make_part_ready"]
+__all__ = ["ELASTIC", "EXPOSURES", "HOW_LONG", "SOLVER", "compiling", "make_part_ready"]
 
 log = logging.getLogger(__name__)
 
+SOLVER: Final = "the solver"
 ELASTIC: Final = "elastic contacts"
 EXPOSURES: Final = "exposures"
-"""Parts of the engine that are compiled with the first scene that needs them."""
+"""Parts of the engine, each compiled with the first scene that needs it."""
+
+HOW_LONG: Final = {SOLVER: "about a minute", ELASTIC: "some ten seconds", EXPOSURES: "some ten seconds"}
+"""How long that takes."""
 
 _one_at_a_time = threading.RLock()
 _depth = 0
@@ -54,8 +58,9 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
 
 def make_part_ready(part: str) -> None:
     """Compile a part of the engine, or take it from the cache, before the first scene that needs it is run."""
-    with compiling(part, "some ten seconds"):
-        make_ready(part)
+    if not is_ready(part):
+        with compiling(part, HOW_LONG[part]):
+            make_ready(part)
 
 
 def _leave() -> None:

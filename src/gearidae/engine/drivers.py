@@ -8,7 +8,7 @@ from functools import cache, partial
 from importlib import import_module
 from types import ModuleType
 
-from gearidae.engine.compiling import compiling
+from gearidae.engine.compiling import HOW_LONG, SOLVER, compiling
 from gearidae.engine.integrate.driver import Block
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import GEARS
@@ -23,7 +23,7 @@ ADAMS, BDF = "adams", "bdf"
 
 TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
 
-_solver_compiling = partial(compiling, "the solver", "about a minute")
+_solver_compiling = partial(compiling, SOLVER, HOW_LONG[SOLVER])
 """Says so while the solver is compiled."""
 
 

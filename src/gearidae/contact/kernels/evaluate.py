@@ -7,7 +7,7 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from gearidae.compiled import ReadOnly, compiled, compiled_once
+from gearidae.compiled import compiled
 from gearidae.contact.kernels.division import place_of
 from gearidae.contact.kernels.lanes import BESIDE, eight_powers, sum_and_slope, three_slopes
 from gearidae.contact.kernels.layout import (
@@ -231,8 +231,8 @@ def _piece_value(table: Floats, offset: int, pieces: int, e: float) -> float:
     return power8(table, np.uintp(offset + (DEGREE + 1) * piece), r, r2, r2 * r2)
 
 
-@compiled_once()
-def integrated_value(table: ReadOnly, joined: float, stretch: float) -> tuple[float, float]:
+@compiled
+def integrated_value(table: Floats, joined: float, stretch: float) -> tuple[float, float]:
     """t(Z, S) and its slope in S, whatever the stretch limit.
 
     Parameters

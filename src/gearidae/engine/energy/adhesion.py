@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_joining_loss
 from gearidae.engine.energy.contacts import joining_loss
 from gearidae.engine.energy.coverage import losses_by_material
@@ -27,7 +28,7 @@ from gearidae.engine.model.tooth_pairs import contact_length, history_of, pair_g
 __all__ = ["book_joining", "follow_joining", "follow_joining_by_place", "joining_lag", "sample_joining"]
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
     """Add the adhesion loss of a pair's asperities, before the turning point of a closing contact is noted."""
     length = 1.0
@@ -74,7 +75,7 @@ def _book_before(m: Model, coast: int, pair: int, loss: float, length: float) ->
     q.length_work += loss * (length - was)
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _book_materials_before(m: Model, coast: int, pair: int, k: int, y: Floats, gap: float) -> None:
     """Do the same for each material of a pair whose shares change along the path."""
     first, last = pairs_on_path(m, coast)
@@ -121,7 +122,7 @@ def follow_joining(m: Model, h: float, y: Floats, w_rate: float, now: bool) -> N
             _follow_flank(m, coast, h, y, w_rate)
 
 
-@compiled_once()
+@compiled
 def follow_joining_by_place(m: Model, t: float, y: Floats, w_rate: float) -> None:
     """Follow the lags of contacts whose shares change along the path from where they were followed last, to t."""
     h = t - m.work.lag_time
@@ -168,7 +169,7 @@ def _follow_flank(m: Model, coast: int, h: float, y: Floats, w_rate: float) -> N
         own.lag_power, own.lag_rate = power, rate
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _material_lags(
     m: Model, coast: int, pair: int, k: int, gap: float, y: Floats, w_rate: float
 ) -> tuple[float, float]:

@@ -32,6 +32,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.adhesion import follow_joining_by_place, joining_lag
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.exposures import begin_exposures
@@ -77,7 +78,7 @@ def carry_balance(old: Model, old_y: Floats, m: Model, y: Floats) -> None:
     m.state.energy.model_change += stored_energy(m, y)[0] - stored_energy(old, old_y)[0]
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Begin a quadrature at a start, where speeds and torques may jump."""
     q = m.work.quadrature
@@ -245,7 +246,7 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
     r.mesh_speed, r.mesh_acceleration = y[V], yp[V]
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def close_balance(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Bring all sums up to an accepted time, after its event."""
     accumulate_energy(m, t, y, yp, True)

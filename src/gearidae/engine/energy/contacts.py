@@ -8,6 +8,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_stored
 from gearidae.engine.model.coverage import Shares, note_shares, potential_of, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
@@ -60,7 +61,7 @@ def material_energy(m: Model, k: int, gap: float, material: int) -> tuple[float,
     return stretched_energy(table, h.adhered_energy[material], gap + own.gap_offset, joined)
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
     """Stored energy of all contacts, and the part lost by asperities in contact since the last turning point.
 

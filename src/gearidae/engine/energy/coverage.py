@@ -9,7 +9,7 @@ length times share :math:`\ell s`, and with :math:`\ell B` of its bodies, change
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled, compiled_once
+from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import three_values
 from gearidae.engine.elastic.energy import nodes_length_force, nodes_material_energy, nodes_material_loss
 from gearidae.engine.energy.contacts import free_material_energy, material_energy, turning_point
@@ -21,7 +21,7 @@ from gearidae.engine.model.tooth_pairs import history_of
 __all__ = ["coverage_force", "coverage_power", "losses_by_material"]
 
 
-@compiled_once()
+@compiled(inline=True)
 def coverage_power(
     m: Model, potentials: tuple[Shares, Shares], coast: int, pair: int, t: float, y: Floats, w_rate: float
 ) -> tuple[float, float]:

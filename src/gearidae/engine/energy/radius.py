@@ -15,6 +15,7 @@ import math
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_length_force
 from gearidae.engine.energy.contacts import free_energy, joined_energy
 from gearidae.engine.energy.coverage import coverage_force, coverage_power
@@ -26,7 +27,7 @@ from gearidae.engine.model.tooth_pairs import history_of
 __all__ = ["pairs_on_path", "radius_force", "radius_power", "sample_radius_power"]
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def sample_radius_power(m: Model, t: float, y: Floats) -> None:
     """Look again at the power of the changing radius, which jumps at a mesh mark.
 
@@ -100,7 +101,7 @@ def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def radius_force(
     m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float, rate: float
 ) -> tuple[float, float, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.motion import kinetic_energy
 from gearidae.engine.events.record import record
 from gearidae.engine.model.residual import mesh_forces
@@ -27,13 +28,13 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
     return y[W] * m.state.slip + (0.0 if m.state.slipping != 0 else 2.0 * m.scene.rest_speed)
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
     return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _push(m: Model, t: float, y: Floats) -> float:
     """Force on a gear at rest, from the mesh."""
     force, relief, _, _, _, _ = mesh_forces(m, t, y, False)

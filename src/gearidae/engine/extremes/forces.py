@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.extremes.interpolation import cubic, quintic, vertex
 from gearidae.engine.model.residual import mesh_forces, roller_force
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
@@ -133,7 +134,7 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
     return float(_force_of_law(m, t, y))
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _force_of_law(m: Model, t: float, y: Floats) -> float:
     """Force at a state, by the contact law, mesh damping included."""
     if m.scene.kind == ROLLER:

@@ -6,6 +6,7 @@ import math
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.model.state import ROLLER, Floats, Model, Record, U
 from gearidae.engine.model.tooth_pairs import all_pairs, gap_and_rate, history_of, pair_at
@@ -13,7 +14,7 @@ from gearidae.engine.model.tooth_pairs import all_pairs, gap_and_rate, history_o
 __all__ = ["follow_separation", "note_separation", "separation"]
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def separation(m: Model, y: Floats) -> float:
     """Smallest distance of the flanks at a state, deflection included, scaled."""
     if m.scene.nodes == 0:

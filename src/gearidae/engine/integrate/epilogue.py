@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.adhesion import follow_joining
 from gearidae.engine.energy.balance import accumulate_energy, close_balance, restart_quadrature
 from gearidae.engine.energy.exposures import expose_step, follow_exposures
@@ -122,7 +123,7 @@ def _book(m: Model, t: float, y: Floats, yp: Floats, between: tuple[Floats, Floa
             follow_exposures(m, t, y, yp, False)
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Set consistent rates, and what the followers of a run know of the time before, for a start at t."""
     set_rates(m, t, y, yp)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearidae.contact.kernels.law import GAP_LOW
-from gearidae.engine.compiling import ELASTIC, EXPOSURES, make_part_ready
+from gearidae.engine.compiling import ELASTIC, EXPOSURES, SOLVER, make_part_ready
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.elastic.static_solve import settle_nodes
@@ -88,6 +88,7 @@ def make_problem(
     SceneError
         If the scene is beyond what the engine can do.
     """
+    make_part_ready(SOLVER)
     build = _gear_problem if scene.roller is None else _roller_problem
     problem = build(scene, nodes, begin)
     problem.columns = columns or problem.columns

@@ -11,6 +11,7 @@ from typing import Final, NamedTuple, TypeAlias
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.evaluate import three_values, value_of_shares
 from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import Model
 
 __all__ = [
@@ -40,7 +41,7 @@ class Fraction(NamedTuple):
     bend: float
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _enter_cell(m: Model, k: int, coast: int, pair: int, inside: float) -> None:
     """Have the cell of a pair and a place noted: the way along which neither side passes a middle of its places.
 

@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from gearidae.compiled import compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.extremes.separation import separation
 from gearidae.engine.model.residual import mesh_forces, roller_force
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
@@ -18,7 +19,7 @@ _GEARS: Final = len(GEAR_COLUMNS)
 _ROLLER: Final = len(ROLLER_COLUMNS)
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     """Write one sample.
 

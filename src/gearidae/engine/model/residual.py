@@ -15,6 +15,7 @@ contact adds the deflections at its nodes, which have no rates: the system is th
 from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.elimination import FINISH, PREDICT, SETTLE, pair_deflections, settle_pair
 from gearidae.engine.elastic.nodes import mark_out_of_reach, node_force, node_residual
 from gearidae.engine.elastic.rows import first_unknown
@@ -48,7 +49,7 @@ __all__ = [
 ]
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def roller_force(m: Model, t: float, y: Floats, settling: bool) -> tuple[float, float]:
     """Force on a roller and its slope in the height, scaled; `settling` as for `mesh_forces`."""
     height, speed = y[U], y[V]
@@ -227,7 +228,7 @@ def finish_deflections(m: Model, t: float, y: Floats) -> None:
     _ask_for_deflections(m, t, y, FINISH)
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
     """Ask for the deflections of all pairs within reach, in one of the ways of `pair_deflections`."""
     for j in range(first_unknown(m, 0), y.size):  # those of pairs out of reach are zero

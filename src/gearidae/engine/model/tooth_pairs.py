@@ -24,6 +24,7 @@ from gearidae.contact.kernels.law import (
     set_branch,
     stretched_value,
 )
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.coverage import Shares, loading_of
 from gearidae.engine.model.state import (
     COAST,
@@ -270,7 +271,7 @@ def energy_branch(m: Model, k: int, material: int) -> int:
     return m.scene.branches_at + (2 * MATERIALS * k + MATERIALS + material) * m.scene.branch_length
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def static_error(m: Model, u: float, phase: float) -> tuple[float, float, float, float]:
     """Pinion's angle, static transmission error e, and its first two derivatives over R1 and R1^2, scaled.
 

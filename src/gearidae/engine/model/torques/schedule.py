@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import Floats, Model, Record
 
 __all__ = [
@@ -102,7 +103,7 @@ def _piece(m: Model, which: int, t: float) -> int:
     return j
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _cubic_value(m: Model, which: int, t: float) -> float:
     """Value of a cubic schedule within its knots."""
     j = _piece(m, which, t)
@@ -112,7 +113,7 @@ def _cubic_value(m: Model, which: int, t: float) -> float:
     return m.tables[k + 1] + s * (m.tables[c] + s * (m.tables[c + 1] + s * m.tables[c + 2]))
 
 
-@compiled_once()
+@compiled_once(SOLVER)
 def _cubic_rate(m: Model, which: int, t: float) -> float:
     """Rate of change of a cubic schedule within its knots."""
     j = _piece(m, which, t)
