@@ -101,7 +101,7 @@ def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
-@compiled_once(SOLVER)
+@compiled
 def radius_force(
     m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float, rate: float
 ) -> tuple[float, float, float]:
