@@ -225,6 +225,23 @@ def _kept_in(folder):
     return list((cache_folder() / name).glob("*.nbi"))
 
 
+PROBLEM_FIRST = """
+import gearidae as gd
+from gearidae.engine.model.build import make_problem
+problem = make_problem(gd.preset("teodorescu2009"))
+from gearidae.engine.drivers import ready_driver
+ready_driver("{}", problem)
+"""
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_a_driver_is_ready_that_is_loaded_after_the_problem_has_been_made(backend):
+    """What only drivers call is declared when they are imported."""
+    program = PROBLEM_FIRST.format(backend)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 def test_a_numba_that_compiles_nothing_gets_the_function_itself(monkeypatch):
     monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
     plain = importlib.import_module("gearidae.compiled.once").compiled_once("tests")(late.py_func)

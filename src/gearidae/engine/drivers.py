@@ -8,7 +8,7 @@ from functools import cache, partial
 from importlib import import_module
 from types import ModuleType
 
-from gearidae.engine.compiling import HOW_LONG, SOLVER, compiling
+from gearidae.engine.compiling import HOW_LONG, SOLVER, compiling, make_part_ready
 from gearidae.engine.integrate.driver import Block
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import GEARS
@@ -31,7 +31,9 @@ _solver_compiling = partial(compiling, SOLVER, HOW_LONG[SOLVER])
 def load_driver(backend: str) -> ModuleType:
     """Import a driver; late, as the native one compiles its callbacks when it is imported."""
     with _solver_compiling():
-        return import_module(f"gearidae.engine.integrate.{'native' if backend == 'native' else 'portable'}")
+        driver = import_module(f"gearidae.engine.integrate.{'native' if backend == 'native' else 'portable'}")
+        make_part_ready(SOLVER)  # what only drivers call has been declared now
+        return driver
 
 
 @cache
