@@ -13,6 +13,7 @@ import pytest
 from numba.core.errors import NumbaWarning
 
 from gearidae.compiled import cache, options
+from reference.compilations import COUNTING
 from reference.small_scenes import SCENES
 
 RUN = (
@@ -128,20 +129,16 @@ def test_other_peoples_numba_cache_is_left_alone():
     assert str(cache.cache_folder()) != numba.config.CACHE_DIR
 
 
-SMALL = """
+SMALL = (
+    COUNTING
+    + """
 from gearidae.contact.kernels import evaluate
 from gearidae.compiled import cache_folder
-from numba.core import event
 import numpy as np
-class Count(event.Listener):
-    n = 0
-    def on_start(self, begun): self.n += 1
-    def on_end(self, done): pass
-count = Count()
-event.register("numba:compile", count)
 value = evaluate._septic(np.arange(64.0), 0, 0.5 / evaluate.KNOTS_PER_SIGMA, 0.0, 4)[0]
 print(evaluate.__file__, cache_folder(), count.n, value)
 """
+)
 
 
 def copied(folder):
@@ -229,7 +226,7 @@ print([r.status for r in runs], len(runs[0].events), runs[0].samples["gear_speed
 
 @pytest.mark.by_hand
 def test_both_drivers_do_without_numbas_undocumented_options(tmp_path):
-    """Slower, and equal to the last bit; to compile without the options takes three minutes."""
+    """Slower, and equal to the last bit; to compile without the options takes one to three minutes."""
     plain = run(tmp_path, "", ALL, {cache.PLAIN: "1"})
     usual = run(None, "", ALL.replace("assert numba_options() == frozenset()", "assert numba_options()"))
     assert "finished" in plain.stdout

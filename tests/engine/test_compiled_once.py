@@ -1,10 +1,10 @@
 """Functions that are compiled once, and called at their address: what they take and return, and when they are ready."""
 
-import hashlib
 import importlib
 import subprocess
 import sys
 import threading
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba
@@ -13,9 +13,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.compiled import cache_folder, compiled, compiled_once, is_ready, make_ready, ready
+from gearidae.compiled import compiled, compiled_once, is_ready, make_ready, ready
 from gearidae.compiled.kinds import signature_of
 from gearidae.engine.model.state import Floats
+from reference.compilations import COUNTING
 
 
 @compiled_once("tests")
@@ -191,38 +192,26 @@ def eight_times(number: float) -> float:
     return four_times(twice(number))
 """
 USED = """
-from numba.core import event
-class Count(event.Listener):
-    n = 0
-    def on_start(self, begun): self.n += 1
-    def on_end(self, done): pass
-count = Count()
-event.register("numba:compile", count)
 import kept
 kept.make_ready("kept")
-print(kept.eight_times(1.5), count.n)
+print(kept.eight_times(1.5), count.n, kept.eight_times.cache_path)
 """
 
 
 def test_kept_callers_find_what_they_call_in_another_process(tmp_path):
     """Each function is compiled once, in the first process; the second has it at another address."""
     (tmp_path / "kept.py").write_text(KEPT)
-    program = f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{USED}"
+    program = f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{COUNTING}{USED}"
     told = [
         subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
         for _ in range(2)
     ]
-    first, second = (line.split() for line in told)
+    first, second = (line.rstrip("\n").split(maxsplit=2) for line in told)
     assert first[0] == second[0] == "12.0"
     assert int(first[1]) > 0
     assert second[1] == "0"
-    names = {path.name.split("-")[0] for path in _kept_in(tmp_path)}
+    names = {path.name.split("-")[0] for path in Path(second[2]).glob("*.nbi")}
     assert names == {"kept.twice", "kept.four_times", "kept.eight_times"}
-
-
-def _kept_in(folder):
-    name = hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:16]
-    return list((cache_folder() / name).glob("*.nbi"))
 
 
 PROBLEM_FIRST = """
