@@ -27,6 +27,7 @@ from gearidae_bench.roots import (
     GAUSS,
     STEPS,
     find_root,
+    handle_event,
     pass_events,
 )
 from gearidae_bench.steps import (
@@ -187,7 +188,7 @@ def run_dop853(
         y[:] = new
         t = later
         if fallen and land:
-            _, counts[FAILED] = handle(m, t, y, room, 0)
+            counts[FAILED] = handle_event(m, t, y, room)
         if counts[FAILED] != 0:
             return
         if fallen:

@@ -129,6 +129,8 @@ def measure_scene(
             error = run_error(
                 reference.speed, reference.position, outcome.speed, outcome.position, reference.length
             )
+            if math.isinf(error):
+                report(f"{bench.title}: {contender.label} broke off at the tolerance {tolerance:.0e}")
             if seconds < SHORT:
                 seconds, _ = _timed(contender, problem, tolerance, times)
             series.append(_Series(contender, tolerance, error, outcome, [seconds]))

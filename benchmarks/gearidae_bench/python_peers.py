@@ -16,14 +16,9 @@ from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
 from gearidae.engine.events.events import CONTINUE
+from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
-from gearidae.engine.integrate.by_address import (
-    accept_at,
-    guard_at,
-    handle_at,
-    jacobian_at,
-    residual_at,
-)
+from gearidae.engine.integrate.by_address import guard_at, jacobian_at, residual_at
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.residual import jacobian
@@ -32,6 +27,7 @@ from gearidae.engine.sundials.memory import Located, model_at
 from gearidae_bench.compiling import compiled
 from gearidae_bench.contender import BROKEN, Contender, Outcome
 from gearidae_bench.reference import end_of, physical
+from gearidae_bench.roots import handle_event
 from gearidae_bench.steps import rates
 
 __all__ = ["scipy_contenders", "sundials_contenders"]
@@ -70,6 +66,18 @@ def _rates(place: int, t: float, y: Floats, zero: Floats, out: Floats) -> None:
     rates(model_at(place), t, y, zero, out)
 
 
+@compiled()
+def _accept(place: int, t: float, y: Floats) -> None:
+    accept(model_at(place), t, y)
+
+
+@compiled()
+def _arrive(place: int, t: float, y: Floats, room: Floats) -> int:
+    m = model_at(place)
+    accept(m, t, y)
+    return handle_event(m, t, y, room)
+
+
 class _Events:
     """Follows histories and events behind a solver that knows nothing of them."""
 
@@ -89,7 +97,7 @@ class _Events:
             if self.failed:
                 return
             after = guard_at(self._place, end, y)
-        accept_at(self._place, end, y)
+        _accept(self._place, end, y)
         self._before = guard_at(self._place, end, y)
 
     def _root(self, a: float, b: float, high: float, value: Callable[[float], Floats]) -> float:
@@ -113,9 +121,7 @@ class _Events:
 
     def arrive(self, t: float, y: Floats) -> None:
         """Deal with a root at t."""
-        accept_at(self._place, t, y)
-        _, action = handle_at(self._place, t, y, self._room, 0)
-        self.failed = action != CONTINUE
+        self.failed = _arrive(self._place, t, y, self._room) != CONTINUE
         self._before = guard_at(self._place, t, y)
 
 
@@ -202,7 +208,7 @@ def _sundials(
                 for name in names:  # else the whole history is copied at every further step
                     getattr(watch, name).clear()
             else:
-                accept_at(place, t, y)
+                _accept(place, t, y)
         states[sample:] = y
         return Outcome(*physical(problem, states), steps, int(result.nfev))
 

@@ -15,7 +15,15 @@ from gearidae_bench.benchmark import Result
 from gearidae_bench.error import time_at_error
 from gearidae_bench.measure import Point
 
-__all__ = ["ERRORS", "beyond_rows", "equal_error_rows", "markdown", "ratio_range", "write_points"]
+__all__ = [
+    "ERRORS",
+    "beyond_rows",
+    "broken_off",
+    "equal_error_rows",
+    "markdown",
+    "ratio_range",
+    "write_points",
+]
 
 ERRORS: Final = tuple(10.0**-k for k in range(3, 9))
 """Relative errors at which contenders are compared."""
@@ -78,6 +86,16 @@ def ratio_range(result: Result, scene: str, rivals: Sequence[str]) -> tuple[floa
     best = np.min(np.where(np.isnan(times), np.inf, times), axis=0, initial=np.inf)
     ratios = (best / base)[np.isfinite(best) & np.isfinite(base)]
     return (float(ratios.min()), float(ratios.max())) if ratios.size else (math.nan, math.nan)
+
+
+def broken_off(result: Result, scene: str) -> list[str]:
+    """Name the contenders whose runs of a scene broke off, each with the number of these runs and of all."""
+    found = []
+    for key, label in result.labels.items():
+        errors = [p.error for p in _series(result, scene, key)]
+        if broken := sum(map(math.isinf, errors)):
+            found.append(f"{label} ({broken} of {len(errors)} tolerances)")
+    return found
 
 
 def beyond_rows(result: Result) -> Iterator[tuple[str, str]]:
@@ -150,6 +168,8 @@ def markdown(result: Result) -> str:
         for label, times, ratios in equal_error_rows(result, scene):
             cells = [_cell(t, r) for t, r in zip(times, ratios, strict=True)]
             lines.append(f"| {label} | {' | '.join(cells)} |")
+        if broken := broken_off(result, scene):
+            lines += ["", f"Broke off, without a result: {', '.join(broken)}."]
         lines += ["", f"![Run time against error, {title}](images/work_precision_{scene}.png)"]
     rows = list(beyond_rows(result))
     if rows:

@@ -7,8 +7,7 @@ a number. Between compiled functions a model costs nothing.
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.events.events import guard, handle
-from gearidae.engine.events.histories import accept
+from gearidae.engine.events.events import guard
 from gearidae.engine.integrate.epilogue import finish_step
 from gearidae.engine.model.observe import observe
 from gearidae.engine.model.residual import jacobian, residual
@@ -16,10 +15,8 @@ from gearidae.engine.model.state import Floats
 from gearidae.engine.sundials.memory import model_at
 
 __all__ = [
-    "accept_at",
     "finish_step_at",
     "guard_at",
-    "handle_at",
     "jacobian_at",
     "observe_at",
     "residual_at",
@@ -42,18 +39,6 @@ def jacobian_at(place: int, t: float, cj: float, y: Floats, out: Floats) -> None
 def guard_at(place: int, t: float, y: Floats) -> float:
     """`gearidae.engine.events.events.guard`."""
     return guard(model_at(place), t, y)
-
-
-@compiled
-def accept_at(place: int, t: float, y: Floats) -> None:
-    """`gearidae.engine.events.histories.accept`."""
-    accept(model_at(place), t, y)
-
-
-@compiled
-def handle_at(place: int, t: float, y: Floats, events: Floats, count: int) -> tuple[int, int]:
-    """`gearidae.engine.events.events.handle`."""
-    return handle(model_at(place), t, y, events, count)
 
 
 @compiled
