@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.events import CROWDED, guard, handle
+from gearidae.engine.events.events import CROWDED, guard
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.schedule_knots import pass_knot
@@ -287,7 +287,7 @@ def run_gauss(
         y[:] = new
         t = later
         if fallen:
-            _, action = handle(m, t, y, room, 0)
+            action = handle_event(m, t, y, room)
             if action == CROWDED:
                 counts[FAILED] = action
                 return

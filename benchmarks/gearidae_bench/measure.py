@@ -130,7 +130,7 @@ def measure_scene(
                 reference.speed, reference.position, outcome.speed, outcome.position, reference.length
             )
             if math.isinf(error):
-                report(f"{bench.title}: {contender.label} broke off at the tolerance {tolerance:.0e}")
+                report(f"{bench.title}: {contender.label} broke off at {tolerance:.0e}")
             if seconds < SHORT:
                 seconds, _ = _timed(contender, problem, tolerance, times)
             series.append(_Series(contender, tolerance, error, outcome, [seconds]))

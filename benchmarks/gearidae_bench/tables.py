@@ -94,7 +94,7 @@ def broken_off(result: Result, scene: str) -> list[str]:
     for key, label in result.labels.items():
         errors = [p.error for p in _series(result, scene, key)]
         if broken := sum(map(math.isinf, errors)):
-            found.append(f"{label} ({broken} of {len(errors)} tolerances)")
+            found.append(f"{label} ({broken} of {len(errors)} runs)")
     return found
 
 

@@ -61,7 +61,7 @@ def test_rows_compare_at_equal_error(result):
 def test_runs_that_broke_off_are_named(result):
     tried = sum(p.contender == "broken" for p in result.points)
     assert tried > 1
-    assert broken_off(result, "short") == [f"gives up ({tried} of {tried} tolerances)"]
+    assert broken_off(result, "short") == [f"gives up ({tried} of {tried} runs)"]
     assert sum("gives up broke off" in words for words in WORDS) == tried
 
 

@@ -13,10 +13,6 @@ from gearidae_bench.loop import run_dop853, run_gauss, run_rk4
 from gearidae_bench.reference import end_of, find_reference
 from gearidae_bench.roots import FAILED
 
-BENCH = SCENES["roller_slow_bare"]
-PROBLEM = make_problem(BENCH.scene)
-TIMES = np.linspace(0.0, end_of(PROBLEM), BENCH.scene.run.samples)
-
 
 @pytest.fixture(scope="module", params=["roller_slow_bare", "low_sam"])
 def case(request):
@@ -40,11 +36,12 @@ def test_contender_agrees_with_the_reference(case, contender):
     assert outcome.steps > 0
 
 
-def test_the_c_loop_takes_the_native_steps():
+def test_the_c_loop_takes_the_native_steps(case):
     native, c_loop = engine_contenders()[0], c_contenders()[0]
     if reason := native.unavailable() or c_loop.unavailable():
         pytest.skip(reason)
-    ours, theirs = native.run(unused(PROBLEM), 1e-6, TIMES), c_loop.run(unused(PROBLEM), 1e-6, TIMES)
+    _, problem, times = case
+    ours, theirs = (contender.run(unused(problem), 1e-6, times) for contender in (native, c_loop))
     assert (ours.steps, ours.evaluations) == (theirs.steps, theirs.evaluations)
     np.testing.assert_allclose(ours.speed, theirs.speed, rtol=1e-12)
 
@@ -54,8 +51,8 @@ NO_KNOTS = np.zeros(0)
 
 def smooth_problem():
     """A roller whose asperities do not adhere: no stretch, hence no kinks."""
-    scene = BENCH.scene.replace({"contact.asperity": "hertz", "run.samples": 11, "run.duration": 6e-6})
-    return make_problem(scene)
+    changes = {"contact.asperity": "hertz", "run.samples": 11, "run.duration": 6e-6}
+    return make_problem(SCENES["roller_slow_bare"].scene.replace(changes))
 
 
 def end_state(run, *arguments):
