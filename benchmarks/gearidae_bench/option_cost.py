@@ -101,9 +101,9 @@ COMPARISONS: Final = (
     _exposures("high", 1e-3, 0.6),
     _exposures("low", 1.5, 1.0),
     _exposures("low", 0.3, 0.6),
-    _exposures("low", 0.03, 0.3),
+    _exposures("low", 0.3, 0.3),
 )
-"""Of some ten thousand steps each."""
+"""Of ten thousand to a hundred and forty thousand steps each; the last is the whole run of the preset."""
 
 
 def measure_option(comparison: Comparison, pairs: int) -> Cost:

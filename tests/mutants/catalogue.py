@@ -406,10 +406,17 @@ MUTANTS = (
     ),
     Mutant(
         "error estimate of sliding work without effect",
-        "engine/energy/exposures.py",
-        "    if exposing.error > allowed:\n",
-        "    if exposing.error > 1e300:\n",
+        "engine/energy/intervals.py",
+        "    if error > 0.0:",
+        "    if error > 1e300:",
         ("engine/test_exposures.py::test_sums_at_a_usual_tolerance_are_those_at_a_tight_one",),
+    ),
+    Mutant(
+        "sliding work of a contact that pulls while the sliding speed turns",
+        "engine/energy/sliding.py",
+        "    if pushes or (not turns and _rises(",
+        "    if pushes or (_rises(",
+        ("engine/test_sliding.py",),
     ),
     Mutant(
         "deep contacts of elastic bodies not counted before a run returns to the asperity model",

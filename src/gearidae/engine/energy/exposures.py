@@ -8,8 +8,8 @@ For both flanks of every tooth of the pinion and every place along the path of c
 - the energy that they have lost by it, in the proportion of the energy balance (where shares change with tooth and
   place, as if the material covered everything);
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
-  times the distance from the pitch point. It is integrated over one to six steps at once, the fewer the larger its
-  error is estimated, and to every onset and separation; the forces are those of Newton's iteration
+  times the distance from the pitch point. It is integrated over one to six steps at once
+  (`gearidae.engine.energy.intervals`), and to every onset and separation; the forces are those of Newton's iteration
   (`gearidae.engine.energy.noted_force`);
 - the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times, at turning points, and where a contact
   passes from one place to the next.
@@ -33,6 +33,13 @@ from gearidae.engine.energy.exposed_contacts import (
     joins,
     joins_here,
     turn_to_closing,
+)
+from gearidae.engine.energy.intervals import (
+    begin_intervals,
+    next_interval,
+    next_look,
+    start_with_one_step,
+    time_to_zero,
 )
 from gearidae.engine.energy.noted_force import begin_notes, note_force
 from gearidae.engine.energy.places import place_at, way_to_edge
@@ -63,27 +70,14 @@ __all__ = [
 
 QUANTITIES = 2 * MATERIALS + 2
 """Sums of a place: contacts and adhesion work of each material, sliding work, largest pressure."""
-MOST_STEPS = 6
-"""Accepted steps over which sliding work is integrated at once, where its error estimate allows."""
-ALLOWED = 1e-3
-"""Error estimate of sliding work, over the work, from which on fewer steps are taken at once."""
-MODEST = 1.0 / 16.0
-"""Of that, up to which more are."""
-FADING = 0.9
-"""What is left of both from one interval to the next."""
-PER_PITCH = 100.0
-"""Intervals in a pitch, at least, where there are as many steps: as pairs meet, forces change within half of one."""
-LONGER = 1.5
-"""How much longer than the last one the steps may be until a contact leaves its place."""
 
 
 @compiled_once(EXPOSURES)
 def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Note what is in contact at a start; nothing is exposed yet."""
     m.work.exposing.time, m.work.exposing.begun = t, 1
-    m.work.exposing.work = m.work.exposing.error = 0.0
     m.work.exposing.often = 1 if adds_often(m) else 0
-    _take_single_steps(m)
+    begin_intervals(m)
     for k in range(m.scene.histories):
         m.work.exposing.pair[k].known = 0
     _note_forces(m, t, y)
@@ -119,8 +113,8 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> 
     if whole or m.work.notes.time != t or m.scene.nodes > 0:
         _note_forces(m, t, y)
     sliding = sliding_speeds(m, y, yp[V], yp[W])
-    moved, way = y[U] - m.work.notes.travel, math.inf
-    full = whole or m.scene.nodes > 0 or exposing.steps >= exposing.at_once
+    moved, to_zero, way = y[U] - m.work.notes.travel, math.inf, math.inf
+    ends = whole or m.scene.nodes > 0 or exposing.steps >= exposing.at_once
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         k = noted.history
@@ -129,93 +123,55 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> 
         _begin_new(m, k, noted.pair, noted.place)
         widened = -moved if k < m.scene.slots else moved
         gap = noted.gap + widened
-        push = noted.force + noted.slope * widened, noted.slope * noted.gap_rate
-        if full:
+        push, rate = noted.force + noted.slope * widened, noted.slope * noted.gap_rate
+        if ends:
             if joins_here(m, k, noted.place, gap) or (whole and m.state.history[k].direction <= 0.0):
                 join(m, t, y, k, noted.place, (gap, noted.gap_rate))
-            add_sliding(m, t, k, sliding, noted.place, (gap, noted.gap_rate), push)
-        see_pressure(m, t, k, noted.place, push)
-        if push[0] > 0.0:
+            add_sliding(m, t, k, sliding, noted.place, (gap, noted.gap_rate), (push, rate))
+            to_zero = min(to_zero, time_to_zero(m, k, push, rate))
+        see_pressure(m, t, k, noted.place, (push, rate))
+        if push > 0.0:
             way = min(way, way_to_edge(m, k, noted.place, sliding[2]))
-    if full:
-        exposing.time, exposing.steps, exposing.at_once = t, 0, _steps_at_once(m)
-    _wait(m, way, abs(sliding[2]) * m.work.driver.step)
-
-
-@compiled(inline=True)
-def _steps_at_once(m: Model) -> int:
-    """Steps over which to integrate sliding work next, by its error estimate in the last intervals."""
-    exposing = m.work.exposing
-    exposing.work *= FADING
-    exposing.error *= FADING
-    allowed = ALLOWED * exposing.work
-    if exposing.error > allowed:
-        return max(exposing.at_once // 2, 1)
-    if exposing.error > MODEST * allowed:
-        return int(exposing.at_once)
-    return min(2 * exposing.at_once, MOST_STEPS)
-
-
-@compiled(inline=True)
-def _wait(m: Model, way: float, gone: float) -> None:
-    """Want to look again after some steps, no more than until just before a contact leaves its place.
-
-    Parameters
-    ----------
-    m : Model
-    way : float
-        To the nearest edge of a place, in places.
-    gone : float
-        Way that contacts go in a step, in pitches.
-    """
-    exposing = m.work.exposing
-    if exposing.at_once * gone * PER_PITCH > 1.0:
-        exposing.at_once = max(int(1.0 / (PER_PITCH * gone)), 1)
-    left = exposing.at_once - exposing.steps
-    gone *= LONGER * m.scene.places_per_pitch
-    if way < left * gone:
-        left = max(int(way / gone), 1)
-    exposing.wanted = exposing.steps + left
-    _note_in_time(m)
-
-
-@compiled(inline=True)
-def _take_single_steps(m: Model) -> None:
-    """Begin to count steps anew, with one at once."""
-    m.work.exposing.steps, m.work.exposing.at_once, m.work.exposing.wanted = 0, 1, 1
-    _note_in_time(m)
-
-
-@compiled(inline=True)
-def _note_in_time(m: Model) -> None:
-    """Have the forces noted in the step at whose end they are looked at; those of elastic contacts are evaluated."""
-    last = m.scene.nodes == 0 and m.work.exposing.steps + 1 >= m.work.exposing.wanted
-    m.work.notes.wanted = 1 if last else 0
+    if ends:
+        exposing.time = t
+        next_interval(m, to_zero, sliding[2])
+    next_look(m, way, sliding[2])
 
 
 @compiled(inline=True)
 def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Count an accepted step of rigid bodies, and follow the exposures where as many as wanted have been made."""
+    """Count an accepted step of rigid bodies, and follow the exposures where that is wanted after it."""
     m.work.exposing.steps += 1
     if m.work.exposing.steps >= m.work.exposing.wanted:
         follow_exposures(m, t, y, yp, False)
+
+
+@compiled(inline=True)
+def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Add what a contact has been exposed to up to its turning point, before the history takes that.
+
+    Most turning points add nothing. That is found out in the caller's code.
+    """
+    own = m.work.exposing.pair[k]
+    if m.state.history[k].direction < 0.0:
+        inside = place_inside(m, coast, pair, y[PHASE])
+        if gap < own.lowest or place_at(m, inside) != own.seen_at or m.scene.nodes > 0 or joins(m, k, gap):
+            _expose_closed(m, t, y, coast, pair, k, gap)
+    elif m.work.exposing.often == 0:
+        own.turned = 1
     else:
-        _note_in_time(m)
+        _expose_opened(m, y, coast, pair, k, gap)
 
 
 @compiled_once(EXPOSURES)
-def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
-    """Add what a contact has been exposed to up to its turning point, before the history takes that."""
-    if m.state.history[k].direction < 0.0:
-        _expose_closed(m, t, y, coast, pair, k, gap)
-    elif m.work.exposing.often == 0:
-        m.work.exposing.pair[k].turned = 1
-    elif m.work.exposing.begun != 0:
+def _expose_opened(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Do so where a contact begins to close."""
+    if m.work.exposing.begun != 0:
         _begin_new(m, k, pair, place_inside(m, coast, pair, y[PHASE]))
         turn_to_closing(m, y, k, gap)
 
 
-@compiled
+@compiled_once(EXPOSURES)
 def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
     """Do so where a contact ceases to close: the pressure is largest where the gap is least."""
     if m.work.exposing.begun == 0:
@@ -224,11 +180,11 @@ def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int,
     _begin_new(m, k, pair, inside)
     if joins(m, k, gap):
         join(m, t, y, k, inside, (gap, 0.0))
-    at, closely = place_at(m, inside), m.work.exposing.at_once < MOST_STEPS
-    if closely or gap < own.lowest or at != own.seen_at:
+    at, elastic = place_at(m, inside), m.scene.nodes > 0
+    if elastic or gap < own.lowest or at != own.seen_at:
         own.lowest = min(own.lowest, gap)
         force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
-        if closely:  # the slope of the force has a jump here
+        if elastic:  # the slope of the force has a jump here
             add_sliding(m, t, k, speeds_here(m, y), inside, (gap, 0.0), (force, 0.0))
             see_pressure(m, t, k, inside, (force, 0.0))
         elif force > 0.0:
@@ -247,7 +203,7 @@ def expose_touch(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -
     force, slope = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
     add_sliding(m, t, k, speeds_here(m, y), inside, (gap, rate), (force, slope * rate))
     see_pressure(m, t, k, inside, (force, slope * rate))
-    _take_single_steps(m)
+    start_with_one_step(m)
 
 
 @compiled
@@ -272,7 +228,7 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     own.known, own.pair, own.time = 1, pair, t
     own.place, own.at = inside, place_at(m, inside)
     own.seen_time, own.seen_place, own.seen_at = t, own.place, own.at
-    own.turned, own.lowest = 0, m.scene.cutoff
+    own.turned, own.pulls, own.lowest = 0, 0, m.scene.cutoff
     own.power = own.power_rate = own.force = own.force_rate = own.gap_rate = 0.0
     own.gap, own.side = m.scene.cutoff, 1
     for material in range(MATERIALS):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.energy.places import place_at, share_at_edge
 from gearidae.engine.energy.quadrature import error_estimate, integral
-from gearidae.engine.extremes.interpolation import cubic
+from gearidae.engine.extremes.interpolation import cubic, cubic_slope
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.model.tooth_pairs import static_error
 
@@ -18,7 +18,7 @@ __all__ = ["add_sliding", "sliding_speeds", "speeds_here"]
 SLIDING = 2 * MATERIALS
 """Its place among the quantities."""
 PARTS = 16
-"""Parts of an interval in which a contact begins or ceases to push, or passes the pitch point."""
+"""Parts of an interval in which a contact passes the pitch point, or pushes between ends that pull."""
 
 
 @compiled(inline=True)
@@ -74,15 +74,10 @@ def add_sliding(
         side, speed, speed_rate = -1, -speed, -speed_rate
     power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
     at, h = place_at(m, inside), t - own.time
-    if power > 0.0 or own.power > 0.0 or _rises(h, own.power, own.power_rate, power, power_rate):
-        work = integral(h, own.power, power, own.power_rate, power_rate)
-        pushes = power >= 0.0 and own.power >= 0.0
-        if at == own.at and side == own.side:
-            if not pushes:
-                work = _pushing_partly(h, own.power, own.power_rate, power, power_rate)
-            m.rows[own.row + SLIDING * m.scene.places + at] += max(work, 0.0)
-        elif pushes and side == own.side:
-            _divide(m, k, h, inside, max(work, 0.0), (power, power_rate))
+    pushes, turns = max(power, own.power) > 0.0, side != own.side
+    if pushes or (not turns and _rises(h, own.power, own.power_rate, power, power_rate)):
+        if pushes and not turns:
+            work = _add_pushing(m, k, h, inside, (power, power_rate))
         else:
             work = _add_parts(m, k, h, inside, side, (power, power_rate))
         m.work.exposing.work += work
@@ -99,9 +94,9 @@ def _rises(h: float, power0: float, rate0: float, power1: float, rate1: float) -
     return rate0 > 0.0 > rate1 and max(power0 + third * rate0, power1 - third * rate1) > 0.0
 
 
-@compiled
-def _divide(m: Model, k: int, h: float, inside: float, work: float, there: tuple[float, float]) -> None:
-    """Divide the work of an interval in which a contact pushes between places, by the integral of its power's cubic.
+@compiled(inline=True)
+def _add_pushing(m: Model, k: int, h: float, inside: float, there: tuple[float, float]) -> float:
+    """Add the work of an interval in which a contact pushes, or begins or ceases to; it is returned.
 
     Parameters
     ----------
@@ -112,20 +107,55 @@ def _divide(m: Model, k: int, h: float, inside: float, work: float, there: tuple
         Length of the interval.
     inside : float
         Place on the path of contact at its end, in pitches.
-    work : float
-        Of the whole interval.
     there : tuple of float
         Power at its end, and its rate.
     """
-    own, end = m.work.exposing.pair[k], place_at(m, inside)
-    row, at, before = own.row + SLIDING * m.scene.places, own.at, 0.0
+    own = m.work.exposing.pair[k]
+    work, begins, ceases = integral(h, own.power, there[0], own.power_rate, there[1]), 0.0, 1.0
+    if min(own.power, there[0]) < 0.0:
+        zero = _zero(h, own.power, own.power_rate, there[0], there[1])
+        until = _work_until(zero, h, own.power, own.power_rate, there[0], there[1])
+        if own.power > 0.0:
+            work, ceases = until, zero
+        else:
+            work, begins = work - until, zero
+    work = max(work, 0.0)
+    if place_at(m, inside) == own.at:
+        m.rows[own.row + SLIDING * m.scene.places + own.at] += work
+    else:
+        _divide(m, k, h, inside, there, (work, begins, ceases))
+    return work
+
+
+@compiled
+def _divide(
+    m: Model,
+    k: int,
+    h: float,
+    inside: float,
+    there: tuple[float, float],
+    pushing: tuple[float, float, float],
+) -> None:
+    """Divide the work of an interval between places, by the integral of its power's cubic.
+
+    Parameters
+    ----------
+    m, k, h, inside, there
+        As for `_add_pushing`.
+    pushing : tuple of float
+        Work of the whole interval, and the shares of the interval at which the contact begins and ceases to push.
+    """
+    own, end, (work, begins, ceases) = m.work.exposing.pair[k], place_at(m, inside), pushing
+    row, at, done = own.row + SLIDING * m.scene.places, own.at, 0.0
+    before = _work_until(begins, h, own.power, own.power_rate, there[0], there[1])
     step = 1 if inside > own.place else -1
     while at != end:
-        share = share_at_edge(m, at, own.place, inside)
-        until = min(max(_work_until(share, h, own.power, own.power_rate, there[0], there[1]), before), work)
-        m.rows[row + at] += until - before
-        at, before = at + step, until
-    m.rows[row + at] += work - before
+        share = min(max(share_at_edge(m, at, own.place, inside), begins), ceases)
+        until = _work_until(share, h, own.power, own.power_rate, there[0], there[1]) - before
+        until = min(max(until, done), work)
+        m.rows[row + at] += until - done
+        at, done = at + step, until
+    m.rows[row + at] += work - done
 
 
 @compiled(inline=True)
@@ -136,25 +166,29 @@ def _work_until(s: float, h: float, power0: float, rate0: float, power1: float, 
     return h * s * (power0 + s * (slope0 / 2.0 + s * (b / 3.0 + s * a / 4.0)))
 
 
-@compiled
-def _pushing_partly(h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
-    """Work of an interval in which a contact begins or ceases to push: of the power's cubic, what is above zero."""
-    total = 0.0
-    for part in range(PARTS):
-        total += max(cubic((part + 0.5) / PARTS, h, power0, rate0, power1, rate1), 0.0)
-    return h * total / PARTS
+@compiled(inline=True)
+def _zero(h: float, power0: float, rate0: float, power1: float, rate1: float) -> float:
+    """Share of an interval at which a power's cubic changes its sign: a step of Newton's method from the chord's zero.
+
+    What is left of the error counts with its square, as the power is zero there.
+    """
+    s = power0 / (power0 - power1)
+    slope = cubic_slope(s, h, power0, rate0, power1, rate1)
+    if slope * (power1 - power0) <= 0.0:
+        return s
+    return min(max(s - cubic(s, h, power0, rate0, power1, rate1) / slope, 0.0), 1.0)
 
 
 @compiled
 def _add_parts(m: Model, k: int, h: float, inside: float, side: int, there: tuple[float, float]) -> float:
-    """Add the work of an interval in which the power changes its sign, or the sliding speed does; it is returned.
+    """Add the work of an interval in which the sliding speed changes its sign, or a pair pushes between ends that pull.
 
-    Of the cubic of force times signed speed counts what a pushing contact makes of it.
+    Of the cubic of force times signed speed counts what a pushing contact makes of it. The work is returned.
 
     Parameters
     ----------
     m, k, h, inside, there
-        As for `_divide`.
+        As for `_add_pushing`.
     side : int
         Sign of the sliding speed at the end.
     """

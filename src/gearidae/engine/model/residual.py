@@ -96,7 +96,7 @@ def mesh_forces(
     elastic = m.scene.nodes > 0
     if elastic:
         mark_out_of_reach(m)
-    if m.work.notes.wanted != 0:
+    if m.scene.places > 0:
         begin_notes(m, t, u)
     full = with_deflections(m, y) if elastic and settling else y
     reach = pairs_touching(m, y)
@@ -118,7 +118,7 @@ def mesh_forces(
         else:
             shares = shares_of(m, k, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
-            if m.work.notes.wanted != 0:
+            if m.scene.places > 0:
                 note_force(m, k, pair, inside, (gap, rate), (load, stiffness))
         load *= sign
         # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair

@@ -143,6 +143,7 @@ EXPOSED: Final = record_type(  # a pair where its exposures have last been added
     ("place", REAL),  # along the path of contact, in pitches,
     ("at", INT),  # and the index of what it is divided into
     ("turned", INT),  # 1 from where it began to close until something joins
+    ("pulls", INT),  # 1 from where it has been seen to pull
     ("lowest", REAL),  # least gap at a turning point in this place
     ("front", REAL, (MATERIALS,)),  # asperities in contact that have been added up, over their density
     ("added", REAL, (MATERIALS,)),  # contacts that have been added since the last turning point
@@ -164,11 +165,12 @@ EXPOSING: Final = record_type(
     ("time", REAL),  # when the exposures of all pairs have last been added up
     ("begun", INT),  # 0 before the first start
     ("often", INT),  # 1 where contacts are added up as often as sliding work
-    ("steps", INT),  # accepted since then
-    ("at_once", INT),  # steps over which the error estimate allows sliding work to be integrated
-    ("wanted", INT),  # steps after which pressures are looked at again, no more than that
-    ("work", REAL),  # sliding work in the last of these intervals, and its error estimate
-    ("error", REAL),
+    ("steps", INT),  # accepted since then,
+    ("at_once", INT),  # how many of them end the interval of sliding work,
+    ("wanted", INT),  # and after how many of them pressures are looked at next
+    ("error", REAL),  # error estimate of sliding work in this interval
+    ("work", REAL),  # sliding work of the last intervals, and how many steps they had; former ones count less
+    ("counted", REAL),
     ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
 )
 
@@ -182,14 +184,11 @@ NOTED: Final = record_type(  # a pair where its force was evaluated
     ("slope", REAL),
 )
 
-NOTES: Final = (
-    record_type(  # the last evaluation of all forces at the end of a step whose exposures are added up
-        ("wanted", INT),  # whether the coming step's is
-        ("time", REAL),
-        ("travel", REAL),  # transmission error
-        ("count", INT),
-        ("pair", NOTED, (2 * SLOTS_HIGH,)),
-    )
+NOTES: Final = record_type(  # the last evaluation of all forces, in a run that keeps exposures
+    ("time", REAL),
+    ("travel", REAL),  # transmission error
+    ("count", INT),
+    ("pair", NOTED, (2 * SLOTS_HIGH,)),
 )
 
 SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminated
