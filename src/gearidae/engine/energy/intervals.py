@@ -1,9 +1,9 @@
 """Intervals over which sliding work is integrated: one to six accepted steps of rigid bodies.
 
-The number of steps follows from the error estimate of the interval before, as an integrator chooses its steps. Where a
-force is about to pass zero, an interval ends in time, and the next one is of one step: a contact that pulls does no
-sliding work, so that the power has a kink there. Where more than 600 steps go to a pitch, an interval is no longer than
-a hundredth of a pitch.
+The number of steps follows from the error estimate of the interval before, as an integrator chooses its steps. An
+interval ends with the step in which a force is expected to pass zero: a contact that pulls does no sliding work, and
+where the integral begins or ceases in between, it is the better the shorter the interval is. Where more than 600 steps
+go to a pitch, an interval is no longer than a hundredth of a pitch.
 
 Pressures are looked at where an interval ends, and just after a contact has left its place: a cubic, which gives the
 pressure at the edge, is most accurate close to its ends. Sliding work goes on from there, so that its sum does not
