@@ -155,7 +155,7 @@ def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int,
     own = m.work.exposing.pair[k]
     if m.state.history[k].direction < 0.0:
         inside = place_inside(m, coast, pair, y[PHASE])
-        if _may_press_most(m, k, inside, gap) or joins(m, k, gap):
+        if gap < own.lowest or place_at(m, inside) != own.seen_at or m.scene.nodes > 0 or joins(m, k, gap):
             _expose_closed(m, t, y, coast, pair, k, gap)
     elif m.work.exposing.often == 0:
         own.turned = 1
@@ -180,21 +180,15 @@ def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int,
     _begin_new(m, k, pair, inside)
     if joins(m, k, gap):
         join(m, t, y, k, inside, (gap, 0.0))
-    if _may_press_most(m, k, inside, gap):
+    at, elastic = place_at(m, inside), m.scene.nodes > 0
+    if elastic or gap < own.lowest or at != own.seen_at:
         own.lowest = min(own.lowest, gap)
         force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
-        if m.scene.nodes > 0:  # the slope of the force has a jump here
+        if elastic:  # the slope of the force has a jump here
             add_sliding(m, t, k, speeds_here(m, y), inside, (gap, 0.0), (force, 0.0))
             see_pressure(m, t, k, inside, (force, 0.0))
         elif force > 0.0:
-            note_pressure(m, k, place_at(m, inside), inside, force)
-
-
-@compiled(inline=True)
-def _may_press_most(m: Model, k: int, inside: float, gap: float) -> bool:
-    """Whether the pressure at a turning point may be the largest in its place; always of elastic contacts."""
-    own = m.work.exposing.pair[k]
-    return m.scene.nodes > 0 or gap < own.lowest or place_at(m, inside) != own.seen_at
+            note_pressure(m, k, at, inside, force)
 
 
 @compiled_once(EXPOSURES)
