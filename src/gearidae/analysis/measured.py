@@ -14,7 +14,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.analysis.signal import signals, to_si
-from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
@@ -67,7 +66,6 @@ def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
 
 
 def _from_netcdf(source: Path) -> xr.Dataset:
-    check_heaps("signal", source)
     try:
         ds = loaded(source)
     except Exception as error:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from gearidae import __version__, engine
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
+from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
 from gearidae.archive.disk import DiskError
 from gearidae.archive.energy import balance_of
-from gearidae.archive.journal import Checkpoint
 from gearidae.archive.run_summary import account_of
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
@@ -69,6 +69,7 @@ def stream(
     """
     found = _found(target, scene, started) if resume and target.exists() else None
     if found is not None and found.attrs["status"] == "finished":
+        drop_checkpoints(target)  # a kill may have left one
         return found
     if found is not None:
         backend = _same_backend(backend, str(found.attrs["backend"]))
@@ -89,17 +90,13 @@ class _Run:
         self._origin = None if started is None else started.origin
         self._begin = 0.0 if started is None else started.time
         self.end = self._begin + scene.run.duration
-        self._checkpoint_size, self._skipped, self._method = engine.outlook(
-            scene, backend, origin=self._origin
-        )
+        _, self._skipped, self._method = engine.outlook(scene, backend, origin=self._origin)
 
     def begin(self) -> GrowingArchive:
         """Make the archive."""
         run = self._scene.run
         try:
-            return GrowingArchive.create(
-                self._target, self._template(), run.sample_count, run.duration, self._checkpoint_size
-            )
+            return GrowingArchive.create(self._target, self._template(), run.sample_count, run.duration)
         except DiskError as error:
             raise SolverError(
                 f"the archive {self._target} could not be made ({error})",
@@ -128,14 +125,14 @@ class _Run:
             reached = block.time
 
         try:
-            point = archive.go_back()
-            reached = point.time if point.sequence else self._begin
-            if _is_end(reached, self.end):  # all that is missing is the final form
-                return self._ended_at(point)
-            state = point.state if point.sequence else None
-            start = engine.Start(
-                state, self._origin, point.statistics, reached, point.wall_time, point.events
-            )
+            start, point = engine.Start(origin=self._origin, time=reached), archive.go_back()
+            if point is not None:
+                reached = point.time
+                if _is_end(reached, self.end):  # all that is missing is the final form
+                    return self._ended_at(point)
+                start = engine.Start(
+                    point.state, self._origin, point.statistics, reached, point.wall_time, point.events
+                )
             return engine.follow(
                 self._scene,
                 take,
