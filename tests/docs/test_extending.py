@@ -49,6 +49,7 @@ def page():
     yield names
     exec(ending, names)
     assert not {"soft", "springs"} & set(law_names())
+    assert "pressed" not in gd.wear.loss_law_names()
 
 
 # -- asperity laws ---------------------------------------------------------------------------------------------------
@@ -126,6 +127,25 @@ def test_the_energy_balance_of_the_motor_closes(page):
     run = page["turned"]
     assert abs(balance(run)["residual"]) <= balance(run)["residual_bound"]
     assert balance(run)["drive_work"] > 0.0
+
+
+# -- loss laws -------------------------------------------------------------------------------------------------------
+
+
+def test_the_loss_is_proportional_to_coverage_work_and_pressure(page):
+    law = gd.wear.loss_law("pressed", coefficient="2000 m^2/J", pressure="5 Pa")
+    work, pressure = np.array([1e-8, 3e-8]), np.array([0.1, 0.4])
+    seen = gd.wear.Exposure(np.full(2, 1e3), np.full(2, 1e-9), work, pressure)
+    coverage = np.array([0.5, 0.0])
+    np.testing.assert_allclose(law.rate(coverage, seen), [-0.5 * 2000.0 * 1e-8 * 0.1 / 5.0, 0.0], rtol=1e-14)
+
+
+def test_a_life_is_inverse_to_the_coefficient(page):
+    slow, fast = page["slow"], page["fast"]
+    assert slow.attrs["ending"] == fast.attrs["ending"] == "coverage"
+    # the same windows, scaled: rounding of the integration over passages
+    np.testing.assert_allclose(slow.passages, 2.0 * fast.passages, rtol=1e-9)
+    np.testing.assert_allclose(slow.coverage, fast.coverage, rtol=1e-9)
 
 
 # -- changes of the sources ------------------------------------------------------------------------------------------
