@@ -13,7 +13,9 @@ VENV   ?= .venv
 LOWEST ?= .venv-lowest
 NEWEST ?= .venv-newest
 NEWEST_PYTHON ?= $(PYTHON)
-BIN    := $(VENV)/bin
+# On Windows: make SCRIPTS=Scripts, in a shell like Git's bash
+SCRIPTS ?= bin
+BIN    := $(VENV)/$(SCRIPTS)
 
 .PHONY: run test test-by-hand test-lowest test-newest lint warm types docs bench stress clean
 .DELETE_ON_ERROR:
@@ -49,12 +51,12 @@ SHORT := -q -n 2 --dist loadfile --no-loadscope-reorder \
 
 # The warning is one that numpy itself switches off.
 test-lowest: $(LOWEST)/installed
-	$(LOWEST)/bin/python -m pytest -W "ignore:numpy.ndarray size changed:RuntimeWarning" $(SHORT)
+	$(LOWEST)/$(SCRIPTS)/python -m pytest -W "ignore:numpy.ndarray size changed:RuntimeWarning" $(SHORT)
 
 # The main job first: compiled code that it makes is taken from the cache by the tests.
 test-newest: $(NEWEST)/installed-test
 	$(MAKE) run VENV=$(NEWEST) PYTHON=$(NEWEST_PYTHON)
-	$(NEWEST)/bin/python -m pytest $(SHORT)
+	$(NEWEST)/$(SCRIPTS)/python -m pytest $(SHORT)
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
@@ -94,11 +96,11 @@ $(VENV)/installed-dev: $(VENV)/installed
 
 $(NEWEST)/installed-test: pyproject.toml
 	$(MAKE) $(NEWEST)/installed VENV=$(NEWEST) PYTHON=$(NEWEST_PYTHON)
-	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check pytest pytest-xdist hypothesis mpmath
+	$(NEWEST)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check pytest pytest-xdist hypothesis mpmath
 	touch $@
 
 $(LOWEST)/installed: pyproject.toml tests/lowest.txt
 	$(PYTHON) -m venv $(LOWEST)
-	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint tests/lowest.txt \
+	$(LOWEST)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check --constraint tests/lowest.txt \
 	    --editable . pytest pytest-xdist hypothesis mpmath
 	touch $@
