@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.motion import kinetic_energy
+from gearidae.engine.energy.kinetic import kinetic_energy
 from gearidae.engine.events.record import record
-from gearidae.engine.model.residual import mesh_forces
-from gearidae.engine.model.state import LOAD, Floats, Model, U, V, W
-from gearidae.engine.model.torque import torque_force
+from gearidae.engine.model.state import Floats, Model, W
+from gearidae.engine.motion.rest import NO_FORCE, holding_force, push_at_rest
 from gearidae.records import EventKind, Flank
 
-__all__ = ["dry_guard", "is_pulled_back", "note_slip", "stick_or_slip"]
+__all__ = ["dry_guard", "note_slip", "stick_or_slip"]
 
-_NO_FORCE: Final = 1e-12  # of the reference load: less than this neither holds a gear nor moves it from rest
 _STICK, _SLIP, _NO_FLANK = float(EventKind.STICK), float(EventKind.SLIP), float(Flank.NONE)
 
 
@@ -31,20 +27,7 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
 @compiled_once(SOLVER)
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
-    return _hold(m, t) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
-
-
-@compiled
-def _hold(m: Model, t: float) -> float:
-    """Largest force with which dry resistance holds a gear at rest."""
-    return max(torque_force(m, LOAD, t, 0.0), 0.0)
-
-
-@compiled_once(SOLVER)
-def _push(m: Model, t: float, y: Floats) -> float:
-    """Force on a gear at rest, from the mesh."""
-    force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
-    return force + m.scene.damping * y[V] + relief
+    return holding_force(m, t) + 2.0 * NO_FORCE - abs(push_at_rest(m, t, y))
 
 
 @compiled(inline=True)
@@ -61,19 +44,10 @@ def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> 
     y[W] = 0.0
     m.state.slipping = 0
     m.state.energy.dry_loss += before - kinetic_energy(m, y)
-    push = _push(m, t, y)
+    push = push_at_rest(m, t, y)
     slipping = m.state.slip != 0.0
-    if slipping and abs(push) <= _hold(m, t) + _NO_FORCE:
+    if slipping and abs(push) <= holding_force(m, t) + NO_FORCE:
         m.state.slip = 0.0
         return record(m, events, count, t, _STICK, 0, _NO_FLANK, 0.0)
     m.state.slip = 1.0 if push > 0.0 else -1.0
     return count if slipping else record(m, events, count, t, _SLIP, 0, _NO_FLANK, 0.0)
-
-
-@compiled_once(SOLVER)
-def is_pulled_back(m: Model, t: float, y: Floats) -> bool:
-    """Whether the drive flank pulls a gear back whose speed falls to zero, by more than dry resistance holds."""
-    force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
-    pull = -(force + relief)
-    held_up_to = m.scene.damping * y[V] + (_hold(m, t) + _NO_FORCE if m.scene.dry != 0 else 0.0)
-    return bool(y[U] > 0.0 and pull > max(held_up_to, 0.0))
