@@ -252,7 +252,7 @@ def test_bad_starts(tmp_path):
 
 
 def test_a_damaged_state_is_refused_or_checked():
-    """Text that is none, words cut short, another layout, another scene, and numbers that no run leaves."""
+    """Text that is none, words cut short, another layout, another scene, and what is no number."""
     first = gd.simulate(LOW)
     words, _ = end_state_of(first)
     text = first.attrs["end_state"]
@@ -267,7 +267,6 @@ def test_a_damaged_state_is_refused_or_checked():
     refused(end_state=packed_state(words[:-3]))
     refused(start_time=float("nan"))
     refused(start_time="x")
-    refused(start_time=1.0)
     refused(scene=json.dumps(LOW.replace({"coating.sam_fraction": 0.7}).to_dict()))
     for place, value in ((0, 1.0), (1, 5.0), (5, 3.0), (6, 9.0)):
         changed = words.copy()
