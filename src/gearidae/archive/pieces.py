@@ -75,7 +75,7 @@ def spread(array: xr.DataArray, start: int = 0, stop: int | None = None) -> Spre
 
 
 def reached(array: xr.DataArray) -> int:
-    """Samples of a run up to its last one, behind which they are missing; so may be the first ones of a running mean."""
+    """Samples of a run up to its last one; the first ones may be missing, as in a running mean."""
     for place in reversed(range(0, array.size, PIECE)):
         present = np.isfinite(array.variable[place : place + PIECE].values)
         if present.any():
