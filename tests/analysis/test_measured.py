@@ -80,7 +80,7 @@ def test_what_is_not_regular_is_read_line_by_line(text, file):
     np.testing.assert_allclose(ds.gear_speed, SPEED, rtol=np.finfo(float).eps, atol=0.0)
 
 
-@pytest.mark.parametrize("rows_at_once", [0, 2**18])
+@pytest.mark.parametrize("rows_at_once", [0, 2**30])
 @pytest.mark.parametrize(
     ("cell", "reason"),
     [

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 __all__ = ["TextTable", "as_number", "cells_of", "check_regular", "column_of", "listed", "split_unit"]
 
-_SMALL: Final = 2**18
+_SMALL: Final = 2**22
 """Bytes of a file below which it is read row by row: importing pandas takes longer."""
 _MISSING: Final = ("", "nan", "na", "n/a", "null", "-", "--", "---")
 _NAMES: Final = {";": "semicolons", "\t": "tabs", ",": "commas", "": "blanks"}
