@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -89,6 +90,13 @@ def _rows(found: xr.Dataset, key: str) -> Iterator[tuple[str, str, str]]:
         if np.isnan(one["limit"]):
             yield waited, "-", "no run has stuck so early"
             continue
-        bracket = f"sticks at {float(one['sticks']):.4g}{unit}, passes at {float(one['passes']):.4g}{unit}"
-        yield waited, f"{float(one['limit']):.4g}{unit}", bracket
+        limit, sticks, passes = _apart(*(float(one[name]) for name in ("limit", "sticks", "passes")))
+        yield waited, f"{limit}{unit}", f"sticks at {sticks}{unit}, passes at {passes}{unit}"
     yield "runs", str(found.sizes["run"]), ""
+
+
+def _apart(limit: float, sticks: float, passes: float) -> Iterator[str]:
+    """Write a limit and the ends of its bracket with the digits that tell the ends apart, four at least."""
+    width = abs(sticks - passes) / max(abs(sticks), abs(passes))
+    digits = max(4, 2 - math.floor(math.log10(width)))
+    return (f"{value:.{digits}g}" for value in (limit, sticks, passes))

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import csv
 import os
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
-from gearidae.scene.literal import literal
+from gearidae.scene.literal import literal, read_toml
 from gearidae.studies.observations import Observation
 
 __all__ = ["observation_of", "read_observations"]
@@ -110,8 +109,8 @@ def _dotted(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
 
 def _tables(text: str, source: Path) -> list[Mapping[str, Any]]:
     try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        data = read_toml(text)
+    except ValueError as error:
         raise SceneError("observations", source, f"is no TOML: {error}") from None
     unknown = [name for name in data if name != "observation"]
     listed = data.get("observation", [])
