@@ -105,6 +105,7 @@ def test_smallest_speed_of_a_gear_at_rest_is_zero(capfd):
     [
         (4.123456e-18, 4.123461e-18, "sticks at 4.123456e-18 N m, passes at 4.123461e-18 N m"),
         (0.574, 0.577, "sticks at 0.574, passes at 0.577"),
+        (0.573828, 0.574219, "sticks at 0.5738, passes at 0.5742"),
         (4.12e-18, 4.62e-18, "sticks at 4.12e-18 N m, passes at 4.62e-18 N m"),
     ],
 )

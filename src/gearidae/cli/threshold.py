@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -96,7 +95,6 @@ def _rows(found: xr.Dataset, key: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _apart(limit: float, sticks: float, passes: float) -> Iterator[str]:
-    """Write a limit and the ends of its bracket with the digits that tell the ends apart, four at least."""
-    width = abs(sticks - passes) / max(abs(sticks), abs(passes))
-    digits = max(4, 2 - math.floor(math.log10(width)))
+    """Write a limit and the ends of its bracket with as many digits as tell the ends apart, four at least."""
+    digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
     return (f"{value:.{digits}g}" for value in (limit, sticks, passes))

@@ -97,9 +97,7 @@ def _resistance(scene: Scene) -> list[str]:
     if swing <= least:
         return []
     about = f"{with_prefix(swing, 'N m')} about a dry resistance of {with_prefix(least, 'N m')}"
-    return [
-        f"load.harmonic swings by {about}: it is cut off where the sum falls below 0"
-    ]
+    return [f"load.harmonic swings by {about}: it is cut off where the sum falls below 0"]
 
 
 def _long_run(scene: Scene) -> list[str]:
