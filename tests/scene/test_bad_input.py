@@ -118,6 +118,28 @@ WRONG = [
 ]
 
 
+WRONG_KNOTS: list[Any] = [
+    ("load.schedule", [[0, 1e-12], [1e-3, -1e-12]], "[1][1]", "must lie in 0..1e+09 N m"),
+    ("load.schedule", [["0 s", "-1 pN m"]], "[0][1]", "must lie in 0..1e+09 N m"),
+    ("load.schedule", {"time": [0, 1], "value": [0.0, -1e-12]}, "[1][1]", "must lie in 0..1e+09 N m"),
+    ("drive.schedule", [[0, 1e-12], [NAN, 1e-12]], "[1][0]", "must be a finite number"),
+    ("drive.schedule", [[0, 1e-12], [1e13, 1e-12]], "[1][0]", "must lie in 0..1e+12 s"),
+    ("drive.schedule", [[0, 1e-12], [1e-3, 1e-300]], "[1][1]", "0 or at least 1e-40 in size"),
+    ("drive.schedule", [[0, True]], "[0][1]", "must be a number in N m"),
+    ("drive.schedule", [[0, 10**400]], "[0][1]", "must be a finite number"),
+    ("drive.speed", [[0, 1.0], [1, 1e13]], "", "must lie in -1e+12..1e+12 rad/s"),
+]
+
+
+@pytest.mark.parametrize(("key", "value", "place", "reason"), WRONG_KNOTS)
+def test_wrong_knot_is_named(gears: Scene, key: str, value: Any, place: str, reason: str) -> None:
+    """Plain numbers are checked all at once; what is wrong is named all the same."""
+    with pytest.raises(SceneError) as caught:
+        gears.replace({key: value, "drive.speed_gain": 1e-15} if key == "drive.speed" else {key: value})
+    assert caught.value.key.startswith(f"{key}{place}")
+    assert reason in str(caught.value)
+
+
 @pytest.mark.parametrize(("key", "value", "reason"), WRONG)
 def test_names_key_and_what_is_allowed(gears: Scene, key: str, value: Any, reason: str) -> None:
     with pytest.raises(SceneError) as caught:

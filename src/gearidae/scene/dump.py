@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 from gearidae.scene.group import Group
 from gearidae.scene.knots import Knots
 from gearidae.scene.quantity import Quantity
+from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.scene import Scene
 
 __all__ = ["dump_case", "dump_keys"]
@@ -139,8 +140,8 @@ def _list_of_tables(table: str, name: str, group: Group) -> Iterator[str]:
 
 def _value(value: Any, quantity: Quantity | None) -> str:
     """Write one value, with a unit that people use where it is exact."""
-    if isinstance(value, str):
-        return _text(value)
+    if isinstance(value, (str, InRoughnesses)):
+        return _text(str(value))
     if isinstance(value, bool):
         return "true" if value else "false"
     if quantity is None or quantity.unit == "1":

@@ -98,7 +98,10 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     """
     value = value.plain_tables() if isinstance(value, Group) else value
     if isinstance(key, str) and key in model.model_fields:
-        data[key] = deepcopy(value) if isinstance(value, dict) else value  # dotted keys may change it later
+        try:  # dotted keys may change a table later
+            data[key] = deepcopy(value) if isinstance(value, dict) else value
+        except RecursionError:
+            raise SceneError(key, shorten(value), "is nested too deeply") from None
         return
     info = find_key(model, key, value)
     *path, last = key.split(".")

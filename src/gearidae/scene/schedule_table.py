@@ -87,7 +87,7 @@ def in_folder(table: object, folder: Path) -> object:
     return table
 
 
-def pack_knots(knots: list[list[float]]) -> str:
+def pack_knots(knots: Sequence[Sequence[float]]) -> str:
     """Write knots as text, exactly."""
     bits = np.array(knots, "<f8").T.copy().view("<u8")
     differences = np.diff(bits, axis=1, prepend=np.zeros((2, 1), "<u8")).ravel()

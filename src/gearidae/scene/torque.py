@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, shorten
-from gearidae.scene.knots import Knots, Schedule, Scheduled, Torque
+from gearidae.scene.knots import Knots, Resistance, ResistanceSchedule, Schedule, Scheduled, Torque
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Phase, Quantity
 from gearidae.scene.tables import one_or_more
@@ -96,19 +96,24 @@ class Drive(Group):
 class Load(Group):
     """Torque that resists the gear, M2."""
 
-    torque: Annotated[float, Quantity(unit="N m", at_least=0, at_most=1e9, least=1e-40)] = Field(
-        default=0.0, description="dry resistance against the motion, M20"
+    torque: Resistance = Field(default=0.0, description="dry resistance against the motion, M20")
+    harmonic: Harmonics = Field(
+        default=(),
+        description="harmonic part of the dry resistance, cut off at 0 with it: a table or a list of tables",
     )
-    harmonic: Harmonics = Field(default=(), description="harmonic part, a table or a list of tables")
     drag: Annotated[float, Quantity(unit="N m s^2/rad^2", at_least=0, at_most=1e12)] = Field(
         default=0.0, description="quadratic drag alpha, torque over angular speed squared"
     )
     viscous: Annotated[float, Quantity(unit="N m s/rad", at_least=0, at_most=1e12)] = Field(
         default=0.0, description="viscous drag, torque over angular speed"
     )
-    schedule: Schedule = Field(default=Knots(), description=_SCHEDULE)
+    schedule: ResistanceSchedule = Field(
+        default=Knots(),
+        description="dry resistance over time, not below 0, added to the constant: [time, torque] knots, or a table",
+    )
     law: Law | None = Field(
-        default=None, description="a law of time and speed, added to the dry resistance against the motion"
+        default=None,
+        description="a law of time and speed, added to the dry resistance, whose sum is cut off at 0",
     )
 
     @property

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
-from gearidae.scene.literal import literal
+from gearidae.scene.literal import literal, read_toml
 from gearidae.scene.table_head import open_table
 from gearidae.scene.text_table import check_regular
 from gearidae.studies.observations import Observation
@@ -114,7 +113,7 @@ def _dotted(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
 
 def _tables(source: Path) -> list[Mapping[str, Any]]:
     check_regular(source, _LARGEST)
-    data = tomllib.loads(source.read_text(encoding="utf-8-sig"))
+    data = read_toml(source.read_text(encoding="utf-8-sig"))
     unknown = [name for name in data if name != "observation"]
     listed = data.get("observation", [])
     if unknown or not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):

@@ -117,11 +117,12 @@ def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: 
 def set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: float) -> None:
     """Set start and end of the run, its knots and checkpoints, and what counts as chatter."""
     tau = float(s.time_unit)
-    s.start, s.end = begin / tau, (begin + scene.run.duration) / tau
+    start, end = begin / tau, (begin + scene.run.duration) / tau
+    s.start, s.end = start, end
     kept = {t / tau for t in scene.run.checkpoints}
-    times = sorted(t for t in knots | kept if s.start < t < s.end)
+    times = sorted(t for t in knots | kept if start < t < end)
     # of knots that the solver cannot tell apart the last one serves for all: schedules enter every segment up to it
-    following = [*times[1:], float(s.end)]
+    following = [*times[1:], end]
     apart: list[float] = []
     marks: list[float] = []
     marked = False
