@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import matplotlib as mpl
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -53,7 +54,9 @@ def pictures(ds: xr.Dataset) -> str:
 
 def figures(ds: xr.Dataset, wanted: Sequence[tuple[_Draw, str]]) -> str:
     """Draw pictures with their captions; those for which a dataset is too short or too empty are left out."""
-    drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
+    with mpl.rc_context():
+        mpl.rcdefaults()  # a page looks alike whatever the user's settings are
+        drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
     shown = [(name, text, caption) for name, text, caption in drawn if text]
     if not shown:
         return ""
