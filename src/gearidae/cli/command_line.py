@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from importlib.util import find_spec
-from pathlib import Path
 
 from cyclopts import CycloptsError
 
@@ -26,7 +25,9 @@ __all__ = ["run_command_line"]
 def run_command_line(arguments: Sequence[str] | None) -> int:
     """Run a command; arguments and exit code are those of `gearidae.cli.main`."""
     tokens = spread(sys.argv[1:] if arguments is None else arguments)
-    _leave_out_settings()
+    # a user's settings of matplotlib may be of another version, and name a backend that is not installed
+    os.environ["MPLBACKEND"] = "agg"
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     with interrupts_kept(), _warnings_as_lines():
         return _run(tokens)
 
@@ -54,14 +55,6 @@ def _run(tokens: Sequence[str]) -> int:
 def _complain(message: str, code: int) -> int:
     complain(message)
     return code
-
-
-def _leave_out_settings() -> None:
-    """Draw by matplotlib's own defaults: a user's may name a backend or a LaTeX that is not installed."""
-    os.environ["MPLBACKEND"] = "agg"
-    home = find_spec("matplotlib")
-    if home is not None and home.origin is not None:
-        os.environ["MATPLOTLIBRC"] = str(Path(home.origin).parent / "mpl-data" / "matplotlibrc")
 
 
 @contextmanager

@@ -64,6 +64,7 @@ _PREFIXED = ("m", "s", "Pa", "Hz", "N", "N m", "J", "W")
 _SPELT = {"rad s-1": "rad/s", "m s-1": "m/s", "kg m2": "kg m²", "J m-2": "J/m²", "m-2": "1/m²"}
 _MOST_POINTS = 6000
 _MOST_RUNS = 7
+_LONGEST_LABEL = 32
 _IN_A_LINE = 84
 """Characters of a legend that a line of a picture takes."""
 _HANDLE = 8
@@ -141,15 +142,19 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     found = [everything[number] for number in kept]
     if not found:
         raise SceneError("plot", name, "the dataset has no samples of it")
+    labels = [_label(label, run) for label, run in found]
+    short = [_shortened(label) for label in labels]
+    if len(set(short)) == len(set(labels)):
+        labels = short
     return [
         Run(
-            _label(label, run),
+            labels[number],
             run,
             COLOURS[number % len(COLOURS)],
             LINE_STYLES[number % len(LINE_STYLES)],
             drawable,
         )
-        for number, (label, run) in enumerate(found)
+        for number, (_, run) in enumerate(found)
     ]
 
 
@@ -302,6 +307,11 @@ def _picked(time: xr.DataArray, places: NDArray[np.int64]) -> Floats:
         part[places[(places >= place) & (places < place + len(part))] - place] for place, part in pieces(time)
     ]
     return np.concatenate(parts)
+
+
+def _shortened(label: str) -> str:
+    """Leave out the middle of a label that would take the place of the picture."""
+    return label if len(label) <= _LONGEST_LABEL else f"{label[:20]}...{label[-9:]}"
 
 
 def _label(label: Mapping[str, Any], run: xr.Dataset) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import matplotlib as mpl
 import xarray as xr
 from matplotlib.figure import Figure
 
 from gearidae import plot
 from gearidae.archive.select import is_roller, swept_dims
 from gearidae.errors import SceneError
+from gearidae.plot.picture import usual_style
 from gearidae.report import html
 from gearidae.report.svg import colour_rules, drawing
 
@@ -54,8 +54,7 @@ def pictures(ds: xr.Dataset) -> str:
 
 def figures(ds: xr.Dataset, wanted: Sequence[tuple[_Draw, str]]) -> str:
     """Draw pictures with their captions; those for which a dataset is too short or too empty are left out."""
-    with mpl.rc_context():
-        mpl.rcdefaults()  # a page looks alike whatever the user's settings are
+    with usual_style():
         drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
     shown = [(name, text, caption) for name, text, caption in drawn if text]
     if not shown:
