@@ -91,7 +91,10 @@ def analyse_scan(
     text = None if output is None else _text(found, choices.case)
     show_surface(found)
     if picture is not None:
-        gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)
+        from gearidae.plot.picture import usual_style
+
+        with usual_style():
+            gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)
         say(f"Picture: {picture}")
     if output is not None and text is not None:
         with whole_file(output, overwrite=overwrite, name="output") as part:
