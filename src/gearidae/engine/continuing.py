@@ -45,6 +45,7 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.setup.build import Begin, make_problem
+from gearidae.engine.setup.build_torques import KNOT_SPACING
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
@@ -67,7 +68,9 @@ MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
 _AS_THERE: Final = "as in the run to go on from"
 _SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
 _FORCES: Final = ("largest_force", "smallest_force")
-_TIMES: Final = ("held_time", "largest_force_time", "smallest_force_time")
+_TIMES: Final = ("held_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")
+_SAME: Final = 1e-12
+"""Relative difference of forces below which materials are the same: units of other torques round their last digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +155,7 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     units.convert_motion(old_y, y)
     take_over(source, m)
     units.convert_state(m.state)
-    changed = _materials(source) != _materials(m)
+    changed = not _same_materials(source, m)
     if changed:  # what other materials have been exposed to says nothing of these
         exposures_of(m)[:] = 0.0
     else:
@@ -171,13 +174,16 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
 def knots_at_start(problem: Problem) -> Floats:
     """Return the event of a schedule that has a knot where a continued run begins; the run before ended just there.
 
+    A knot that the solver could not tell from the end has been left out there.
+
     Returns
     -------
     ndarray, shape (0 or 1, 5)
         Time [s], kind, pair, flank, gap rate [m/s].
     """
     s, tables = problem.model.scene, problem.model.tables
-    if not any((segment_ends(own, tables) == s.start).any() for own in s.schedule):
+    ends = np.concatenate([segment_ends(own, tables) for own in s.schedule])
+    if not ((ends <= s.start) & (s.start - ends <= KNOT_SPACING * s.start)).any():
         return np.empty((0, 5))
     time = float(s.start * s.time_unit)
     return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0]])
@@ -255,21 +261,21 @@ class _Units:
                 e[name] *= ratio
 
 
-def _materials(m: Model) -> list[tuple[float, ...]]:
+def _same_materials(old: Model, new: Model) -> bool:
+    """Whether contacts of two models are of the same materials."""
+    before, after = _materials(old), _materials(new)
+    return len(before) == len(after) and bool(np.allclose(before, after, rtol=_SAME, atol=0.0))
+
+
+def _materials(m: Model) -> Floats:
     """What of the materials contacts depend on, in roughnesses and newtons, and fractions by tooth and place."""
-    by_place = [
-        (float(own.teeth), *m.tables[own.values_at : own.values_at + own.teeth * own.places].tolist())
-        for own in m.scene.coverage
-    ]
-    return by_place + [
-        (
-            float(own.force_scale * m.scene.force_unit),
-            float(own.stretch_limit),
-            float(own.joining_energy),
-            float(own.gap_offset),
-        )
-        for own in m.scene.material
-    ]
+    numbers: list[float] = []
+    for own in m.scene.coverage:
+        numbers += [own.teeth, *m.tables[own.values_at : own.values_at + own.teeth * own.places]]
+    for own in m.scene.material:
+        force = own.force_scale * m.scene.force_unit
+        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset]
+    return np.array(numbers)
 
 
 def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:
