@@ -136,7 +136,9 @@ def test_datasets_go_without(tmp_path):
 
 
 def test_exposures_are_refused_without_a_balance():
-    with pytest.raises(gd.SceneError, match=r"run.balance = False: must be true where run.exposures are kept"):
+    with pytest.raises(
+        gd.SceneError, match=r"run.balance = False: must be true where run.exposures are kept"
+    ):
         GEARS.replace({"run.exposures": 4, **WITHOUT})
 
 
