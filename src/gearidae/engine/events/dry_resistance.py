@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.kinetic import kinetic_energy
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import Floats, Model, W
 from gearidae.engine.motion.dry_limit import NO_FORCE, dry_limit, push_on_gear
@@ -40,10 +39,8 @@ def note_slip(m: Model, y: Floats) -> None:
 @compiled
 def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> int:
     """Set-valued dry resistance: it holds the gear up to its limit, and slips in the direction of the load."""
-    before = kinetic_energy(m, y)
     y[W] = 0.0
     m.state.slipping = 0
-    m.state.energy.dry_loss += before - kinetic_energy(m, y)
     push = push_on_gear(m, t, y)
     slipping = m.state.slip != 0.0
     if slipping and abs(push) <= dry_limit(m, t) + NO_FORCE:

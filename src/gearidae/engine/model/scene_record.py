@@ -14,6 +14,7 @@ from gearidae.engine.model.record_types import (
 
 __all__ = [
     "COVERAGE",
+    "FOLLOW",
     "MATERIAL",
     "SCENE",
     "SCHEDULE",
@@ -54,7 +55,14 @@ SCHEDULE: Final = record_type(
     ("cubic", INT),  # 1 for monotone cubics between the knots, 0 for straight lines
 )
 
+FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
+    ("balance", INT),
+    ("extremes", INT),
+    ("exposures", INT),
+)
+
 SCENE: Final = record_type(
+    ("follow", FOLLOW),
     ("kind", INT),  # GEARS or ROLLER
     ("length_unit", REAL),  # sigma [m]
     ("time_unit", REAL),  # tau [s]
