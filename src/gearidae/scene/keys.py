@@ -83,7 +83,9 @@ def _open_key(model: type[Group], key: str) -> KeyInfo | None:
     *path, last = key.split(".")
     table: type[Group] | None = model
     for part in path:
-        table = _table(table.model_fields[part].annotation)[0] if table and part in table.model_fields else None
+        table = (
+            _table(table.model_fields[part].annotation)[0] if table and part in table.model_fields else None
+        )
     found = table.open_key(last) if table else None
     if found is None:
         return None

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Final, Self
 
-from pydantic import BeforeValidator, ConfigDict, Field, TypeAdapter, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, shorten
@@ -34,9 +34,9 @@ class Harmonic(Group):
     """
 
     amplitude: Torque = Field(description="amplitude")
-    frequency: Annotated[
-        float | None, Quantity(unit="Hz", at_least=0, at_most=1e18, shown=("kHz", 3))
-    ] = Field(default=None, description="frequency in time; this or the order")
+    frequency: Annotated[float | None, Quantity(unit="Hz", at_least=0, at_most=1e18, shown=("kHz", 3))] = (
+        Field(default=None, description="frequency in time; this or the order")
+    )
     order: Annotated[float | None, Quantity(unit="1", at_least=0, at_most=1e6)] = Field(
         default=None, description="periods in a turn of the shaft; this or the frequency"
     )
@@ -91,7 +91,9 @@ class Law(Group):
 
     name: Annotated[str, Named(torque_names)] = Field(description="name of a registered torque law")
     parameters: Annotated[tuple[Annotated[float, Quantity(unit="1")], ...], BeforeValidator(_as_numbers)] = (
-        Field(default=(), description="its parameters, as many as it takes, in SI units, if they have no names")
+        Field(
+            default=(), description="its parameters, as many as it takes, in SI units, if they have no names"
+        )
     )
 
     @classmethod
@@ -122,9 +124,12 @@ class Law(Group):
                 raise SceneError(one.name, "(missing)", f"is required by the law {data['name']}{meaning}")
             try:
                 read[one.name] = _read_parameter(one, value)
-            except ValueError as error:
-                reason = str(error).partition("\n")[0]
+            except ValidationError as error:  # of a schedule: what is wrong with its first bad knot
+                first = error.errors(include_url=False)[0]
+                reason = str(first.get("ctx", {}).get("error", first["msg"]))
                 raise SceneError(one.name, shorten(value), reason) from None
+            except ValueError as error:
+                raise SceneError(one.name, shorten(value), str(error)) from None
         return read
 
     @model_validator(mode="after")
@@ -162,7 +167,9 @@ class Drive(Group):
     torque: Torque = Field(default=0.0, description="constant part, M10")
     harmonic: Harmonics = Field(default=(), description="harmonic part, a table or a list of tables")
     schedule: Schedule = Field(default=Knots(), description=_SCHEDULE)
-    law: Law | None = Field(default=None, description="a torque law of time, angle and speed, added to the rest")
+    law: Law | None = Field(
+        default=None, description="a torque law of time, angle and speed, added to the rest"
+    )
     speed: Annotated[
         float | Knots | None, Scheduled(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)
     ] = Field(default=None, description="speed of the pinion that the drive holds, a number or a schedule")
@@ -201,7 +208,8 @@ class Load(Group):
     )
     schedule: Schedule = Field(default=Knots(), description=_SCHEDULE)
     law: Law | None = Field(
-        default=None, description="a law of time, angle and speed, added to the dry resistance against the motion"
+        default=None,
+        description="a law of time, angle and speed, added to the dry resistance against the motion",
     )
 
     @property

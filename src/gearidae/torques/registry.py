@@ -92,9 +92,7 @@ class TorqueLaw:
 _LAWS: Final = Registry[TorqueLaw]("gearidae.torques", "law.name", "torque law")
 
 
-def register_torque(
-    name: str, *, parameters: int | Iterable[str | Parameter] = 0
-) -> Callable[[Law], Law]:
+def register_torque(name: str, *, parameters: int | Iterable[str | Parameter] = 0) -> Callable[[Law], Law]:
     """Make a torque law known by a name; a decorator of its function.
 
     The function is ``torque(t, speed, p)`` or ``torque(t, angle, speed, p)`` with the time [s], angle [rad] and angular
@@ -106,19 +104,19 @@ def register_torque(
     that a viscous load is ``c abs(speed)``.
 
     It must be continuous in time, angle and speed and finite at rest; it is also called a ten-thousandth of the scene's
-    natural time unit before and after a time, along the motion then. What varies much faster than gears and contacts do,
-    in time or with the angle, belongs in ``harmonic``, and what jumps in ``schedule``: steps follow those two by their
-    frequencies, orders and knots. Newton's iteration leaves the law's slopes out, which it can do while a shaft needs
-    many steps to follow the law.
+    natural time unit before and after a time, along the motion then. What varies much faster than gears and contacts
+    do, in time or with the angle, belongs in ``harmonic``, and what jumps in ``schedule``: steps follow those two by
+    their frequencies, orders and knots. Newton's iteration leaves the law's slopes out, which it can do while a shaft
+    needs many steps to follow the law.
 
     Parameters
     ----------
     name : str
         Letters, digits and underscores.
     parameters : int or iterable of str or Parameter, optional
-        How many parameters the law takes, which a scene gives as a list of numbers ``parameters``; or their names, under
-        which a scene gives numbers in SI units or texts with a unit. All of them have to be given, but those with a
-        default.
+        How many parameters the law takes, which a scene gives as a list of numbers ``parameters``; or their names,
+        under which a scene gives numbers in SI units or texts with a unit. All of them have to be given, but those with
+        a default.
 
     Returns
     -------
@@ -164,13 +162,17 @@ def register_torque(
 def _named(parameters: object) -> tuple[Parameter, ...]:
     """Read the declaration of named parameters."""
     if isinstance(parameters, str) or not isinstance(parameters, Iterable):
-        raise SceneError("parameters", parameters, "must be a whole number or a list of names")
+        raise SceneError(
+            "parameters", parameters, f"must be a whole number in 0..{MOST_PARAMETERS} or a list of names"
+        )
     named = tuple(one if isinstance(one, Parameter) else Parameter(one) for one in parameters)
     names = [one.name for one in named]
     for one in names:
         if not isinstance(one, str) or not re.fullmatch(r"[^\W\d]\w*", one) or one in ("name", "parameters"):
             raise SceneError(
-                "parameters", one, "must be a word of letters, digits and underscores, not name and not parameters"
+                "parameters",
+                one,
+                "must be a word of letters, digits and underscores, not name and not parameters",
             )
     if len(set(names)) < len(names):
         raise SceneError("parameters", ", ".join(names), "must be names that differ")

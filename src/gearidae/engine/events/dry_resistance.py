@@ -8,8 +8,9 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.kinetic import kinetic_energy
 from gearidae.engine.events.record import record
-from gearidae.engine.model.state import LOAD, Floats, Model, V, W
+from gearidae.engine.model.state import LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import mesh_forces
+from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.torques.torque import torque_force
 from gearidae.records import EventKind, Flank
 
@@ -31,7 +32,14 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
 @compiled_once(SOLVER)
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
-    return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
+    return _dry_limit(m, t, y) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
+
+
+@compiled
+def _dry_limit(m: Model, t: float, y: Floats) -> float:
+    """Largest force with which dry resistance holds a gear at rest."""
+    angle = torque_angle(m, LOAD, y[U], y[PHASE])
+    return max(torque_force(m, LOAD, t, angle, 0.0), 0.0)
 
 
 @compiled_once(SOLVER)
@@ -57,7 +65,7 @@ def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> 
     m.state.energy.dry_loss += before - kinetic_energy(m, y)
     push = _push(m, t, y)
     slipping = m.state.slip != 0.0
-    if slipping and abs(push) <= max(torque_force(m, LOAD, t, 0.0), 0.0) + _NO_FORCE:
+    if slipping and abs(push) <= _dry_limit(m, t, y) + _NO_FORCE:
         m.state.slip = 0.0
         return record(m, events, count, t, _STICK, 0, _NO_FLANK, 0.0)
     m.state.slip = 1.0 if push > 0.0 else -1.0
