@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pint
 
-__all__ = ["from_text"]
+__all__ = ["from_text", "to_si"]
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 # Only names, products, quotients and one-digit powers reach pint: it would also work out 9**9**9.
@@ -89,6 +89,26 @@ def from_text(text: str, unit: str, *, difference: bool = False) -> float:
         return float(value + offset if offset else value)  # a sum with 0 would take the sign from -0
     except DecimalException:
         raise ValueError("must be a finite number") from None
+
+
+def to_si(text: str) -> float:
+    """Read a text with any unit, or none, as a number in SI base units.
+
+    Raises
+    ------
+    ValueError
+        Saying what is wrong with it.
+    """
+    parts = _NUMBER_AND_UNIT.fullmatch(_plain(text))
+    if parts is None:
+        raise ValueError("must be a number or a text of a number and a unit")
+    registry = _registry()
+    try:
+        base = registry.parse_units(parts[2]) if parts[2] else registry.dimensionless
+        unit = f"{registry.Quantity(Decimal(1), base).to_base_units().units:~}".replace("\u03bb", "")
+    except Exception:  # pint fails in a dozen ways on what is no unit
+        raise ValueError(f"{parts[2][:20]!r} is not a known unit") from None
+    return from_text(text, unit or "1")
 
 
 def _plain(text: str) -> str:

@@ -26,7 +26,7 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
 @compiled_once(SOLVER)
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
-    return dry_limit(m, t) + 2.0 * NO_FORCE - abs(push_on_gear(m, t, y))
+    return dry_limit(m, t, y) + 2.0 * NO_FORCE - abs(push_on_gear(m, t, y))
 
 
 @compiled(inline=True)
@@ -43,7 +43,7 @@ def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> 
     m.state.slipping = 0
     push = push_on_gear(m, t, y)
     slipping = m.state.slip != 0.0
-    if slipping and abs(push) <= dry_limit(m, t) + NO_FORCE:
+    if slipping and abs(push) <= dry_limit(m, t, y) + NO_FORCE:
         m.state.slip = 0.0
         return record(m, events, count, t, _STICK, 0, _NO_FLANK, 0.0)
     m.state.slip = 1.0 if push > 0.0 else -1.0
