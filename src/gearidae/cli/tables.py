@@ -15,7 +15,7 @@ from rich.text import Text
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes, imbalance
 from gearidae.archive.run_summary import counted_over
-from gearidae.archive.select import swept_dims
+from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.output import complain, show
 from gearidae.scene.prefixes import with_prefix
 
@@ -49,6 +49,7 @@ def show_outcomes(ds: xr.Dataset) -> None:
         A single run or a sweep.
     """
     judged = outcomes(ds)
+    rtol = scene_of(ds)["run"]["rtol"]
     dims = swept_dims(ds)
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
     table = Table(box=box.SIMPLE, pad_edge=False)
@@ -58,7 +59,7 @@ def show_outcomes(ds: xr.Dataset) -> None:
         else:
             table.add_column(heading, justify="right", no_wrap=True)
     for outcome in judged:
-        cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome)
+        cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome, rtol)
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
     show(table)
 
@@ -161,10 +162,10 @@ def label_text(label: Mapping[str, Any]) -> str:
     return ", ".join(f"{dim} = {_plain(value)}" for dim, value in label.items())
 
 
-def _gear_cells(outcome: GearOutcome) -> Sequence[str]:
+def _gear_cells(outcome: GearOutcome, rtol: float) -> Sequence[str]:
     return (
         _verdict(outcome),
-        _number(outcome.min_speed),
+        _number(outcome.resolved_min_speed(rtol)),
         _number(outcome.max_speed),
         str(outcome.impacts),
         f"{outcome.wall_time:.2f}",

@@ -345,7 +345,7 @@ def outlook(
 
 def kept_at(
     scene: Scene, checkpoint: NDArray[np.float64], backend: str, origin: Origin | None = None
-) -> tuple[EnergyBalance, Extremes]:
+) -> tuple[EnergyBalance | None, Extremes | None]:
     """Return the energy balance and the extremes at a checkpoint of a run.
 
     Parameters

@@ -6,7 +6,8 @@ last bit. A new torque changes the units of time and force, a new coating what a
 
 - Joined heights are places on the surface, and stay; where asperities cannot stretch so far any more they have let go.
   A material that remembers nothing so far, or has not been there, starts with nothing stretched.
-- What the contacts store with the new materials less what they stored is booked as change of the model.
+- What the contacts store with the new materials less what they stored is booked as change of the model. An energy
+  balance that the other run has not kept begins here.
 - Where the contact was elastic it stays so, with its nodes carried to those of the new scene.
 """
 
@@ -28,10 +29,12 @@ from gearidae.engine.changeover import (
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.follow import QUANTITIES, exposures_of
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.state import (
     EMPTY,
+    ENERGY,
     EXTREMES,
     GEARS,
     MATERIALS,
@@ -42,6 +45,7 @@ from gearidae.engine.model.state import (
     Record,
     V,
     W,
+    assign,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.setup.build import Begin, make_problem
@@ -166,6 +170,8 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     _carry_contacts(old, old_y, new, y, changed=changed)
     _begin_stretch(m)
     _hold_or_slip(source, m, time, y)
+    if source.scene.follow.balance != m.scene.follow.balance:
+        _begin_balance(m, y)
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)
@@ -322,6 +328,15 @@ def _begin_stretch(m: Model) -> None:
     for which in range(len(m.scene.schedule)):
         ends = segment_ends(m.scene.schedule[which], m.tables)
         s.segment[which] = int((ends <= time).sum())
+
+
+def _begin_balance(m: Model, y: Floats) -> None:
+    """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
+    assign(m.state.energy, np.zeros(1, ENERGY)[0])
+    for name in ("lag", "lag_power", "lag_rate"):
+        m.state.history[name] = 0.0
+    if m.scene.follow.balance:
+        open_balance(m, y)
 
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:

@@ -101,9 +101,10 @@ def headline(ds: xr.Dataset) -> str:
 def outcome_table(ds: xr.Dataset) -> str:
     """List the outcome of each run."""
     judged = outcomes(ds)
+    rtol = scene_of(ds)["run"]["rtol"]
     dims = swept_dims(ds)
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
-    rows = [[*_label_cells(ds, each.label), *_outcome_cells(each)] for each in judged]
+    rows = [[*_label_cells(ds, each.label), *_outcome_cells(each, rtol)] for each in judged]
     last = len(dims) + len(headings) - 1
     numeric = [place for place in range(last) if place != len(dims)]
     return html.table((*dims, *headings), rows, caption="Outcome of each run", numeric=numeric)
@@ -236,12 +237,12 @@ def _provenance(key: str, value: Any) -> str:
     return _number(value)
 
 
-def _outcome_cells(outcome: GearOutcome | RollerOutcome) -> list[str]:
+def _outcome_cells(outcome: GearOutcome | RollerOutcome, rtol: float) -> list[str]:
     if isinstance(outcome, RollerOutcome):
         forces = (outcome.peak_force, outcome.pull_off_force)
         numbers = [*(_measure(force, "N") for force in forces), _number(outcome.restitution)]
     else:
-        numbers = [_number(outcome.min_speed), _number(outcome.max_speed)]
+        numbers = [_number(outcome.resolved_min_speed(rtol)), _number(outcome.max_speed)]
     return [outcome.words, *numbers, str(outcome.impacts), outcome.status]
 
 

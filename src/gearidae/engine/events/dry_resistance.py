@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.kinetic import kinetic_energy
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import Floats, Model, W
-from gearidae.engine.motion.rest import NO_FORCE, holding_force, push_at_rest
+from gearidae.engine.motion.dry_limit import NO_FORCE, dry_limit, push_on_gear
 from gearidae.records import EventKind, Flank
 
 __all__ = ["dry_guard", "note_slip", "stick_or_slip"]
@@ -27,7 +26,7 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
 @compiled_once(SOLVER)
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
-    return holding_force(m, t) + 2.0 * NO_FORCE - abs(push_at_rest(m, t, y))
+    return dry_limit(m, t, y) + 2.0 * NO_FORCE - abs(push_on_gear(m, t, y))
 
 
 @compiled(inline=True)
@@ -40,13 +39,11 @@ def note_slip(m: Model, y: Floats) -> None:
 @compiled
 def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> int:
     """Set-valued dry resistance: it holds the gear up to its limit, and slips in the direction of the load."""
-    before = kinetic_energy(m, y)
     y[W] = 0.0
     m.state.slipping = 0
-    m.state.energy.dry_loss += before - kinetic_energy(m, y)
-    push = push_at_rest(m, t, y)
+    push = push_on_gear(m, t, y)
     slipping = m.state.slip != 0.0
-    if slipping and abs(push) <= holding_force(m, t) + NO_FORCE:
+    if slipping and abs(push) <= dry_limit(m, t, y) + NO_FORCE:
         m.state.slip = 0.0
         return record(m, events, count, t, _STICK, 0, _NO_FLANK, 0.0)
     m.state.slip = 1.0 if push > 0.0 else -1.0

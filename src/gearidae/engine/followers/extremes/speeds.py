@@ -11,9 +11,9 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
-from gearidae.engine.followers.interpolation import cubic, cubic_slope
+from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.model.state import PARTS, Floats, Model, Record
-from gearidae.engine.motion.rest import is_pulled_back
+from gearidae.engine.motion.dry_limit import is_pulled_back
 
 __all__ = ["come_to_stand", "follow_speed", "next_part", "note_hold", "note_speed"]
 
