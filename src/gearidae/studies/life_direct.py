@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae import engine
-from gearidae.studies.cycle_jump import Sticks
+from gearidae.studies.cycle_jump import GearStuck
 from gearidae.studies.life_states import Seen, Windows
 from gearidae.studies.life_window import gained, part_of, solved, stands, steady_window, with_exposures
 
@@ -81,7 +81,7 @@ class DirectCycles:
 
         Raises
         ------
-        Sticks
+        GearStuck
             If the gear does, with the passages by which it has come to stand.
         """
         here = self._here
@@ -98,7 +98,7 @@ class DirectCycles:
         windows = self.windows
         window = steady_window(windows.scene_at(state), windows.cycles, windows.backend)
         if window.start is None:
-            raise Sticks(passages)
+            raise GearStuck(passages)
         assert window.solution.extremes is not None
         self.run += window.solution.extremes.mesh_exits
         return _Place(passages, state, window.start, window.solution)
@@ -109,7 +109,7 @@ class DirectCycles:
         scene = part_of(windows.scene_at(state), 1, windows.cycles.total, _PATIENCE)
         found = solved(scene, windows.backend, here.start)
         if stands(found, scene) or found.checkpoint is None:
-            raise Sticks(here.passages + self.cycle)
+            raise GearStuck(here.passages + self.cycle)
         seen = self._see(scene, found, here)
         self.seen[state.tobytes()] = seen
         self.run += 1
