@@ -1,7 +1,7 @@
-"""The torque laws by their names: what ``drive.law`` and ``load.law`` may say.
+"""The torque laws by their names: the values of ``drive.law.name`` and ``load.law.name``.
 
-Every file of this folder that registers a law is found by itself. A law from elsewhere is registered in each process
-that uses it, before scenes are made that name it.
+Every file of this folder that registers a law is found automatically. Each process that uses a law from elsewhere has
+to register it before it makes scenes that name it.
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ Parameters: TypeAlias = NDArray[np.float64]
 Law = TypeVar("Law", bound=Callable[..., Any])
 
 MOST_PARAMETERS: Final = 10_000
-"""Parameters of one law."""
+"""Largest number of parameters of a law."""
 
 
 @dataclass(frozen=True, slots=True)
 class TorqueLaw:
-    """A law that is known by a name.
+    """A registered law.
 
     Attributes
     ----------
     name : str
-        What ``drive.law.name`` and ``load.law.name`` call it.
+        Its name in ``drive.law.name`` and ``load.law.name``.
     function : callable
         ``function(t, speed, p)``: torque [N m] of time [s], angular speed of the shaft [rad/s] and parameters.
     parameters : int
-        How many parameters it takes.
+        Number of its parameters.
     """
 
     name: str
@@ -56,18 +56,18 @@ _LAWS: Final = Registry[TorqueLaw]("gearidae.torques", "law.name", "torque law")
 
 
 def register_torque(name: str, *, parameters: int = 0) -> Callable[[Law], Law]:
-    """Make a torque law known by a name; a decorator of its function.
+    """Register a torque law by a name; a decorator of its function.
 
     The function is ``torque(t, speed, p)`` with the time [s], the angular speed of the shaft [rad/s] and the array of
-    parameters, shape (parameters,); it returns the torque [N m]. It is compiled by numba when a scene first uses it,
-    so it may use floats, `math`, the array and other compiled functions, and must not raise. The torque is added to
-    the shaft's other torques: that of a drive turns the pinion forward, that of a load resists the gear's motion,
-    whichever way it goes (a negative sum counts as none), so that a viscous load is ``c abs(speed)``.
+    parameters, shape (parameters,); it returns the torque [N m]. Numba compiles it when a scene first uses it. It may
+    use floats, `math`, the array and other compiled functions, and must not raise. The torque is added to
+    the other torques of the shaft. The torque of a drive turns the pinion forward. The torque of a load resists the
+    motion of the gear in both directions (a negative sum counts as zero), so that a viscous load is ``c abs(speed)``.
 
-    It must be continuous in time and speed and finite at rest; it is also called a ten-thousandth of the scene's
-    natural time unit before and after a time, at the speed then. What varies much faster than gears and contacts do
-    belongs in ``harmonic``, and what jumps in ``schedule``: steps follow those two by their frequencies and knots.
-    Newton's iteration leaves the law's slope in the speed out, which it can do while a shaft needs many steps to
+    It must be continuous in time and speed and finite at rest. The engine also calls it a ten-thousandth of the scene's
+    natural time unit before and after a time, at the current speed. Use ``harmonic`` for a torque that varies much
+    faster than gears and contacts, and ``schedule`` for one that jumps: the steps resolve their frequencies and knots.
+    Newton's iteration leaves out the slope of the law in the speed, which is allowed if a shaft needs many steps to
     follow the law.
 
     Parameters
@@ -75,17 +75,17 @@ def register_torque(name: str, *, parameters: int = 0) -> Callable[[Law], Law]:
     name : str
         Letters, digits and underscores.
     parameters : int, optional
-        How many parameters the law takes, all of which a scene has to give.
+        Number of parameters; a scene has to give all of them.
 
     Returns
     -------
     callable
-        The decorator; it returns the function as it is.
+        The decorator; it returns the function unchanged.
 
     Raises
     ------
     SceneError
-        If the name is none, or that of another law, or the number of parameters is none.
+        If the name is not an identifier, or that of another law, or the number of parameters is out of range.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def register_torque(name: str, *, parameters: int = 0) -> Callable[[Law], Law]:
 
 
 def unregister_torque(name: str) -> None:
-    """Take a law out again.
+    """Remove a law.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def unregister_torque(name: str) -> None:
 
 
 def torque_names() -> tuple[str, ...]:
-    """Return the names of all torque laws, in the order of the alphabet."""
+    """Return the names of all torque laws in alphabetical order."""
     return _LAWS.names()
 
 
