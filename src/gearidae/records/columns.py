@@ -61,6 +61,19 @@ GEAR_SAMPLES: Final = (
     Column("drive_gap", "m", "smallest gap of all pairs on the drive flank"),
     Column("coast_gap", "m", "smallest gap of all pairs on the coast flank"),
     Column("pairs_in_contact", "1", "number of tooth pairs that transmit force"),
+    Column("drive_torque", "N m", "torque of the drive on the pinion", "positive turns the gears forward"),
+    Column(
+        "load_torque",
+        "N m",
+        "torque that resists the gear",
+        "dry resistance and drag, Teodorescu et al. 2009, Eq. 2; of a gear at rest the torque that holds it",
+    ),
+    Column(
+        "pinion_angle",
+        "rad",
+        "rotation of the pinion since the start",
+        "of the first run of a chain; not wrapped",
+    ),
 )
 ROLLER_SAMPLES: Final = (
     Column("height", "m", "height of the roller above the mean plane of the asperities"),

@@ -176,7 +176,8 @@ class Extremes:
     turned_back : float
         Pitches by which the gear has turned back since the stick time.
     turn_backs : int
-        Number of times that adhesion of the drive flank has turned the gear back there; 0 unless it has stuck.
+        Number of times that adhesion of the drive flank has turned the gear back there, since dry resistance last held
+        it; 0 unless it has stuck.
     time_adhering : float
         Time for which adhesion has held the gear, there and elsewhere: from one turning back to the next within half a
         pitch, and to the end of the run [s].
