@@ -6,6 +6,7 @@ decimals, so "34.715 um" is the float that ``34.715e-6`` is, to the last bit.
 
 from __future__ import annotations
 
+import math
 import re
 from decimal import Decimal, DecimalException
 from functools import cache, lru_cache
@@ -141,6 +142,11 @@ def _scale(own_unit: str, unit: str, difference: bool) -> tuple[Decimal, Decimal
         # of temperatures the zero counts, too
         zero = Decimal(registry.Quantity(Decimal(0), given).to(wanted).magnitude) if fits else Decimal(0)
         factor = Decimal(one.to(wanted).magnitude) - zero if fits else Decimal(0)
+        two = (
+            Decimal(registry.Quantity(Decimal(2), given).to(wanted).magnitude) - zero if fits else Decimal(0)
+        )
+        if not math.isclose(two, 2 * factor, rel_tol=1e-9):
+            raise ValueError("is a logarithm")  # decibels and nepers
     except Exception:  # pint fails in a dozen ways on what is no unit, and all of them mean this
         raise ValueError(f"{own_unit[:20]!r} is not a known unit; expected {_wanted(unit)}") from None
     if not fits:
