@@ -14,7 +14,7 @@ from gearidae.analysis import doubts
 from gearidae.analysis.fitting import RingSet, first_explanation
 from gearidae.analysis.ringing import Ring, rings_of
 from gearidae.analysis.signal import Signal
-from reference.toy_map import ring_set, model
+from reference.toy_map import model, ring_set
 
 RATE = 50e3
 TIME = np.arange(0.0, 0.3, 1.0 / RATE)

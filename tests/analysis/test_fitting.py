@@ -7,7 +7,7 @@ import pytest
 
 from gearidae.analysis.fitting import COMMON, RingSet, first_explanation
 from gearidae.analysis.map_model import BEFORE
-from reference.toy_map import FRACTIONS, IMPACTS, ring_set, model, sequences
+from reference.toy_map import FRACTIONS, IMPACTS, model, ring_set, sequences
 
 
 @pytest.mark.parametrize("fraction", [0.6, 0.85, 0.99])

@@ -86,7 +86,7 @@ def test_what_is_not_regular_is_read_line_by_line(text, file):
     ("cell", "reason"),
     [
         ("1,fast", f"{SPEED_44} is 'fast', no number"),
-        ("1", "line 44: row 41 has 1 cells, but there are 2 headings"),
+        ("1", "line 44: row 41 has 1 cell, but there are 2 headings"),
         ("1,2,3", "line 44: row 41 has 3 cells, but there are 2 headings"),
         ("0,4,1,5", "line 44: row 41 has 4 cells, but there are 2 headings"),
         ("1,inf", f"{SPEED_44} is inf, not a finite number"),
@@ -111,7 +111,7 @@ def test_a_header_in_a_remark_must_name_the_units(file):
 
 
 def test_numbers_without_any_header_are_refused(file):
-    with pytest.raises(SceneError, match="has no column time among '0.0', '1.5', nor one column alone in s"):
+    with pytest.raises(SceneError, match=r"has no column time among '0\.0', '1\.5', nor one"):
         read_signal(file(rows()))
 
 
@@ -203,7 +203,7 @@ def test_frames_are_read_by_their_headings():
         np.testing.assert_allclose(ds.time, TIME, rtol=1e-12)
         np.testing.assert_allclose(np.delete(ds.gear_speed, 9), np.delete(SPEED, 9), rtol=1e-12)
         assert ds.attrs["reading"] == "1 sample bridged"
-    with pytest.raises(SceneError, match="signal = DataFrame.*sample 9"):
+    with pytest.raises(SceneError, match=r"signal = DataFrame.*sample 9"):
         read_signal(frame)
     with pytest.raises(SceneError, match="skip = 2: is for text files; this is a DataFrame"):
         read_signal(frame, skip=2)
@@ -218,7 +218,7 @@ def test_frames_are_read_by_their_headings():
         ({"skip": -1}, "skip = -1: must be a whole number of lines"),
         ({"skip": 1}, "has no column time"),
         ({"delimiter": "ab"}, "delimiter = ab: must be one character"),
-        ({"delimiter": ";"}, "has no column time"),
+        ({"delimiter": ";"}, "line 2: row 1 has 1 cell, but there are 2 headings"),
         ({"decimal": ";"}, "decimal = ;: must be '.' or ','"),
         ({"bridge": -1}, "bridge = -1: must be a whole number of samples"),
         ({"bridge": 1.5}, "bridge = 1.5"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
@@ -86,6 +86,8 @@ class Assessment:
         Drive torque estimated from the gear's speed [N m]; NaN unless the map is one over ``drive.torque``.
     gear_speed : float
         Median speed of the gear [rad/s].
+    reading : str
+        What was recognised in the file or table of the record, see `read_signal`.
     """
 
     sam_fraction: float
@@ -97,6 +99,7 @@ class Assessment:
     history: str
     torque: float = math.nan
     gear_speed: float = math.nan
+    reading: str = field(default="", compare=False)
 
     @property
     def uncertainty(self) -> float:
@@ -172,7 +175,8 @@ def assess(
             f"({count} runs)",
             f"must be one run: pick one with .sel({dim}=...), or --select {dim}=...",
         )
-    return judge(batch.signals[0], model, sensor)
+    found = judge(batch.signals[0], model, sensor)
+    return replace(found, reading=str(data.attrs.get("reading", "")))
 
 
 def judge(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:

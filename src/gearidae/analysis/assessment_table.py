@@ -50,4 +50,6 @@ def _rows(found: Assessment) -> Iterator[tuple[str, str]]:
     if not math.isnan(found.torque):
         yield "estimated drive torque", with_prefix(found.torque, "N m", 4)
     frequencies = [with_prefix(each, "Hz", 4) for each in found.frequencies]  # "-" where nothing stands out
+    if found.reading:
+        yield "record read with", found.reading
     yield "impact responses", ", ".join(frequencies) or "none"

@@ -138,16 +138,15 @@ def assess_signal(
     record = gd.analysis.read_signal(
         signal, **{name: value for name, value in reading.items() if value is not None}
     )
-    recognised = record.attrs.get("reading", "")
     record = selected(record, select, "--select", _dims(record["gear_speed"], "time"))
     mapped = selected(mapped, line, "--line", _dims(mapped["characteristic_frequency"], "sam_fraction"))
     found = gd.analysis.assess(record, mapped, **known)
     if as_json:
-        derived = {"uncertainty": found.uncertainty, "conclusive": found.conclusive, "reading": recognised}
+        derived = {"uncertainty": found.uncertainty, "conclusive": found.conclusive}
         say_json({**asdict(found), **derived})
         return DONE
-    if recognised:
-        say(f"{signal}: {recognised}")
+    if found.reading:
+        say(f"{signal}: {found.reading}")
     say(f"{found.verdict}: {found.explanation}")
     return DONE
 
