@@ -262,10 +262,12 @@ def surface(
     *,
     size: Annotated[
         str | None,
-        Parameter(help="Extent of the map: that of its rows, or of columns and rows, such as '2 um, 1 um'."),
+        Parameter(
+            help="Extent of the map, if the file does not say it: of its rows, or columns and rows: '2 um, 1 um'."
+        ),
     ] = None,
     unit: Annotated[
-        str | None, Parameter(help="Unit of the heights in .npy and text files. Default: m.")
+        str | None, Parameter(help="Unit of the heights, if the file does not say it. Default: m.")
     ] = None,
     cutoff: Annotated[
         str | None, Parameter(help="Cut-off wavelength, such as 50 nm: shorter waves are left out.")
@@ -274,6 +276,9 @@ def surface(
         Literal["summits", "moments"], Parameter(help="Where the asperities are taken from.")
     ] = "summits",
     both_flanks: Annotated[bool, Parameter(help="Combine the roughness of two such flanks.")] = False,
+    align_rows: Annotated[
+        bool, Parameter(help="Shift lines of the scan that drift or noise has offset against each other.")
+    ] = False,
     into: Annotated[
         Path | None,
         Parameter(
@@ -297,7 +302,7 @@ def surface(
     """
     from gearidae.cli.surface import Choices, analyse_scan
 
-    choices = Choices(size, unit, cutoff, by, both_flanks, None if into is None else str(into))
+    choices = Choices(size, unit, cutoff, by, both_flanks, align_rows, None if into is None else str(into))
     return analyse_scan(scan, choices, output, picture, overwrite=overwrite)
 
 
