@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import re
 import sys
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -92,6 +94,27 @@ def test_a_bar_is_drawn_on_a_terminal(monkeypatch):
     with progress.run_progress(True, 0.3) as report:
         report(0.3, 7)
     assert "300 of 300 ms, 7 events" in sys.stderr.getvalue()
+
+
+@pytest.mark.parametrize(("columns", "shown"), [(40, "0:00:"), (80, "events"), (150, "ms per second")])
+def test_narrow_terminals_show_the_time_that_remains(columns, shown, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", str(columns))
+    with progress.run_progress(True, 123.456e-3) as report:
+        for step in range(1, 4):
+            report(step * 12.3456e-3, 123_456)
+            time.sleep(0.01)
+    last = (
+        re.sub("\x1b\\[[0-9;?]*[a-zA-Z]", "", sys.stderr.getvalue()).strip().splitlines()[-1].split("\r")[-1]
+    )
+    assert re.search(r"\d+:\d\d:\d\d \S+:\S\S:\S\S$", last.strip())  # elapsed, and remaining
+    assert len(last) <= columns
+    assert shown in last
 
 
 def test_a_function_is_told():

@@ -123,15 +123,22 @@ def _notebook() -> Any:
 def _terminal_bar(title: str, total: float) -> Iterator[Advance]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.table import Column
 
+    console = Console(stderr=True)
+    # where room is scarce, words are cut off, and never the time that remains
+    bar_width = min(max(console.width - 80, 8), 40)
+    room = max(console.width - len(title) - bar_width - 2 * len("0:00:00") - 4, 8)
     columns = (
         TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.fields[words]}"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
+        BarColumn(bar_width),
+        TextColumn(
+            "{task.fields[words]}", table_column=Column(no_wrap=True, overflow="ellipsis", max_width=room)
+        ),
+        TimeElapsedColumn(table_column=Column(no_wrap=True)),
+        TimeRemainingColumn(table_column=Column(no_wrap=True)),
     )
-    with Progress(*columns, console=Console(stderr=True)) as bar:
+    with Progress(*columns, console=console) as bar:
         task = bar.add_task(title, total=total, words="")
         yield lambda done, words: bar.update(task, completed=done, words=words)
         bar.update(task, refresh=True)

@@ -119,6 +119,8 @@ def test_pieces(size, monkeypatch):
     assert found.mean == pytest.approx(values[5:900].mean(), rel=1e-12, abs=0)
     assert pieces.reached(array) == 900
     assert pieces.reached(array[:700]) == 700
+    assert pieces.reached(array.shift(time=3)) == 903
+    assert pieces.reached(array[900:]) == 0
     assert pieces.first_above(array, 1.5) == int(np.argmax(values > 1.5))
     assert pieces.first_above(array, 100.0) == 0
     assert pieces.count(array, values[3]) == 1

@@ -9,6 +9,7 @@ from cyclopts import App, Parameter
 
 import gearidae
 from gearidae.cli import completing
+from gearidae.cli.output import Terminal
 
 __all__ = ["app"]
 
@@ -18,6 +19,7 @@ app = App(
     version=f"gearidae {gearidae.__version__}",
     default_parameter=Parameter(negative=()),
     suppress_keyboard_interrupt=False,  # `main` reports what is kept
+    console=Terminal(),
 )
 app.meta.suppress_keyboard_interrupt = False
 

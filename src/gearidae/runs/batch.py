@@ -71,7 +71,6 @@ class Batch:
         self._done: dict[int, Left] = {}
         self._under_way: dict[int, float] = {}  # share that is done of the runs that have begun
         self._counting = threading.Lock()
-        self._cancelled = threading.Event()
 
     @property
     def left(self) -> int:
@@ -87,8 +86,8 @@ class Batch:
                 self._store(number, Left(solution, **judged))
         self._tell()
 
-    def run(self, executor: Executor | None, *, threads: int = 0) -> bool:
-        """Compute all runs; return whether Ctrl-C ended it early.
+    def run(self, executor: Executor | None, *, threads: int = 0) -> None:
+        """Compute all runs, or those until a `KeyboardInterrupt`.
 
         Parameters
         ----------
@@ -97,16 +96,11 @@ class Batch:
         threads : int, optional
             How many threads of this process the executor has; 0 if it is of other processes.
         """
-        try:
-            if executor is None:
-                for number in self._missing():
-                    self._finish(number, self._outcome_here(number))
-            else:
-                self._submit(executor, threads)
-        except KeyboardInterrupt:
-            self._cancelled.set()
-            return True
-        return False
+        if executor is None:
+            for number in self._missing():
+                self._finish(number, self._outcome_here(number))
+        else:
+            self._submit(executor, threads)
 
     def dataset(self) -> xr.Dataset:
         """Put what the runs have left behind into one dataset; runs that are missing were interrupted."""
@@ -150,7 +144,6 @@ class Batch:
                     while waiting:
                         submit([waiting.popleft() for _ in range(min(size, len(waiting)))])
         except BaseException:
-            self._cancelled.set()
             for future, numbers in pending.items():
                 if not future.cancel() and future.done() and future.exception() is None:
                     for number, left in zip(numbers, future.result(), strict=False):
@@ -194,8 +187,6 @@ class Batch:
         duration = self._scenes[number].run.duration
 
         def on_progress(time: float, events: int) -> None:
-            if self._cancelled.is_set():
-                raise KeyboardInterrupt  # the only way to end a thread's run is from inside
             with self._counting:
                 self._under_way[number] = time / duration
             self._tell()

@@ -10,12 +10,13 @@ import numpy as np
 from gearidae import engine
 from gearidae.errors import SceneError, SolverError
 from gearidae.records import EventKind, Events, Flank, Solution, Statistics
+from gearidae.runs.halting import is_halted
 from gearidae.scene import Scene
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "unsolved"]
+__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "solve_to_end", "unsolved"]
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
@@ -88,11 +89,27 @@ def solve(
     Returns
     -------
     Solution
+        Of the status ``interrupted`` after Ctrl-C, also in a thread of `gearidae.runs.executors.own_executor`.
     """
+
+    def report(time: float, events: int) -> None:
+        if is_halted():
+            raise KeyboardInterrupt
+        if on_progress is not None:
+            on_progress(time, events)
+
     try:
-        return engine.solve(scene, backend=backend, on_progress=on_progress, origin=origin, on_block=on_block)
+        return engine.solve(scene, backend=backend, on_progress=report, origin=origin, on_block=on_block)
     except SolverError as error:
         return unsolved("failed", str(error))
+
+
+def solve_to_end(scene: Scene, backend: str, origin: engine.Origin | None = None) -> Solution:
+    """Run a scene as `solve` does; a run that Ctrl-C has cut off is no result, and raises `KeyboardInterrupt`."""
+    solution = solve(scene, backend, origin=origin)
+    if solution.status == "interrupted":
+        raise KeyboardInterrupt
+    return solution
 
 
 def runs_in_threads(backend: str) -> bool:

@@ -20,7 +20,7 @@ from gearidae.engine.followers.exposures.follow import PRESSURE, QUANTITIES
 from gearidae.engine.model.state import MATERIALS
 from gearidae.errors import SolverError
 from gearidae.runs.estimates import steady_speed
-from gearidae.runs.running import solve, unsolved
+from gearidae.runs.running import solve_to_end, unsolved
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -258,7 +258,7 @@ def solved(scene: Scene, backend: str, origin: engine.Origin | None = None) -> S
     SolverError
         If they could not be finished.
     """
-    solution = solve(scene, backend, origin=origin)
+    solution = solve_to_end(scene, backend, origin)
     if solution.extremes is None or solution.status != "finished":
         raise SolverError(
             f"a window of the life could not be finished: {solution.message or solution.status}",

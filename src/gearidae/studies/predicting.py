@@ -14,7 +14,7 @@ from gearidae.analysis.verdict_codes import sticking, verdict_codes
 from gearidae.archive.keep import read_keep
 from gearidae.archive.select import runs
 from gearidae.archive.stack import held
-from gearidae.errors import Interrupted, SceneError
+from gearidae.errors import SceneError
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import kept_beside, run_plan
@@ -135,12 +135,7 @@ class Predictor:
                 progress=progress,
             )
             if interrupted:
-                where = (
-                    ""
-                    if self.kept is None
-                    else "finished runs are kept beside the archive; go on with resume"
-                )
-                raise Interrupted(where, ds)
+                raise KeyboardInterrupt
             read += self._read(ds)
         return read
 

@@ -28,8 +28,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearidae.errors import SceneError
-from gearidae.runs.executors import check_executor
+from gearidae.runs.executors import check_executor, side_by_side
 from gearidae.runs.simulation import simulate
+from gearidae.studies.study_run import interruptible
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -116,7 +117,7 @@ def sensitivity(
         Size of the input that steps are measured by, in its SI unit; by default the input itself.
     backend : {'auto', 'native', 'sksundae'}, optional
     executor : Executor, optional
-        Has a ``map`` to run side by side, as that of `concurrent.futures.ThreadPoolExecutor`.
+        To run side by side, as that of `concurrent.futures.ThreadPoolExecutor`.
 
     Returns
     -------
@@ -127,6 +128,8 @@ def sensitivity(
     ------
     SceneError
         If the key is no number, is zero without a `scale`, or the run has no such figure.
+    Interrupted
+        On Ctrl-C.
 
     Examples
     --------
@@ -143,7 +146,8 @@ def sensitivity(
     best, before, runs = None, None, 0
     for rtol in _tolerances(scene.run.rtol):
         of_scene = _Runs(scene.replace({"run.rtol": rtol}), key, figure, backend, executor)
-        found = _differentiate(of_scene, middle, size, rtol)
+        with interruptible():
+            found = _differentiate(of_scene, middle, size, rtol)
         runs += found.runs
         if before is not None:
             more = _REMAINING * abs(found.value - before.value)
@@ -174,8 +178,8 @@ class _Runs:
 
     def __call__(self, inputs: Sequence[float]) -> list[float]:
         scenes = [self._scene.replace({self._key: value}) for value in inputs]  # refused before anything runs
-        run = map if self._executor is None else self._executor.map
-        return list(run(_run, scenes, [self._figure] * len(scenes), [self._backend] * len(scenes)))
+        figures, backends = [self._figure] * len(scenes), [self._backend] * len(scenes)
+        return list(side_by_side(self._executor, _run, scenes, figures, backends))
 
 
 def _run(scene: Scene, figure: Figure, backend: str) -> float:

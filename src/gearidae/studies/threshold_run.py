@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.archive.stack import held
 from gearidae.errors import SceneError, SolverError
-from gearidae.runs.running import solve, unsolved
+from gearidae.runs.running import solve_to_end, unsolved
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -76,7 +76,7 @@ def run_until(scene: Scene, exits: int, backend: str) -> Solution:
     """
     duration, longest = scene.run.duration, _LONGEST * scene.run.duration
     while True:
-        solution = solve(scene.replace({"run.duration": duration}), backend)
+        solution = solve_to_end(scene.replace({"run.duration": duration}), backend)
         found = solution.extremes
         slow = found is not None and math.isnan(found.stick_time) and found.mesh_exits < exits
         if not slow or solution.status != "finished" or duration >= longest:
