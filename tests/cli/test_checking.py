@@ -44,7 +44,7 @@ def test_check_doubts_a_roughness_of_ten_micrometres(capfd):
     assert main(["check", CASE, "--set", "surface.roughness=10 um"]) == 0
     out = words(capfd)
     assert "Warning: surface.roughness = 10 um is larger than mesh.backlash = 200 nm" in out
-    assert re.search(r"Warning: this run is expected to take \d+\.\d days \(", out)
+    assert re.search(r"expected wall time \d+\.\d days", out)
 
 
 def test_check_of_a_roller(capfd):
@@ -52,15 +52,6 @@ def test_check_of_a_roller(capfd):
     out = words(capfd)
     assert "closest approach" in out
     assert "inertia" not in out
-
-
-def test_run_announces_a_long_run_before_it(tmp_path, monkeypatch, capfd):
-    """An output that cannot be written ends the run at once, after the announcement."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "there.nc").write_bytes(b"x")
-    settings = ["--set", "run.duration=1e6", "run.samples=11"]
-    assert main(["run", CASE, "-o", "there.nc", *settings]) == 2
-    assert "this run is expected to take 7.4 h" in capfd.readouterr().err
 
 
 def test_check_estimates_a_scheduled_drive(capfd):

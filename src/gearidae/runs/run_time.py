@@ -60,14 +60,6 @@ class RunTime:
         """Number of events, most of them turning points; as uncertain as the steps."""
         return _EVENTS_A_STEP * self.steps
 
-    def words(self) -> str:
-        """Wall time as people say it: ``"80 h"``."""
-        for unit, length in (("years", 3.156e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0)):
-            number = self.seconds / length
-            if number >= 2.0:
-                return f"{number:.2g} {unit}" if number < 100.0 else f"{number:.3g} {unit}"
-        return f"{self.seconds:.2g} s"
-
 
 def run_time(scene: Scene) -> RunTime:
     """Estimate how long a scene takes to simulate.

@@ -11,11 +11,16 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from gearidae.asperities import law_of
 from gearidae.asperities.tip import tabor_parameter
 from gearidae.contact.asperity_statistics import (
+    asperities_for_mean,
     density_product,
     expected_asperities,
     half_spacing,
+    mean_square_place,
     zero_load_radius,
 )
 from gearidae.contact.surroundings import (
@@ -28,7 +33,7 @@ from gearidae.contact.surroundings import (
 from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
 from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.scene.prefixes import with_prefix
-from gearidae.scene.validity_row import ValidityRow, rows_to_json
+from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,8 +42,6 @@ if TYPE_CHECKING:
 
 __all__ = ["validity", "validity_attribute", "validity_rows"]
 
-ENOUGH_ASPERITIES: Final = 10.0
-"""Below about so many, one pair of teeth is not the mean of all."""
 _DENSEST: Final = 0.06
 """Random surfaces have a product N beta sigma of 0.03 to 0.06."""
 _SPACINGS: Final = 0.165e-9, 0.3e-9
@@ -129,7 +132,7 @@ def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
     rows += [_temperature(rest), _gas(rest), _adhesion(scene, rest)]
     if scene.gears is not None:
-        rows += [_disc_drag(scene), *_inertia(scene)]
+        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene)]
     return tuple(rows)
 
 
@@ -150,33 +153,75 @@ def _resting(scene: Scene) -> _Rest:
 
 def _times(ratio: float) -> str:
     """Write a ratio: ``"45 times"``."""
-    return (
-        f"{ratio:.2g} times"
-        if ratio < 10.0
-        else f"{ratio:,.0f} times"
-        if ratio < 1e6
-        else f"{ratio:.0e} times"
-    )
+    return f"{f'{ratio:.2g}' if ratio < 10.0 else f'{ratio:,.0f}' if ratio < 1e6 else f'{ratio:.0e}'} times"
+
+
+def _about(count: float) -> str:
+    """Write a large number with two digits: ``"26,000"``."""
+    return f"{float(f'{count:.2g}'):,.0f}" if count < 1e9 else f"{count:.0e}"
 
 
 def _asperities(rest: _Rest) -> ValidityRow:
-    contact, limit = rest.contact, f"at least {ENOUGH_ASPERITIES:g}"
-    name, quantity = "expected_asperities", "expected asperities in contact"
+    contact, name, quantity = rest.contact, EXPECTED_ASPERITIES, "expected asperities in contact"
     if math.isnan(rest.gap):
-        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, ENOUGH_ASPERITIES, "1")
-    count = sum(
-        share * float(expected_asperities(rest.gap + offset, contact.radius, contact.width, surface))
-        for surface, share, offset, _ in contact.parts
-    )
-    relative = rest.gap / contact.surface.roughness
-    enough = count >= ENOUGH_ASPERITIES
+        return ValidityRow(name, quantity, "-", "-", _NO_LOAD, False, math.nan, math.nan, "1")
+    parts = [(surface, share, offset) for surface, share, offset, _ in contact.parts]
+    needed = asperities_for_mean(rest.gap, parts, contact.law)
+    count = sum(_counts(rest))
+    enough = count >= needed
     verdict = (
-        f"enough for a smooth law of force (gap {relative:.2f} roughnesses)"
+        "one pair's force is the mean to 10 %"
         if enough
-        else f"the smooth law of force is an ensemble mean, not one pair of teeth (gap {relative:.2f} roughnesses)"
+        else "the smooth law of force is an ensemble mean, not one pair of teeth"
     )
     return ValidityRow(
-        name, quantity, with_prefix(count, "1"), limit, verdict, enough, count, ENOUGH_ASPERITIES, "1"
+        name,
+        quantity,
+        with_prefix(count, "1"),
+        f"at least {_about(needed)} for a scatter of 10 %",
+        f"{verdict} (gap {rest.gap / contact.surface.roughness:.2f} roughnesses)",
+        enough,
+        count,
+        needed,
+        "1",
+    )
+
+
+def _counts(rest: _Rest) -> list[float]:
+    """Asperities of each material of the interface that are expected in contact."""
+    contact = rest.contact
+    return [
+        share * float(expected_asperities(rest.gap + offset, contact.radius, contact.width, surface))
+        for surface, share, offset, _ in contact.parts
+    ]
+
+
+def _memory(scene: Scene, rest: _Rest) -> ValidityRow:
+    """Compare the contact's width with the flank that rolls through it while the pair is engaged."""
+    contact, geometry = rest.contact, scene.geometry
+    name, quantity = "memory", "width of the contact over the rolled distance"
+    limit = "at least 1: the same asperities all the time"
+    if math.isnan(rest.gap):
+        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, 1.0, "1")
+    counts = _counts(rest)
+    places = [
+        mean_square_place(rest.gap + offset, contact.radius, surface) for surface, _, offset, _ in contact.parts
+    ]
+    # four standard deviations of the places in contact
+    width = 4.0 * math.sqrt(np.average(places, weights=counts) if sum(counts) > 0.0 else min(places))
+    begin = geometry.tangent_pinion - geometry.approach
+    rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
+    ratio = width / rolled
+    forgets = all(law_of(contact.law, part.surface).detach == law_of(contact.law, part.surface).join for part in contact.parts)
+    lengths = f"{with_prefix(width, 'm')} of {with_prefix(rolled, 'm')}"
+    if forgets:
+        verdict = f"asperities of this law have no memory ({lengths})"
+    elif ratio >= 1.0:
+        verdict = f"the same asperities stay in contact while the pair is engaged ({lengths})"
+    else:
+        verdict = f"real asperities leave the contact ({lengths}); here what an impact has joined stays until the pair leaves"
+    return ValidityRow(
+        name, quantity, with_prefix(ratio, "1"), limit, verdict, forgets or ratio >= 1.0, ratio, 1.0, "1"
     )
 
 

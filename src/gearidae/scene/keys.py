@@ -19,7 +19,10 @@ from gearidae.scene.quantity import Count, Quantity
 __all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put"]
 
 _LONGEST_KEY = 200
-INSTEAD: Final = {"gears.module": "gears.pinion_base_radius"}
+INSTEAD: Final = {
+    "gears.module": ("gears.pinion_base_radius",),
+    "gears.density": ("gears.pinion_inertia", "gears.gear_inertia"),
+}
 """Keys that are given in the place of others, in which a scene keeps what they say."""
 
 
@@ -111,7 +114,8 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     if isinstance(inside, list) and len(inside) == 1 and not last.isdecimal():
         inside = inside[0]
     if isinstance(inside, dict) and key in INSTEAD and not _is_nothing(value):
-        inside.pop(INSTEAD[key].rpartition(".")[2], None)
+        for other in INSTEAD[key]:
+            inside.pop(other.rpartition(".")[2], None)
     if isinstance(inside, dict) and info.default == () and _is_nothing(value):
         inside.pop(last, None)
     elif isinstance(inside, dict):
