@@ -77,7 +77,8 @@ def test_ipython_on_a_terminal_is_no_notebook(monkeypatch):
 def test_nothing_is_shown_where_nobody_looks(monkeypatch):
     monkeypatch.setattr(sys, "stderr", io.StringIO())
     with progress.run_progress(True, 1.0) as report:
-        assert report is None
+        report(0.5, 1)
+    assert sys.stderr.getvalue() == ""
     with progress.sweep_progress(True, 3) as update:
         update(1.0, 3)
     assert sys.stderr.getvalue() == ""
@@ -142,7 +143,10 @@ def test_times_are_said_as_people_say_them(seconds, words):
     ("reached", "said"),
     [
         ([0.0, 1e-4, 3e-4], ["at this rate the run takes another 22 min"]),  # 0.2997 s at 0.225 ms a second
-        ([0.1, 0.1001, 0.1002], ["at this rate the run takes another 22 min"]),  # resumed: what was there took no time
+        (
+            [0.1, 0.1001, 0.1002],
+            ["at this rate the run takes another 22 min"],
+        ),  # resumed: what was there took no time
         ([0.0, 1e-3, 2e-3], []),  # 200 s
         ([0.0], []),
     ],

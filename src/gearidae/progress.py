@@ -45,7 +45,9 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunPro
     """
     prefix, scale = ("ms", 1e3) if duration < 1.0 else ("s", 1.0)
     pace = _Pace(duration)
-    with _bar("simulating", duration * scale) if wanted and not callable(wanted) else nullcontext() as advance:
+    with (
+        _bar("simulating", duration * scale) if wanted and not callable(wanted) else nullcontext() as advance
+    ):
 
         def update(time: float, events: int) -> None:
             rate = pace.rate(time) * scale

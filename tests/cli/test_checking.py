@@ -37,6 +37,7 @@ def test_check_says_that_the_input_is_valid_and_how_far_the_model_holds(capfd):
         "within a factor of about three",
     ):
         assert expected in out
+    assert "Verdicts of runs are a mean over many gears: 5.13e-08 asperities in contact" in out
     assert "Warning:" not in out
 
 
@@ -60,6 +61,12 @@ def test_check_estimates_a_scheduled_drive(capfd):
     assert "from the mean torques over the run" in out
     assert "gear speed 268" in out
     assert "does not overcome" not in out
+
+
+def test_a_run_says_beside_its_verdict_that_it_is_a_mean(tmp_path, capfd):
+    target = str(tmp_path / "low.nc")
+    assert main(["run", CASE, "-o", target, "--set", "run.duration=1e-3", "run.samples=11"]) == 0
+    assert "The verdict is a mean over many gears: 5.13e-08 asperities in contact" in words(capfd)
 
 
 def test_check_counts_events_beside_samples(tmp_path, capfd):

@@ -205,21 +205,23 @@ def _memory(scene: Scene, rest: _Rest) -> ValidityRow:
         return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, 1.0, "1")
     counts = _counts(rest)
     places = [
-        mean_square_place(rest.gap + offset, contact.radius, surface) for surface, _, offset, _ in contact.parts
+        mean_square_place(rest.gap + offset, contact.radius, surface)
+        for surface, _, offset, _ in contact.parts
     ]
     # four standard deviations of the places in contact
     width = 4.0 * math.sqrt(np.average(places, weights=counts) if sum(counts) > 0.0 else min(places))
     begin = geometry.tangent_pinion - geometry.approach
     rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
     ratio = width / rolled
-    forgets = all(law_of(contact.law, part.surface).detach == law_of(contact.law, part.surface).join for part in contact.parts)
+    laws = [law_of(contact.law, part.surface) for part in contact.parts]
+    forgets = all(law.detach == law.join for law in laws)
     lengths = f"{with_prefix(width, 'm')} of {with_prefix(rolled, 'm')}"
     if forgets:
         verdict = f"asperities of this law have no memory ({lengths})"
     elif ratio >= 1.0:
         verdict = f"the same asperities stay in contact while the pair is engaged ({lengths})"
     else:
-        verdict = f"real asperities leave the contact ({lengths}); here what an impact has joined stays until the pair leaves"
+        verdict = f"asperities pass through the contact ({lengths}); here those that an impact joins stay with the pair"
     return ValidityRow(
         name, quantity, with_prefix(ratio, "1"), limit, verdict, forgets or ratio >= 1.0, ratio, 1.0, "1"
     )
