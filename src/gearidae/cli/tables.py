@@ -63,7 +63,7 @@ def show_outcomes(ds: xr.Dataset) -> None:
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
     show(table)
     kept = ds.attrs.get(ATTRIBUTE)
-    if holds_rows(kept) and (note := mean_note(rows_from_json(kept))):
+    if isinstance(kept, str) and holds_rows(kept) and (note := mean_note(rows_from_json(kept))):
         say(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")
 
 

@@ -136,6 +136,15 @@ def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     return tuple(rows)
 
 
+def _row(
+    name: str, quantity: str, number: float, unit: str, limit: str, bound: float, holds: bool, verdict: str
+) -> ValidityRow:
+    """Make the row of a number; one that is NaN needs a contact that rests, and there is none."""
+    if math.isnan(number):
+        holds, verdict = False, _NO_LOAD
+    return ValidityRow(name, quantity, with_prefix(number, unit), limit, verdict, holds, number, bound, unit)
+
+
 def _resting(scene: Scene) -> _Rest:
     contact = pair_contact(scene)
     if scene.roller is not None:
@@ -162,29 +171,21 @@ def _about(count: float) -> str:
 
 
 def _asperities(rest: _Rest) -> ValidityRow:
-    contact, name, quantity = rest.contact, EXPECTED_ASPERITIES, "expected asperities in contact"
-    if math.isnan(rest.gap):
-        return ValidityRow(name, quantity, "-", "-", _NO_LOAD, False, math.nan, math.nan, "1")
-    parts = [(surface, share, offset) for surface, share, offset, _ in contact.parts]
-    needed = asperities_for_mean(rest.gap, parts, contact.law)
-    count = sum(_counts(rest))
-    enough = count >= needed
-    verdict = (
-        "one pair's force is the mean to 10 %"
-        if enough
-        else "the smooth law of force is an ensemble mean, not one pair of teeth"
-    )
-    return ValidityRow(
-        name,
-        quantity,
-        with_prefix(count, "1"),
-        f"at least {_about(needed)} for a scatter of 10 %",
-        f"{verdict} (gap {rest.gap / contact.surface.roughness:.2f} roughnesses)",
-        enough,
-        count,
-        needed,
-        "1",
-    )
+    count = needed = math.nan
+    limit = verdict = "-"
+    if not math.isnan(rest.gap):
+        parts = [(surface, share, offset) for surface, share, offset, _ in rest.contact.parts]
+        needed = asperities_for_mean(rest.gap, parts, rest.contact.law)
+        count = sum(_counts(rest))
+        limit = f"at least {_about(needed)} for a scatter of 10 %"
+        words = (
+            "one pair's force is the mean to 10 %"
+            if count >= needed
+            else "the smooth law of force is an ensemble mean, not one pair of teeth"
+        )
+        verdict = f"{words} (gap {rest.gap / rest.contact.surface.roughness:.2f} roughnesses)"
+    quantity = "expected asperities in contact"
+    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, count >= needed, verdict)
 
 
 def _counts(rest: _Rest) -> list[float]:
@@ -199,32 +200,34 @@ def _counts(rest: _Rest) -> list[float]:
 def _memory(scene: Scene, rest: _Rest) -> ValidityRow:
     """Compare the contact's width with the flank that rolls through it while the pair is engaged."""
     contact, geometry = rest.contact, scene.geometry
-    name, quantity = "memory", "width of the contact over the rolled distance"
-    limit = "at least 1: the same asperities all the time"
-    if math.isnan(rest.gap):
-        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, 1.0, "1")
-    counts = _counts(rest)
-    places = [
-        mean_square_place(rest.gap + offset, contact.radius, surface)
-        for surface, _, offset, _ in contact.parts
-    ]
-    # four standard deviations of the places in contact
-    width = 4.0 * math.sqrt(np.average(places, weights=counts) if sum(counts) > 0.0 else min(places))
-    begin = geometry.tangent_pinion - geometry.approach
-    rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
-    ratio = width / rolled
-    laws = [law_of(contact.law, part.surface) for part in contact.parts]
-    forgets = all(law.detach == law.join for law in laws)
-    lengths = f"{with_prefix(width, 'm')} of {with_prefix(rolled, 'm')}"
-    if forgets:
-        verdict = f"asperities of this law have no memory ({lengths})"
-    elif ratio >= 1.0:
-        verdict = f"the same asperities stay in contact while the pair is engaged ({lengths})"
-    else:
-        verdict = f"asperities pass through the contact ({lengths}); here those that an impact joins stay with the pair"
-    return ValidityRow(
-        name, quantity, with_prefix(ratio, "1"), limit, verdict, forgets or ratio >= 1.0, ratio, 1.0, "1"
+    ratio, holds, verdict = math.nan, False, ""
+    if not math.isnan(rest.gap):
+        squares = [
+            mean_square_place(rest.gap + part.gap_offset, contact.radius, part.surface)
+            for part in contact.parts
+        ]
+        width = 4.0 * math.sqrt(
+            np.average(squares, weights=_counts(rest))
+        )  # four standard deviations of the places
+        begin = geometry.tangent_pinion - geometry.approach
+        rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
+        ratio = width / rolled
+        laws = [law_of(contact.law, part.surface) for part in contact.parts]
+        forgets = all(law.detach == law.join for law in laws)
+        holds = forgets or ratio >= 1.0
+        words = (
+            "asperities of this law have no memory"
+            if forgets
+            else "the same asperities stay in contact while the pair is engaged"
+            if holds
+            else "asperities pass through the contact; here those that an impact joins stay with the pair"
+        )
+        verdict = f"{words} ({with_prefix(width, 'm')} of {with_prefix(rolled, 'm')})"
+    quantity, limit = (
+        "width of the contact over the rolled distance",
+        "at least 1: the same asperities all the time",
     )
+    return _row("memory", quantity, ratio, "1", limit, 1.0, holds, verdict)
 
 
 def _density(contact: PairContact) -> ValidityRow:
@@ -235,16 +238,9 @@ def _density(contact: PairContact) -> ValidityRow:
         if holds
         else f"{_times(product / _DENSEST)} as dense as random surfaces: asperities would share their load"
     )
-    return ValidityRow(
-        "density_product",
-        "density product N beta sigma",
-        with_prefix(product, "1"),
-        "0.03 to 0.06 for random surfaces",
-        verdict,
-        holds,
-        product,
-        _DENSEST,
-        "1",
+    limit = "0.03 to 0.06 for random surfaces"
+    return _row(
+        "density_product", "density product N beta sigma", product, "1", limit, _DENSEST, holds, verdict
     )
 
 
@@ -258,17 +254,8 @@ def _merging(scene: Scene) -> Iterator[ValidityRow]:
             else "contacts grow into their neighbours before any load: the asperities are not independent"
         )
         limit = f"{with_prefix(half, 'm')}, half the mean spacing"
-        yield ValidityRow(
-            f"merging_{name}",
-            f"{name}: contact radius without load",
-            with_prefix(radius, "m"),
-            limit,
-            verdict,
-            holds,
-            radius,
-            half,
-            "m",
-        )
+        quantity = f"{name}: contact radius without load"
+        yield _row(f"merging_{name}", quantity, radius, "m", limit, half, holds, verdict)
 
 
 def _tabor(scene: Scene) -> Iterator[ValidityRow]:
@@ -311,61 +298,52 @@ def _temperature(rest: _Rest) -> ValidityRow:
     sigma = rest.contact.surface.roughness
     bound = 0.1 * sigma
     limit = f"{with_prefix(bound, 'm')}, a tenth of the roughness ({with_prefix(sigma, 'm')})"
-    name, quantity = "thermal_motion", f"thermal motion at {ROOM_TEMPERATURE:g} K"
-    if math.isnan(rest.stiffness):
-        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, bound, "m")
-    amplitude = thermal_amplitude(rest.stiffness)
+    amplitude = math.nan if math.isnan(rest.stiffness) else thermal_amplitude(rest.stiffness)
     holds = amplitude <= bound
-    stiffness = with_prefix(rest.stiffness, "N/m")
+    contact = f"this contact ({with_prefix(rest.stiffness, 'N/m')})"
     verdict = (
-        f"heat moves this contact ({stiffness}) little"
+        f"heat moves {contact} little"
         if holds
-        else f"heat shakes this contact ({stiffness}) by {amplitude / sigma:.2g} roughnesses: the model has none"
+        else f"heat shakes {contact} by {amplitude / sigma:.2g} roughnesses: the model has none"
     )
-    return ValidityRow(
-        name, quantity, with_prefix(amplitude, "m"), limit, verdict, holds, amplitude, bound, "m"
-    )
+    quantity = f"thermal motion at {ROOM_TEMPERATURE:g} K"
+    return _row("thermal_motion", quantity, amplitude, "m", limit, bound, holds, verdict)
 
 
 def _gas(rest: _Rest) -> ValidityRow:
-    name, quantity = "gas_damping", "damping ratio of a film of air"
-    limit = f"{_LITTLE_DAMPING:g}"
-    if math.isnan(rest.stiffness) or not rest.stiffness > 0.0:
-        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, _LITTLE_DAMPING, "1")
-    contact = rest.contact
-    film = max(rest.gap, contact.surface.roughness)  # mean planes that overlap leave the valleys
-    damping = film_damping(film, contact.radius, contact.width)
-    ratio = damping / (2.0 * math.sqrt(rest.stiffness * rest.mass))
-    holds = ratio <= _LITTLE_DAMPING
-    where = f"film of {with_prefix(film, 'm')}, Kn = {AIR_MEAN_FREE_PATH / film:.2g}"
-    verdict = (
-        f"air hardly damps the contact ({where})"
-        if holds
-        else f"in air the contact would not ring as it does here, in vacuum ({where})"
-    )
-    return ValidityRow(
-        name, quantity, with_prefix(ratio, "1"), limit, verdict, holds, ratio, _LITTLE_DAMPING, "1"
-    )
+    ratio, holds, verdict = math.nan, False, ""
+    if rest.stiffness > 0.0:
+        contact = rest.contact
+        film = max(rest.gap, contact.surface.roughness)  # mean planes that overlap leave the valleys
+        damping = film_damping(film, contact.radius, contact.width)
+        ratio = damping / (2.0 * math.sqrt(rest.stiffness * rest.mass))
+        holds = ratio <= _LITTLE_DAMPING
+        where = f"film of {with_prefix(film, 'm')}, Kn = {AIR_MEAN_FREE_PATH / film:.2g}"
+        verdict = (
+            f"air hardly damps the contact ({where})"
+            if holds
+            else f"in air the contact would not ring as it does here, in vacuum ({where})"
+        )
+    limit, quantity = f"{_LITTLE_DAMPING:g}", "damping ratio of a film of air"
+    return _row("gas_damping", quantity, ratio, "1", limit, _LITTLE_DAMPING, holds, verdict)
 
 
 def _adhesion(scene: Scene, rest: _Rest) -> ValidityRow:
-    name = "net_adhesion"
-    quantity = "net adhesion of the pair when it parts"
     driven = "the drive's force" if scene.roller is None else "the peak force, rigid bodies"
-    if math.isnan(rest.gap):
-        return ValidityRow(name, quantity, "-", driven, _NO_LOAD, False, math.nan, rest.load, "N")
-    tension = rest.contact.largest_tension(rest.gap)
-    holds = tension <= rest.load
-    if tension == 0.0:
-        verdict = "it does not pull when it parts from rest; impacts press deeper"
-    elif holds:
-        verdict = "smaller than the force that presses"
-    else:
-        verdict = f"{_times(tension / rest.load)} the force that presses: teeth that leave the mesh can stick"
-    limit = f"{with_prefix(rest.load, 'N')}, {driven}"
-    return ValidityRow(
-        name, quantity, with_prefix(tension, "N"), limit, verdict, holds, tension, rest.load, "N"
-    )
+    tension, limit, verdict = math.nan, driven, ""
+    if not math.isnan(rest.gap):
+        tension = rest.contact.largest_tension(rest.gap)
+        limit = f"{with_prefix(rest.load, 'N')}, {driven}"
+        if tension == 0.0:
+            verdict = "it does not pull when it parts from rest; impacts press deeper"
+        elif tension <= rest.load:
+            verdict = "smaller than the force that presses"
+        else:
+            verdict = (
+                f"{_times(tension / rest.load)} the force that presses: teeth that leave the mesh can stick"
+            )
+    quantity = "net adhesion of the pair when it parts"
+    return _row("net_adhesion", quantity, tension, "N", limit, rest.load, tension <= rest.load, verdict)
 
 
 def _disc_drag(scene: Scene) -> ValidityRow:
@@ -387,17 +365,7 @@ def _disc_drag(scene: Scene) -> ValidityRow:
         verdict = f"nothing else resists the gear at {where}"
     else:
         verdict = f"{_times(torque / resistance)} as much at {where}: in air the gear needs more torque"
-    return ValidityRow(
-        "disc_drag",
-        "drag of air under the gear",
-        with_prefix(torque, "N m"),
-        limit,
-        verdict,
-        holds,
-        torque,
-        resistance,
-        "N m",
-    )
+    return _row("disc_drag", "drag of air under the gear", torque, "N m", limit, resistance, holds, verdict)
 
 
 def _inertia(scene: Scene) -> Iterator[ValidityRow]:
@@ -416,14 +384,6 @@ def _inertia(scene: Scene) -> Iterator[ValidityRow]:
             verdict = f"{_times(times)} lighter than a solid disc: pierced, smaller, or a mistake"
         else:
             verdict = f"{_times(1.0 / times)} heavier than a solid disc: a load on the shaft, or a mistake"
-        yield ValidityRow(
-            f"inertia_{name}",
-            f"{name}: moment of inertia",
-            with_prefix(inertia, "kg m^2"),
-            f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon",
-            verdict,
-            holds,
-            inertia,
-            disc,
-            "kg m^2",
-        )
+        limit = f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon"
+        quantity = f"{name}: moment of inertia"
+        yield _row(f"inertia_{name}", quantity, inertia, "kg m^2", limit, disc, holds, verdict)
