@@ -13,6 +13,7 @@ import gearidae as gd
 from gearidae.analysis import assess, coating_map, open_map
 from gearidae.archive import save
 from gearidae.scene.prefixes import with_prefix
+from same import assert_same
 
 SCENE = gd.preset("teodorescu2009_low_speed")
 
@@ -90,7 +91,7 @@ def test_assessment_reads_as_a_sentence(chart, worn):
 def test_signal_files(chart, worn, tmp_path):
     reference = assess(worn.gear_speed, chart)
     save(worn, tmp_path / "run.nc")
-    assert assess(tmp_path / "run.nc", chart) == assess(worn, chart)
+    assert_same(assess(tmp_path / "run.nc", chart), assess(worn, chart))
     columns = np.column_stack([worn.time * 1e3, np.zeros(worn.sizes["time"]), worn.gear_speed * 30.0 / np.pi])
     for name, separator in (("comma.csv", ","), ("semicolon.csv", ";"), ("tab.txt", "\t")):
         heading = separator.join(["# from the rig\ntime [ms]", "other", "gear_speed (rpm)"])
@@ -142,8 +143,8 @@ def test_a_sensor_that_counts_backward(chart, worn):
     speed = worn.gear_speed.isel(time=slice(None, None, 2))
     known, found = assess(speed, chart), assess(-speed, chart)
     assert known.conclusive
-    assert found == replace(
-        known, explanation=f"{known.explanation}; the speed is taken with its sign reversed"
+    assert_same(
+        found, replace(known, explanation=f"{known.explanation}; the speed is taken with its sign reversed")
     )
 
 

@@ -100,7 +100,7 @@ WRONG = [
     ("drive.schedule", [[0, 1], [0, 2]], "times must strictly increase"),
     ("drive.schedule", [["2 ms", 1], ["1 ms", 2]], "times must strictly increase"),
     ("load.schedule", {}, "must be a list of [time, value] pairs"),
-    ("drive.harmonic", "x", "must be a table {amplitude, frequency, phase}"),
+    ("drive.harmonic", "x", "must be a table {amplitude, frequency or order, phase}"),
     ("mesh.static_error", 5, "must be a table {order, amplitude, phase}"),
     # tables
     ("gears", 5, "must be a table"),

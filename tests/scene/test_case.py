@@ -10,7 +10,16 @@ from gearidae.scene import dump_case, load_case, preset
 from gearidae.scene.literal import literal
 
 SHIPPED = [
-    *("alternating", "braking", "high_speed", "inspection", "low_speed", "roller_fast", "roller_slow"),
+    *(
+        "alternating",
+        "braking",
+        "high_speed",
+        "inspection",
+        "low_speed",
+        "microengine",
+        "roller_fast",
+        "roller_slow",
+    ),
     *("run_down", "running", "start_up"),
 ]
 

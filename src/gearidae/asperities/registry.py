@@ -84,9 +84,20 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
     Raises
     ------
     SceneError
-        If there is no such law.
+        If there is no such law, or it fails.
     """
-    return _LAWS.find(name).of(tip, unit)
+    law = _LAWS.find(name)
+    try:
+        made = law.of(tip, unit)
+    except SceneError:
+        raise
+    except Exception as error:  # a law is the user's own code
+        raise SceneError("contact.asperity", name, f"{law.__qualname__}.of fails: {error!r}") from error
+    if not isinstance(made, AsperityLaw):
+        raise SceneError(
+            "contact.asperity", name, f"{law.__qualname__}.of must return an AsperityLaw, not {made!r}"
+        )
+    return made
 
 
 def law_of(name: str, surface: Surface) -> AsperityLaw:

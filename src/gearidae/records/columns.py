@@ -33,12 +33,15 @@ class Column(NamedTuple):
         What it is, in words.
     comment : str
         Sign convention and the like.
+    since : str
+        Version of gearidae that began to sample it; archives without it are older. Empty for the first version.
     """
 
     name: str
     units: str
     long_name: str
     comment: str = ""
+    since: str = ""
 
 
 GEAR_SAMPLES: Final = (
@@ -61,6 +64,23 @@ GEAR_SAMPLES: Final = (
     Column("drive_gap", "m", "smallest gap of all pairs on the drive flank"),
     Column("coast_gap", "m", "smallest gap of all pairs on the coast flank"),
     Column("pairs_in_contact", "1", "number of tooth pairs that transmit force"),
+    Column(
+        "drive_torque", "N m", "torque of the drive on the pinion", "positive turns the gears forward", "0.2"
+    ),
+    Column(
+        "load_torque",
+        "N m",
+        "torque that resists the gear",
+        "dry resistance and drag, Teodorescu et al. 2009, Eq. 2; of a gear at rest the torque that holds it",
+        "0.2",
+    ),
+    Column(
+        "pinion_angle",
+        "rad",
+        "rotation of the pinion since the start",
+        "of the first run of a chain; not wrapped",
+        "0.2",
+    ),
 )
 ROLLER_SAMPLES: Final = (
     Column("height", "m", "height of the roller above the mean plane of the asperities"),

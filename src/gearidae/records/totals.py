@@ -174,7 +174,8 @@ class Extremes:
     turned_back : float
         How far it has been turned back since, in pitches; 0 if it has not.
     turn_backs : int
-        How often the drive flank's adhesion has turned it back there; 0 unless it has come to stand.
+        How often the drive flank's adhesion has turned it back there, since dry resistance last held it; 0 unless it
+        has come to stand.
     time_adhering : float
         How long adhesion has held it, there and elsewhere: from one turning back to the next within half a pitch, and
         to where the run stands [s].

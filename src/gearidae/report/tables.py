@@ -14,6 +14,7 @@ import xarray as xr
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.pieces import pieces
+from gearidae.archive.run_summary import counted_over
 from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
 from gearidae.records import EventKind
 from gearidae.report import html
@@ -114,14 +115,24 @@ def account_table(ds: xr.Dataset) -> str:
     told = json.loads(ds.attrs.get("account", "{}"))
     kept = balance_in_attributes(ds)
     rows = [
-        (words, _measure(told[name], unit))
+        (_with_reach(ds, name, words), _measure(told[name], unit))
         for name, words, unit in _ACCOUNT
         if told.get(name) not in (None, "")
     ]
-    rows += [(words, _measure(kept[name], unit)) for name, words, unit in _ENERGY_BALANCE if kept.get(name)]
+    rows += [
+        (_with_reach(ds, name, words), _measure(kept[name], unit))
+        for name, words, unit in _ENERGY_BALANCE
+        if kept.get(name)
+    ]
     if not rows:
         return ""
     return html.table(("quantity", "value"), rows, caption="Account of the run", numeric=(1,))
+
+
+def _with_reach(ds: xr.Dataset, name: str, words: str) -> str:
+    """Add to a row of a run that goes on from another what it is counted over."""
+    over = counted_over(name, ds.attrs)
+    return f"{words} ({over})" if over else words
 
 
 def event_table(ds: xr.Dataset) -> str:

@@ -125,7 +125,7 @@ def _passages(scene: Scene) -> float:
     speed = balanced_speed(scene, mean_drive_torque(scene))
     speed = max(abs(scene.initial.gear_speed), speed if math.isfinite(speed) else 0.0)
     harmonics = (*scene.drive.harmonic, *scene.load.harmonic)
-    fastest = max((one.frequency for one in harmonics if one.amplitude != 0.0), default=0.0)
+    fastest = max((one.frequency or 0.0 for one in harmonics if one.amplitude != 0.0), default=0.0)
     return scene.run.duration * (speed * scene.gears.gear_teeth / (2.0 * math.pi) + fastest)
 
 

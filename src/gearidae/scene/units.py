@@ -6,6 +6,7 @@ decimals, so "34.715 um" is the float that ``34.715e-6`` is, to the last bit.
 
 from __future__ import annotations
 
+import math
 import re
 from decimal import Decimal, DecimalException
 from functools import cache, lru_cache
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pint
 
-__all__ = ["from_text"]
+__all__ = ["from_text", "to_si"]
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 # Only names, products, quotients and one-digit powers reach pint: it would also work out 9**9**9.
@@ -91,6 +92,26 @@ def from_text(text: str, unit: str, *, difference: bool = False) -> float:
         raise ValueError("must be a finite number") from None
 
 
+def to_si(text: str) -> float:
+    """Read a text with any unit, or none, as a number in SI base units.
+
+    Raises
+    ------
+    ValueError
+        Saying what is wrong with it.
+    """
+    parts = _NUMBER_AND_UNIT.fullmatch(_plain(text))
+    if parts is None:
+        raise ValueError("must be a number or a text of a number and a unit")
+    registry = _registry()
+    try:
+        base = registry.parse_units(parts[2]) if parts[2] else registry.dimensionless
+        unit = f"{registry.Quantity(Decimal(1), base).to_base_units().units:~}".replace("\u03bb", "")
+    except Exception:  # pint fails in a dozen ways on what is no unit
+        raise ValueError(f"{parts[2][:20]!r} is not a known unit") from None
+    return from_text(text, unit or "1")
+
+
 def _plain(text: str) -> str:
     """Replace typographic minus signs, dots and superscripts by what can be typed."""
     text = _DEGREES.sub(r"deg\1", text)
@@ -121,6 +142,11 @@ def _scale(own_unit: str, unit: str, difference: bool) -> tuple[Decimal, Decimal
         # of temperatures the zero counts, too
         zero = Decimal(registry.Quantity(Decimal(0), given).to(wanted).magnitude) if fits else Decimal(0)
         factor = Decimal(one.to(wanted).magnitude) - zero if fits else Decimal(0)
+        two = (
+            Decimal(registry.Quantity(Decimal(2), given).to(wanted).magnitude) - zero if fits else Decimal(0)
+        )
+        if not math.isclose(two, 2 * factor, rel_tol=1e-9):
+            raise ValueError("is a logarithm")  # decibels and nepers
     except Exception:  # pint fails in a dozen ways on what is no unit, and all of them mean this
         raise ValueError(f"{own_unit[:20]!r} is not a known unit; expected {_wanted(unit)}") from None
     if not fits:
