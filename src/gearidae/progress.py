@@ -1,4 +1,4 @@
-"""Progress of a run or a sweep: a bar on a terminal or in a notebook, or whatever the caller wants to be told."""
+"""Progress of a run or a sweep: a bar on a terminal or in a notebook, or calls of the caller's own function."""
 
 from __future__ import annotations
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
@@ -30,8 +29,8 @@ from gearidae.contact.surroundings import (
     film_damping,
     thermal_amplitude,
 )
-from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
-from gearidae.runs.pair_contact import PairContact, pair_contact
+from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
+from gearidae.runs.pair_contact import PairContact
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 
@@ -53,17 +52,6 @@ _SILICON: Final = 2330.0
 _CLEARANCE: Final = 2e-6
 """Distance between gear and substrate that the drag of the air is estimated for [m]: a usual sacrificial layer."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
-
-
-@dataclass(frozen=True, slots=True)
-class _Rest:
-    """The contact that the rows are about: pair, gap [m], force [N], stiffness [N/m] and mass [kg]."""
-
-    contact: PairContact
-    gap: float
-    load: float
-    stiffness: float
-    mass: float
 
 
 def validity(scene: Scene) -> pd.DataFrame:
@@ -128,9 +116,10 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
 # Some 15 ms: an archive asks for them when it is begun and when it is finished.
 @lru_cache(maxsize=16)
 def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
-    rest = _resting(scene)
+    rest = rest_of(scene)
+    stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
     rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
-    rows += [_temperature(rest), _gas(rest), _adhesion(scene, rest)]
+    rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
     if scene.gears is not None:
         rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene)]
     return tuple(rows)
@@ -145,21 +134,6 @@ def _row(
     return ValidityRow(name, quantity, with_prefix(number, unit), limit, verdict, holds, number, bound, unit)
 
 
-def _resting(scene: Scene) -> _Rest:
-    contact = pair_contact(scene)
-    if scene.roller is not None:
-        roller = scene.roller
-        gap = contact.closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
-        load = math.nan if math.isnan(gap) else float(contact.force(gap))
-        mass = roller.mass
-    else:
-        assert scene.gears is not None
-        load = mean_drive_torque(scene) / scene.gears.pinion_base_radius
-        gap, mass = contact.resting_gap(load), effective_mass(scene)
-    stiffness = math.nan if math.isnan(gap) else contact.stiffness(gap)
-    return _Rest(contact, gap, load, stiffness, mass)
-
-
 def _times(ratio: float) -> str:
     """Write a ratio: ``"45 times"``."""
     return f"{f'{ratio:.2g}' if ratio < 10.0 else f'{ratio:,.0f}' if ratio < 1e6 else f'{ratio:.0e}'} times"
@@ -170,7 +144,7 @@ def _about(count: float) -> str:
     return f"{float(f'{count:.2g}'):,.0f}" if count < 1e9 else f"{count:.0e}"
 
 
-def _asperities(rest: _Rest) -> ValidityRow:
+def _asperities(rest: Rest) -> ValidityRow:
     count = needed = math.nan
     limit = verdict = "-"
     if not math.isnan(rest.gap):
@@ -188,7 +162,7 @@ def _asperities(rest: _Rest) -> ValidityRow:
     return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, count >= needed, verdict)
 
 
-def _counts(rest: _Rest) -> list[float]:
+def _counts(rest: Rest) -> list[float]:
     """Asperities of each material of the interface that are expected in contact."""
     contact = rest.contact
     return [
@@ -197,7 +171,7 @@ def _counts(rest: _Rest) -> list[float]:
     ]
 
 
-def _memory(scene: Scene, rest: _Rest) -> ValidityRow:
+def _memory(scene: Scene, rest: Rest) -> ValidityRow:
     """Compare the contact's width with the flank that rolls through it while the pair is engaged."""
     contact, geometry = rest.contact, scene.geometry
     ratio, holds, verdict = math.nan, False, ""
@@ -294,13 +268,13 @@ def _tabor_verdict(law: str, low: float, high: float) -> tuple[str, float, bool,
     return "none: the law holds for every value", math.nan, True, f"{law} covers the transition"
 
 
-def _temperature(rest: _Rest) -> ValidityRow:
+def _temperature(rest: Rest, stiffness: float) -> ValidityRow:
     sigma = rest.contact.surface.roughness
     bound = 0.1 * sigma
     limit = f"{with_prefix(bound, 'm')}, a tenth of the roughness ({with_prefix(sigma, 'm')})"
-    amplitude = math.nan if math.isnan(rest.stiffness) else thermal_amplitude(rest.stiffness)
+    amplitude = math.nan if math.isnan(stiffness) else thermal_amplitude(stiffness)
     holds = amplitude <= bound
-    contact = f"this contact ({with_prefix(rest.stiffness, 'N/m')})"
+    contact = f"this contact ({with_prefix(stiffness, 'N/m')})"
     verdict = (
         f"heat moves {contact} little"
         if holds
@@ -310,13 +284,13 @@ def _temperature(rest: _Rest) -> ValidityRow:
     return _row("thermal_motion", quantity, amplitude, "m", limit, bound, holds, verdict)
 
 
-def _gas(rest: _Rest) -> ValidityRow:
+def _gas(rest: Rest, stiffness: float) -> ValidityRow:
     ratio, holds, verdict = math.nan, False, ""
-    if rest.stiffness > 0.0:
+    if stiffness > 0.0:
         contact = rest.contact
         film = max(rest.gap, contact.surface.roughness)  # mean planes that overlap leave the valleys
         damping = film_damping(film, contact.radius, contact.width)
-        ratio = damping / (2.0 * math.sqrt(rest.stiffness * rest.mass))
+        ratio = damping / (2.0 * math.sqrt(stiffness * rest.mass))
         holds = ratio <= _LITTLE_DAMPING
         where = f"film of {with_prefix(film, 'm')}, Kn = {AIR_MEAN_FREE_PATH / film:.2g}"
         verdict = (
@@ -328,7 +302,7 @@ def _gas(rest: _Rest) -> ValidityRow:
     return _row("gas_damping", quantity, ratio, "1", limit, _LITTLE_DAMPING, holds, verdict)
 
 
-def _adhesion(scene: Scene, rest: _Rest) -> ValidityRow:
+def _adhesion(scene: Scene, rest: Rest) -> ValidityRow:
     driven = "the drive's force" if scene.roller is None else "the peak force, rigid bodies"
     tension, limit, verdict = math.nan, driven, ""
     if not math.isnan(rest.gap):

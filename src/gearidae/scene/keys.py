@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final, get_args
+from typing import TYPE_CHECKING, Any, Final, get_args
 
 from pydantic.fields import FieldInfo
 
@@ -16,7 +16,10 @@ from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Count, Quantity
 
-__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put"]
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
+
+__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put", "scene_value"]
 
 _LONGEST_KEY = 200
 INSTEAD: Final = {
@@ -142,6 +145,16 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
         inside[int(last)] = value
     else:
         raise SceneError(key, shorten(value), "this scene has no such table or entry to change")
+
+
+def scene_value(scene: Scene, key: str) -> Any:
+    """Return the value of a dotted key in SI units, as plain data; None where the scene has none."""
+    inside: Any = scene.to_dict()
+    for part in key.split("."):
+        if isinstance(inside, list) and len(inside) == 1 and not part.isdecimal():
+            inside = inside[0]  # a list of one may go without its number
+        inside = _entry(inside, part)
+    return inside
 
 
 def _is_nothing(value: object) -> bool:
