@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from gearidae.engine.backend import choose_backend, run_blocks
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics as Statistics
 from gearidae.scene import Scene
 from gearidae_bench.scenes import SCENES
@@ -66,7 +66,7 @@ class Start:
 
 def _drain(scene: Scene) -> int:
     statistics = Statistics()
-    backend = choose_backend()
+    backend = choose_backend("auto", "auto")
     for _ in run_blocks(make_problem(scene), scene.run.rtol, scene.run.sample_count, backend, statistics):
         pass
     return statistics.steps

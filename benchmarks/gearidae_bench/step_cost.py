@@ -23,7 +23,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Block, Statistics
 from gearidae.scene import preset
 
@@ -52,7 +52,7 @@ class Part(NamedTuple):
 _STEP, _NEWTON, _EVENTS = "IDA: attempts, tests, vectors, calls", "Newton's iteration", "epilogue of a step"
 PARTS: Final = (
     Part(_STEP, "integrate.root_finding", "_step", ""),
-    Part(_NEWTON, "sundials.callbacks", "iterate", _STEP),
+    Part(_NEWTON, "integrate.callbacks", "iterate", _STEP),
     Part("formula: prediction", "integrate.newton.adams", "rates_at_end", _NEWTON),
     Part("residual and slopes", "integrate.correction", "motion", _NEWTON),
     Part("formula: error, order, next step", "integrate.newton", "control_step", _NEWTON),
@@ -63,9 +63,9 @@ PARTS: Final = (
     Part(_EVENTS, "integrate.native", "finish_step", ""),
     Part("histories", "integrate.epilogue", "accept", _EVENTS),
     Part("events", "integrate.epilogue", "handle", _EVENTS),
-    Part("energy balance: adhesion", "integrate.epilogue", "follow_joining", _EVENTS),
-    Part("energy balance: works and losses", "integrate.epilogue", "_book", _EVENTS),
-    Part("extremes", "integrate.epilogue", "follow_extremes", _EVENTS),
+    Part("energy balance: adhesion", "followers.in_turn.joining", "step", _EVENTS),
+    Part("energy balance: works and losses", "followers.in_turn.balance", "step", _EVENTS),
+    Part("extremes", "followers.in_turn.extremes", "step", _EVENTS),
     Part("choice of formulas", "integrate.epilogue", "change_wanted", _EVENTS),
 )
 """A part comes after the one that it is part of."""

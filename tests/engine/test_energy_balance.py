@@ -15,9 +15,9 @@ from gearidae.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact import asperity_of
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
-from gearidae.engine.energy.quadrature import Ends, integral_of_cube, torque_work
+from gearidae.engine.formulas.quadrature import Ends, integral_of_cube, torque_work
 from gearidae.engine.integrate import native as native_driver
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.mesh import curvature_radii
 from gearidae.records import Statistics
 
@@ -371,7 +371,7 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
     }
     scene = HIGH.replace(changes)
     sure = check(scene, solve(scene))
-    monkeypatch.setattr("gearidae.engine.model.problem.ERRORS", math.inf)
+    monkeypatch.setattr("gearidae.engine.setup.problem.ERRORS", math.inf)
     # over six steps at once, whatever comes of it, it would be out by 30 and 80 tolerances
     assert abs(sure.residual) < 0.1 * abs(solve(scene).balance.residual)
 
@@ -399,20 +399,20 @@ def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
 
     def take(block, statistics, wall_time):
         if block.checkpoint is not None and not starts:
-            starts.append(Start(block.checkpoint, statistics=statistics, time=block.time))
+            starts.append(Start(checkpoint=block.checkpoint, statistics=statistics, reached=block.time))
 
     whole = engine.follow(scene, take, backend="native")
-    rest = engine.follow(scene, lambda *_: None, backend="native", begin=starts[0])
-    assert 0.0 < starts[0].time < 2e-3
+    rest = engine.follow(scene, lambda *_: None, backend="native", start=starts[0])
+    assert 0.0 < starts[0].reached < 2e-3
     assert rest.balance == whole.balance
-    at_checkpoint = engine.kept_at(scene, starts[0].checkpoint, "native")[0]
-    assert at_checkpoint.time == pytest.approx(starts[0].time, rel=1e-12, abs=0)
+    at_checkpoint = engine.kept_at(scene, starts[0].checkpoint)[0]
+    assert at_checkpoint.time == pytest.approx(starts[0].reached, rel=1e-12, abs=0)
     assert abs(at_checkpoint.residual) <= at_checkpoint.bound(scene.run.rtol, roller=False)
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
-    monkeypatch.setattr("gearidae.engine.model.build_contact.rigid_limit", lambda *_: (2.0, True))
+    monkeypatch.setattr("gearidae.engine.setup.build_contact.rigid_limit", lambda *_: (2.0, True))
     scene = gd.preset("roller_slow")
     run = solve(scene, backend=backend)
     assert run.statistics.skipped["elastic_deflection"] == 0

@@ -26,7 +26,7 @@ from gearidae.archive.disk import disk_errors, sync
 from gearidae.archive.end_state import packed_state
 from gearidae.archive.library import LIBRARY, close, opened
 from gearidae.archive.variables import EVENTS
-from gearidae.records import Block, Statistics, first_sample
+from gearidae.records import Block, Statistics, sample_times
 
 __all__ = ["GrowingArchive", "is_growing", "trimmed"]
 
@@ -274,13 +274,9 @@ def trimmed(ds: xr.Dataset, path: Path, *, running: bool) -> xr.Dataset:
 
 def _write_times(path: Path, total: int, begin: float, duration: float) -> None:
     """Write the times of the samples, which are known."""
-    first = first_sample(begin, begin + duration, total)
     with opened(path, "a") as file:
         for start in range(0, total, COPIED):
-            number = np.arange(start, min(start + COPIED, total), dtype=np.float64)
-            times = (first + number) * (duration / (total - 1))  # as `sample_times` has it, to the last bit
-            times[number == 0] = begin
-            times[number == total - 1] = begin + duration
+            times = sample_times(begin, duration, total, range(start, min(start + COPIED, total)))
             file["time"][start : start + times.size] = times
     sync(path)
 

@@ -1,0 +1,96 @@
+"""Results of the runs of a sweep, and runs that are solved elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from gearidae.archive.keep import Keep
+from gearidae.archive.verdict import verdict_of
+from gearidae.errors import SceneError
+from gearidae.records import Solution
+from gearidae.runs.running import solve, unsolved
+from gearidae.scene import Scene
+
+__all__ = ["RunResult", "crashed", "leave", "solve_and_leave", "solve_group"]
+
+
+@dataclass(frozen=True, slots=True)
+class RunResult:
+    """Result of a run in a sweep: what is kept of it, with its verdict.
+
+    Attributes
+    ----------
+    solution : Solution
+        Without the parts that are not kept.
+    verdict : str
+        Its outcome in one word, if parts are not kept; empty if all are.
+    impacts, flank_changes : int
+        Contacts made, and how often contact went over to the other flank, likewise.
+    """
+
+    solution: Solution
+    verdict: str = ""
+    impacts: int = 0
+    flank_changes: int = 0
+
+
+def solve_and_leave(
+    scene: Scene, backend: str, keep: Keep, on_progress: Callable[[float, int], None] | None = None
+) -> RunResult:
+    """Run a scene, judge it, and drop what is not kept, where it was run.
+
+    Parameters
+    ----------
+    scene : Scene
+    backend : str
+        As for `gearidae.simulate`.
+    keep : Keep
+    on_progress : callable, optional
+        As for `gearidae.runs.running.solve`.
+
+    Returns
+    -------
+    RunResult
+    """
+    return leave(scene, solve(scene, backend, on_progress), keep)
+
+
+def leave(scene: Scene, solution: Solution, keep: Keep) -> RunResult:
+    """Judge a run and drop what is not kept of it."""
+    if keep.names is None:
+        return RunResult(solution)
+    return RunResult(keep.thinned(solution), *verdict_of(scene, solution))
+
+
+def crashed(scene: Scene, error: Exception, keep: Keep) -> RunResult:
+    """Return what is left of a run that died, such as of memory that ran out."""
+    return leave(scene, unsolved("crashed", f"{type(error).__name__}: {error}"), keep)
+
+
+def solve_group(scenes: Sequence[Scene], backend: str, keep: Keep) -> list[RunResult]:
+    """Run scenes one after the other; one that dies is no end of the others.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    backend : str
+        As for `gearidae.simulate`.
+    keep : Keep
+
+    Returns
+    -------
+    list of RunResult
+        Up to the first that was interrupted.
+    """
+    found: list[RunResult] = []
+    for scene in scenes:
+        try:
+            found.append(solve_and_leave(scene, backend, keep))
+        except SceneError:
+            raise
+        except Exception as error:
+            found.append(crashed(scene, error, keep))
+        if found[-1].solution.status == "interrupted":
+            break
+    return found
