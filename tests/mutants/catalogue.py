@@ -309,8 +309,8 @@ MUTANTS = (
     Mutant(
         "a joining loss recorded at the turning point, and taken from the radius's power at the next look",
         "engine/followers/joining.py",
-        "        _book_before(m, coast, pair, loss, length)",
-        "        pass",
+        "            _book_before(m, coast, pair, y[PHASE], losses)",
+        "            pass",
         ("engine/test_energy_balance.py",),
     ),
     Mutant(

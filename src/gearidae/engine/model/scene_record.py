@@ -106,11 +106,8 @@ SCENE: Final = record_type(
     ("by_place", INT),  # 1 where shares change with tooth and place and are not in the force scales
     ("patches", INT),  # 1 where the pinion's fractions are those of the interface
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
-    ("loadings_at", INT),  # their loading branches over the pair's gap, in forces, side by side [index]
-    ("potentials_at", INT),  # the potentials of these [index]
-    ("numbers_at", INT),  # and numbers of asperities above the gap [index]
-    ("loading_at", INT),  # loading branch of all materials together, in forces [index]
-    ("potential_at", INT),  # potential of that branch [index]
+    ("loading_at", INT),  # loading branch of all materials, or with `by_place` of each, in forces [index]
+    ("potential_at", INT),  # potentials of these branches [index]
     ("slots", INT),  # histories per flank in use, a power of two [1]
     ("histories", INT),  # histories of all flanks [1]
     ("branch_length", INT),  # numbers of a branch of the force law or stored energy; 0 if none is kept [1]

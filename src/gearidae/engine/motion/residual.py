@@ -117,7 +117,7 @@ def mesh_forces(
             else:
                 load, stiffness = node_force(m, k, known, t, y, gap, rate, length)
         else:
-            shares = shares_of(m, k, coast, pair, inside)
+            shares = shares_of(m, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
             if m.scene.bins > 0:
                 note_force(m, k, pair, inside, (gap, rate), (load, stiffness))
