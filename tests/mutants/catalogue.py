@@ -218,8 +218,8 @@ MUTANTS = (
     Mutant(
         "dry resistance that holds twice as much as it should",
         "engine/events/dry_resistance.py",
-        "return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0",
-        "return 2.0 * max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0",
+        "return dry_limit(m, t, y) + 2.0",
+        "return 2.0 * dry_limit(m, t, y) + 2.0",
         ("properties/test_event_times.py",),
     ),
     Mutant(

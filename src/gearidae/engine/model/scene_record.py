@@ -47,10 +47,14 @@ TORQUE: Final = record_type(
     ("constant", REAL),  # over the base radius [F]
     ("harmonic_count", INT),  # [1]
     ("harmonics_at", INT),  # amplitude, angular frequency and phase of each, among the tables [index]
+    ("order_count", INT),  # harmonics of the shaft's angle [1]
+    ("orders_at", INT),  # amplitude, order and phase of each, among the tables [index]
+    ("takes_angle", INT),  # 1 if the torque depends on the shaft's angle
     ("law_count", INT),  # parameters of the law, whose address is in `WORK` [1]
     ("law_at", INT),  # the parameters among the tables [index]
     ("law_torque", REAL),  # unit of the law's torque [N m]
     ("law_speed", REAL),  # unit of the shaft's speed [rad/s]
+    ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
 )
 
 SCHEDULE: Final = record_type(
@@ -158,6 +162,7 @@ SCENE: Final = record_type(
     ("root_spacing", REAL),  # times 1 + t [tau]
     ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]
     ("longest_step", REAL),  # that a cubic schedule allows, flat where a pulse is to come; 0 for any [tau]
+    ("angle_omega", REAL),  # highest angular frequency of the torques of an angle [rad/pb]
     ("mesh_omega", REAL),  # highest angular frequency along the mesh [rad/pb]
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
     ("balance_span", REAL),  # over which they may last [tau]
