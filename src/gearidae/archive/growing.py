@@ -159,7 +159,9 @@ class GrowingArchive:
             if block.checkpoint is not None and due:
                 self._sequence += 1
                 counts = (self._sequence, self.samples, self.events)
-                self._keep(Checkpoint(*counts, block.time, wall_time, statistics, block.checkpoint))
+                self._keep(
+                    Checkpoint(*counts, block.time, wall_time, statistics, block.checkpoint, block.extremes)
+                )
 
     def _append(self, block: Block) -> None:
         if self.events + len(block.events) > self._sizes["event"]:

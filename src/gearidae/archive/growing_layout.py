@@ -5,6 +5,7 @@ Beside the variables of every archive it has the numbers of committed samples an
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -14,9 +15,11 @@ import xarray as xr
 from gearidae.archive.definition import define
 from gearidae.archive.disk import sync
 from gearidae.archive.end_state import packed_state
+from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.journal import COUNTERS, newest
 from gearidae.archive.library import opened
 from gearidae.records import first_sample
+from gearidae.scene import Scene
 
 __all__ = ["COPIED", "is_growing", "lay_out", "trimmed"]
 
@@ -52,6 +55,8 @@ def trimmed(ds: xr.Dataset, *, running: bool) -> xr.Dataset:
     cut = ds.isel(time=slice(counts["sample"]), event=slice(counts["event"])).drop_vars(list(_COUNTERS))
     if point.sequence:
         cut.attrs["end_state"] = packed_state(point.state)
+        scene = Scene.from_dict(json.loads(cut.attrs["scene"]))
+        cut = cut.assign(extreme_variables(scene, [point.extremes]))
     cut.attrs |= {
         "status": "running" if running else "interrupted",
         "message": f"not at its end yet; checkpoint at {point.time:g} s",

@@ -9,13 +9,14 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from gearidae.records import Statistics, Words
+from gearidae.records import Extremes, Statistics, Words
 
 __all__ = ["COUNTERS", "HEADER", "Checkpoint", "newest"]
 
 COUNTERS = tuple(field.name for field in fields(Statistics) if field.type == "int")
 _FIXED = ("checksum", "sequence", "samples", "events", "time", "wall_time", "words")
-HEADER = len(_FIXED) + len(COUNTERS)
+_EXTREMES = {field.name: field.type for field in fields(Extremes) if field.name != "exposures"}
+HEADER = len(_FIXED) + len(COUNTERS) + len(_EXTREMES)
 """Words in front of the state."""
 
 
@@ -37,6 +38,8 @@ class Checkpoint:
         The solver's counters there.
     state : ndarray of 8-byte words
         What the engine needs, kept to the last bit and never looked into; empty at the start.
+    extremes : Extremes, optional
+        Of the run until then, without exposures.
     """
 
     sequence: int
@@ -46,6 +49,7 @@ class Checkpoint:
     wall_time: float
     statistics: Statistics
     state: Words
+    extremes: Extremes | None = None
 
     @classmethod
     def start(cls) -> Checkpoint:
@@ -56,8 +60,9 @@ class Checkpoint:
         """Return the record as it stands in its slot: a checksum over all that follows, then the numbers."""
         counters = [getattr(self.statistics, name) for name in COUNTERS]
         fixed = [self.sequence, self.samples, self.events, self.time, self.wall_time, self.state.size]
+        extremes = [getattr(self.extremes, name, np.nan) for name in _EXTREMES]
         words = np.ascontiguousarray(self.state).view("u8")  # as they are: some may be no numbers
-        body = np.array([*fixed, *counters], "<f8").tobytes() + words.astype("<u8").tobytes()
+        body = np.array([*fixed, *counters, *extremes], "<f8").tobytes() + words.astype("<u8").tobytes()
         return struct.pack("<d", zlib.crc32(body)) + body
 
     @classmethod
@@ -71,11 +76,20 @@ class Checkpoint:
             return None
         sequence, samples, events = map(int, numbers[1:4])
         statistics = Statistics()
-        for name, number in zip(COUNTERS, numbers[len(_FIXED) : HEADER], strict=True):
+        first = len(_FIXED) + len(COUNTERS)
+        for name, number in zip(COUNTERS, numbers[len(_FIXED) : first], strict=True):
             setattr(statistics, name, int(number))
+        extremes = dict(zip(_EXTREMES, numbers[first:HEADER].tolist(), strict=True))
         time, wall_time = map(float, numbers[4:6])
         state = np.frombuffer(record, "<u8", size - HEADER, 8 * HEADER).astype(np.uint64).view(np.float64)
-        return cls(sequence, samples, events, time, wall_time, statistics, state)
+        return cls(sequence, samples, events, time, wall_time, statistics, state, _extremes_from(extremes))
+
+
+def _extremes_from(numbers: dict[str, float]) -> Extremes | None:
+    """Return extremes from numbers; None if there are none, of which the speed at the end is NaN."""
+    if np.isnan(numbers["final_speed"]):
+        return None
+    return Extremes(**{name: int(one) if _EXTREMES[name] == "int" else one for name, one in numbers.items()})  # type: ignore[arg-type]
 
 
 def newest(slots: Iterable[bytes]) -> Checkpoint:
