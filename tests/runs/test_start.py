@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearidae.engine.model.build import Begin, make_problem
 
 import gearidae as gd
 from gearidae.archive.end_state import end_state_of, packed_state
@@ -16,6 +15,7 @@ from gearidae.archive.run_summary import counted_over
 from gearidae.cli.tables import show_account
 from gearidae.engine.continuing import checkpoint_of_start, end_of
 from gearidae.engine.model.state import EMPTY
+from gearidae.engine.setup.build import Begin, make_problem
 from gearidae.errors import SceneError
 from gearidae.records import EventKind
 from gearidae.report.tables import account_table
