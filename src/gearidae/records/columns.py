@@ -1,7 +1,7 @@
-"""What the solver samples: name, unit and meaning of each column, in the order in which the engine writes them.
+"""Sampled columns: name, unit and meaning of each, in the order of a row.
 
-The engine fills a row of these (`gearidae.engine.motion.observe`); dataset, files and their documentation follow from
-here.
+The engine fills the rows (`gearidae.engine.motion.observe`); dataset, files and their documentation follow from
+these lists.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Column(NamedTuple):
     units : str
         UDUNITS unit.
     long_name : str
-        What it is, in words.
+        Meaning, in words.
     comment : str
         Sign convention and the like.
     since : str
@@ -94,9 +94,9 @@ ELASTIC_SAMPLES: Final = (
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
-"""What is sampled of elastic contacts besides, last."""
+"""Additional columns of elastic contacts, after the others."""
 
 
 def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
-    """Names of what is sampled of a scene of gears or a roller, whose contact model is `elastic` or not."""
+    """Names of the columns of a scene of gears or a roller, whose contact model is `elastic` or not."""
     return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())

@@ -1,7 +1,7 @@
-"""The torque laws by their names: what ``drive.law`` and ``load.law`` may say.
+"""The torque laws by their names: the values of ``drive.law.name`` and ``load.law.name``.
 
-Every file of this folder that registers a law is found by itself. A law from elsewhere is registered in each process
-that uses it, before scenes are made that name it.
+Every file of this folder that registers a law is found automatically. Each process that uses a law from elsewhere has
+to register it before it makes scenes that name it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Parameters: TypeAlias = NDArray[np.float64]
 Law = TypeVar("Law", bound=Callable[..., Any])
 
 MOST_PARAMETERS: Final = 10_000
-"""Parameters of one law."""
+"""Largest number of parameters of a law."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,19 +65,19 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class TorqueLaw:
-    """A law that is known by a name.
+    """A registered law.
 
     Attributes
     ----------
     name : str
-        What ``drive.law.name`` and ``load.law.name`` call it.
+        Its name in ``drive.law.name`` and ``load.law.name``.
     function : callable
         ``function(t, speed, p)`` or ``function(t, angle, speed, p)``: torque [N m] of time [s], angle [rad] and speed
         [rad/s] of the shaft and parameters.
     parameters : int
-        How many parameters it takes.
+        Number of its parameters.
     named : tuple of Parameter
-        These, if they have names; empty if they are a list of numbers.
+        The parameters, if they have names; empty for a list of numbers.
     takes_angle : bool
         Whether the function has four arguments.
     """
@@ -93,41 +93,40 @@ _LAWS: Final = Registry[TorqueLaw]("gearidae.torques", "law.name", "torque law")
 
 
 def register_torque(name: str, *, parameters: int | Iterable[str | Parameter] = 0) -> Callable[[Law], Law]:
-    """Make a torque law known by a name; a decorator of its function.
+    """Register a torque law by a name; a decorator of its function.
 
     The function is ``torque(t, speed, p)`` or ``torque(t, angle, speed, p)`` with the time [s], angle [rad] and angular
     speed [rad/s] of the shaft, and the array of parameters in SI units; it returns the torque [N m]. The angle counts
-    from the start of the first run of a chain, without end, and goes on through runs that are continued or resumed. The
-    function is compiled by numba when a scene first uses it, so it may use floats, `math`, the array and other
-    compiled functions, and must not raise. The torque is added to the shaft's other torques: that of a drive turns the
-    pinion forward, that of a load resists the gear's motion, whichever way it goes (a negative sum counts as none), so
-    that a viscous load is ``c abs(speed)``.
+    from the start of the first run of a chain, is not wrapped, and continues through continued and resumed runs. Numba
+    compiles the function when a scene first uses it. It may use floats, `math`, the array and other compiled
+    functions, and must not raise. The torque is added to the other torques of the shaft. The torque of a drive turns
+    the pinion forward. The torque of a load resists the motion of the gear in both directions (a negative sum counts
+    as zero), so that a viscous load is ``c abs(speed)``.
 
-    It must be continuous in time, angle and speed and finite at rest; it is also called a ten-thousandth of the scene's
-    natural time unit before and after a time, along the motion then. What varies much faster than gears and contacts
-    do, in time or with the angle, belongs in ``harmonic``, and what jumps in ``schedule``: steps follow those two by
-    their frequencies, orders and knots. Newton's iteration leaves the law's slopes out, which it can do while a shaft
-    needs many steps to follow the law.
+    It must be continuous in time, angle and speed and finite at rest. The engine also calls it a ten-thousandth of the
+    scene's natural time unit before and after a time, along the current motion. Use ``harmonic`` for a torque that
+    varies much faster than gears and contacts, in time or with the angle, and ``schedule`` for one that jumps: the
+    steps resolve their frequencies, orders and knots. Newton's iteration leaves out the slopes of the law, which is
+    allowed if a shaft needs many steps to follow the law.
 
     Parameters
     ----------
     name : str
         Letters, digits and underscores.
     parameters : int or iterable of str or Parameter, optional
-        How many parameters the law takes, which a scene gives as a list of numbers ``parameters``; or their names,
-        under which a scene gives numbers in SI units or texts with a unit. All of them have to be given, but those with
-        a default.
+        Number of parameters, which a scene gives as a list of numbers ``parameters``; or their names, under which a
+        scene gives numbers in SI units or texts with a unit. All are required but those with a default.
 
     Returns
     -------
     callable
-        The decorator; it returns the function as it is.
+        The decorator; it returns the function unchanged.
 
     Raises
     ------
     SceneError
-        If the name is none, or that of another law, or the parameters are none, or the function takes neither three nor
-        four arguments.
+        If the name is not an identifier, or that of another law, or the parameters are neither a number in range nor
+        names, or the function takes neither three nor four arguments.
 
     Examples
     --------
@@ -182,7 +181,7 @@ def _named(parameters: object) -> tuple[Parameter, ...]:
 
 
 def unregister_torque(name: str) -> None:
-    """Take a law out again.
+    """Remove a law.
 
     Parameters
     ----------
@@ -197,7 +196,7 @@ def unregister_torque(name: str) -> None:
 
 
 def torque_names() -> tuple[str, ...]:
-    """Return the names of all torque laws, in the order of the alphabet."""
+    """Return the names of all torque laws in alphabetical order."""
     return _LAWS.names()
 
 
