@@ -187,7 +187,7 @@ def run_plan(
     bool
         Whether Ctrl-C ended it early.
     """
-    workers, releases_gil = check_jobs(jobs), runs_in_threads(backend)
+    workers, releases_gil = check_jobs(jobs), runs_in_threads(backend, plan.base.run.method)
     if not releases_gil and jobs is None:
         workers = 1
     with sweep_progress(progress, len(plan.scenes)) as report:
@@ -290,7 +290,7 @@ def kept_beside(
             raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
         return None
     target = check_target(archive, overwrite=True)
-    kept = KeptRuns(target, scene, choose_backend(backend), keep)
+    kept = KeptRuns(target, scene, choose_backend(backend, scene.run.method), keep)
     count = 0 if resume else kept.count()
     if count and not overwrite:
         raise SceneError(
@@ -341,7 +341,7 @@ def whole_archive(
     }
     expected |= {"swept": plan.swept, "zipped": plan.zipped, "keep": asked, **(more or {})}
     differing = [name for name, value in expected.items() if ds.attrs.get(name, "") != value]
-    if differing or ds.attrs["backend"] not in ("", choose_backend(backend)):
+    if differing or ds.attrs["backend"] not in ("", choose_backend(backend, plan.base.run.method)):
         ds.close()
         raise SceneError(
             "archive",

@@ -92,7 +92,7 @@ class Mesh(Group):
     """How the teeth meet along the line of action."""
 
     backlash: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, shown=("um", -6))] = Field(
-        description="total play between the flanks, 2b"
+        description="total play between the flanks, 2b, from the summits' mean plane"
     )
     tip_relief_radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = (
         Field(default=10e-6, description="radius of the rounded tooth end, rho")

@@ -148,7 +148,7 @@ def life(
     check_executor(executor)
     workers = check_jobs(jobs)
     kept = kept_beside(archive, window, backend, overwrite=overwrite, resume=resume)
-    threads = runs_in_threads(backend)
+    threads = runs_in_threads(backend, scene.run.method)
     found = Life()
 
     def keep(ds: xr.Dataset) -> xr.Dataset:

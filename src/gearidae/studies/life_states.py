@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gearidae.errors import SolverError
 from gearidae.runs.executors import side_by_side
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.studies.cycle_jump import Sticks
+from gearidae.studies.cycle_jump import GearStuck
 from gearidae.studies.life_coverage import Coverage
 from gearidae.studies.life_window import Cycles, run_window
 from gearidae.wear import LossLaw
@@ -61,10 +61,10 @@ class Windows:
     mesh_cycles: int = 0
 
     def rate(self, state: Floats) -> Floats:
-        """Change of a state in a passage; `Sticks` where the gear sticks."""
+        """Change of a state in a passage; `GearStuck` where the gear sticks."""
         seen = self.of(state)
         if seen.sticks:
-            raise Sticks
+            raise GearStuck
         return seen.rate
 
     def has(self, state: Floats) -> bool:

@@ -147,7 +147,9 @@ def lives(
         _gone_if_empty(folder),
         sweep_progress(progress, len(members)) as report,
         own_executor(
-            workers if executor is None else 1, len(members), releases_gil=runs_in_threads(backend)
+            workers if executor is None else 1,
+            len(members),
+            releases_gil=runs_in_threads(backend, scene.run.method),
         ) as own,
     ):
         found = _followed(common, members, executor or own, report)
@@ -183,7 +185,10 @@ class _Common:
         """Where the life of a member is kept: a hash of all that it depends on."""
         if self.folder is None:
             return None
-        about = {**circumstances(scene, choose_backend(self.backend)), "settings": self.settings}
+        about = {
+            **circumstances(scene, choose_backend(self.backend, scene.run.method)),
+            "settings": self.settings,
+        }
         return self.folder / f"{name_of(scene, {**about, 'law': law.describe()})}.nc"
 
 

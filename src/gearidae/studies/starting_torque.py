@@ -221,7 +221,7 @@ class _Search:
 
 def _search_all(searches: Sequence[_Search], tolerance: float, workers: int, backend: str) -> None:
     """Narrow all brackets, the runs of each round side by side."""
-    threads = runs_in_threads(backend)
+    threads = runs_in_threads(backend, searches[0].scene.run.method)
     with own_executor(workers if threads else 1, len(searches), releases_gil=threads) as executor:
         while True:
             asked = [(each, each.next_torque(tolerance)) for each in searches]

@@ -118,7 +118,7 @@ def sticking_threshold(
     workers = check_jobs(jobs)
     base = base.replace({"run.duration": _window(base, exits)})
     kept = kept_beside(archive, base, backend, overwrite=overwrite, resume=resume)
-    threads = runs_in_threads(backend)
+    threads = runs_in_threads(backend, scene.run.method)
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
     most = 2 + (_PARTS - 1) * rounds * len(waits)
