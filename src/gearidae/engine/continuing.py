@@ -55,9 +55,9 @@ from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
+from gearidae.scene.differences import MAY_CHANGE, first_difference
 
 __all__ = [
-    "MAY_DIFFER",
     "checkpoint_of_start",
     "end_of",
     "knots_at_start",
@@ -65,10 +65,7 @@ __all__ = [
     "refuse_other_bodies",
 ]
 
-MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
-"""Tables in which a run may differ from the one it goes on from; its own ``initial`` then says nothing."""
 
-_AS_THERE: Final = "as in the run to go on from"
 _SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
 _FORCES: Final = ("largest_force", "smallest_force")
 _TIMES: Final = ("held_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")
@@ -174,21 +171,12 @@ def _restored(scene: Scene, words: Floats, began: float) -> tuple[Problem, Float
 
 def refuse_other_bodies(old: Scene, new: Scene) -> None:
     """Refuse a scene that differs in what may not."""
-    before, after = old.to_dict(), new.to_dict()
-    for table in sorted({*before, *after} - {*MAY_DIFFER}):
-        if (table in before) != (table in after):
-            given = "(given)" if table in after else "(missing)"
-            raise SceneError(
-                table, given, f"must be {'given' if table in before else 'left out'}, {_AS_THERE}"
-            )
-        one, other = before.get(table, {}), after.get(table, {})
-        for key in sorted({*one, *other}):
-            if one.get(key) != other.get(key):
-                raise SceneError(
-                    f"{table}.{key}",
-                    other.get(key, "(missing)"),
-                    f"must be {one.get(key, '(missing)')}, {_AS_THERE}",
-                )
+    found = first_difference(old.to_dict(), new.to_dict(), ignored=MAY_CHANGE)
+    if found is not None:
+        key, before, after = found
+        given = "(missing)" if after is None else "(given)" if isinstance(after, dict) else after
+        wanted = "left out" if before is None else "given" if isinstance(before, dict) else before
+        raise SceneError(key, given, f"must be {wanted}, as in the run to go on from")
 
 
 def _same_contact(old: Problem, new: Problem) -> Problem:

@@ -6,7 +6,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from gearidae import __version__, engine
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
@@ -21,6 +21,7 @@ from gearidae.runs.imbalance import log_imbalance
 from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.running import early_end, unsolved
 from gearidae.runs.starting import started_attributes
+from gearidae.scene.differences import first_difference
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -245,10 +246,11 @@ def _found(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
     """Open the archive to be resumed and make sure that it is of this very run."""
     ds = open_archive(target)
     theirs = json.loads(ds.attrs["scene"])
-    differing = _difference(theirs, scene.to_dict())
+    differing = first_difference(theirs, scene.to_dict())
     refusal = ""
     if differing or "swept" in ds.attrs:
-        what = "of a sweep" if "swept" in ds.attrs else f"of another scene ({differing} differs)"
+        what = f"of another scene ({differing[0]} differs)" if differing else ""
+        what = "of a sweep" if "swept" in ds.attrs else what
         refusal = f"is {what}: resume with the scene it was begun with, or name another archive"
     elif ds.attrs["status"] in ("running", "interrupted") and ds.attrs["product_version"] != __version__:
         refusal = f"was begun by gearidae {ds.attrs['product_version']}, which alone can go on with it"
@@ -260,17 +262,6 @@ def _found(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
         ds.close()
         raise SceneError("archive", target, refusal)
     return ds
-
-
-def _difference(one: Any, other: Any, key: str = "") -> str:
-    """Name the first key in which two scenes differ; empty if none."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        for name in sorted({*one, *other}):
-            inner = f"{key}.{name}" if key else name
-            if found := _difference(one.get(name), other.get(name), inner):
-                return found
-        return ""
-    return "" if one == other else key
 
 
 def _same_backend(backend: str, begun: str) -> str:

@@ -22,10 +22,10 @@ from gearidae.analysis.map_model import require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names, save
 from gearidae.archive.provenance import provenance
-from gearidae.archive.stack import held
 from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.scene import describe_key
+from gearidae.scene.keys import scene_value
 from gearidae.studies.product_file import read_product
 
 if TYPE_CHECKING:
@@ -273,7 +273,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
 
 def _number(scene: Scene, key: str, value: Any) -> Any:
     """A swept value in SI units, as the scene holds it."""
-    return held(scene.replace({key: value}), key)
+    return scene_value(scene.replace({key: value}), key)
 
 
 def _assembled(lines: list[xr.Dataset], keys: Mapping[str, list[Any]]) -> xr.Dataset:
