@@ -122,7 +122,5 @@ def test_pieces(size, monkeypatch):
     assert pieces.reached(array[:700]) == 700
     assert pieces.reached(array.shift(time=3)) == 903
     assert pieces.reached(array[900:]) == 0
-    assert pieces.first_above(array, 1.5) == int(np.argmax(values > 1.5))
-    assert pieces.first_above(array, 100.0) == 0
     assert pieces.count(array, values[3]) == 1
     assert pieces.spread(array, 900).number == 0

@@ -10,11 +10,12 @@ from typing import Final
 import numpy as np
 
 from gearidae.archive.store import Store
-from gearidae.records import Statistics, Words
+from gearidae.records import Extremes, Statistics, Words
 
 __all__ = ["COUNTERS", "Checkpoint", "drop_checkpoints"]
 
 COUNTERS: Final = tuple(field.name for field in fields(Statistics) if field.type == "int")
+_EXTREMES: Final = tuple(field.name for field in fields(Extremes) if field.name != "exposures")
 _PREFIX: Final = "checkpoint_"
 
 
@@ -34,6 +35,8 @@ class Checkpoint:
         The solver's counters there.
     state : ndarray of 8-byte words
         What the engine needs, kept to the last bit and never looked into.
+    extremes : Extremes, optional
+        Of the run until then, without exposures.
     """
 
     samples: int
@@ -42,6 +45,7 @@ class Checkpoint:
     wall_time: float
     statistics: Statistics
     state: Words
+    extremes: Extremes | None = None
 
     def keep(self, archive: Path, run: str) -> None:
         """Write it beside the archive of a run, in the place of the one before, once it is on the disk.
@@ -63,6 +67,7 @@ class Checkpoint:
             "time": self.time,
             "wall_time": self.wall_time,
             "statistics": {name: getattr(self.statistics, name) for name in COUNTERS},
+            "extremes": self.extremes and {name: getattr(self.extremes, name) for name in _EXTREMES},
         }
         # as words: some may be no numbers
         words = np.ascontiguousarray(self.state).view(np.uint64)
@@ -76,8 +81,13 @@ class Checkpoint:
             if found is None:
                 return None
             header, tables = found
-            statistics = Statistics(**header.pop("statistics"))
-            return cls(**header, statistics=statistics, state=tables["state"].view(np.float64))
+            statistics, extremes = Statistics(**header.pop("statistics")), header.pop("extremes")
+            return cls(
+                **header,
+                statistics=statistics,
+                state=tables["state"].view(np.float64),
+                extremes=extremes and Extremes(**extremes),
+            )
         except Exception:  # what a damaged file makes the libraries raise may be anything
             return None
 

@@ -9,6 +9,7 @@ lock lies on it, and the memory needed does not depend on the run's length. The 
 
 from __future__ import annotations
 
+import json
 import secrets
 import time
 from contextlib import suppress
@@ -24,9 +25,11 @@ from gearidae.archive.checkpoint import COUNTERS, Checkpoint, drop_checkpoints
 from gearidae.archive.definition import define
 from gearidae.archive.disk import disk_errors, sync
 from gearidae.archive.end_state import packed_state
+from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.library import LIBRARY, close, opened
 from gearidae.archive.variables import EVENTS
 from gearidae.records import Block, Statistics, sample_times
+from gearidae.scene import Scene
 
 __all__ = ["GrowingArchive", "is_growing", "trimmed"]
 
@@ -156,9 +159,10 @@ class GrowingArchive:
             if block.checkpoint is not None and due:
                 sync(self.path)
                 counts = (self.samples, self.events)
-                Checkpoint(*counts, block.time, wall_time, statistics, block.checkpoint).keep(
-                    self.path, self._run
+                point = Checkpoint(
+                    *counts, block.time, wall_time, statistics, block.checkpoint, block.extremes
                 )
+                point.keep(self.path, self._run)
                 self._checkpointed = time.monotonic()
 
     def read(self, name: str, cut: slice) -> NDArray[Any]:
@@ -269,6 +273,8 @@ def trimmed(ds: xr.Dataset, path: Path, *, running: bool) -> xr.Dataset:
             "wall_time": point.wall_time,
             **{name: getattr(point.statistics, name) for name in COUNTERS if name in cut.attrs},
         }
+        scene = Scene.from_dict(json.loads(cut.attrs["scene"]))
+        cut = cut.assign(extreme_variables(scene, [point.extremes]))
     return cut
 
 
