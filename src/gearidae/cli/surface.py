@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import gearidae as gd
+from gearidae.archive.target import check_target, whole_file
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
@@ -76,8 +77,8 @@ def analyse_scan(
     if choices.case is not None and output is None:
         raise SceneError("--case", choices.case, "needs -o, the case file to write")
     for target in (output, picture):
-        if target is not None and target.exists() and not overwrite:
-            raise SceneError("output", target, "exists already: name another, or allow --overwrite")
+        if target is not None:
+            check_target(target, overwrite=overwrite, name="output")
     heights, own_size = gd.surfaces.read_scan(scan, choices.unit)
     found = gd.surface_from(
         heights,
@@ -96,7 +97,8 @@ def analyse_scan(
             gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)
         say(f"Picture: {picture}")
     if output is not None and text is not None:
-        _write(output, text, overwrite=overwrite)
+        with whole_file(output, overwrite=overwrite, name="output") as part:
+            part.write_text(text, encoding="utf-8")
         say(f"{'Surface' if choices.case is None else 'Case'}: {output}")
     elif choices.cutoff is None:
         say("The numbers depend on the cut-off wavelength: choose one with --cutoff.")
@@ -126,13 +128,3 @@ def _comments(fragment: str) -> Iterator[str]:
     for line in fragment.splitlines(keepends=True):
         if line.startswith("#"):
             yield line
-
-
-def _write(target: Path, text: str, *, overwrite: bool) -> None:
-    try:
-        with target.open("w" if overwrite else "x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise SceneError("output", target, "exists already: name another, or allow --overwrite") from None
-    except OSError as error:
-        raise SceneError("output", target, f"cannot be written ({error.strerror})") from error

@@ -105,19 +105,19 @@ def simulate(
     log_doubts(scene)
     # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one
     if archive is not None:
-        from gearidae.archive import check_target
+        from gearidae.archive.target import claims_target
         from gearidae.runs.streaming import stream
 
-        target = check_target(archive, overwrite=overwrite or resume)
-        return stream(
-            scene,
-            target,
-            backend=backend,
-            progress=progress,
-            resume=resume,
-            started=started,
-            on_block=on_block,
-        )
+        with claims_target(archive, overwrite=overwrite or resume) as target:
+            return stream(
+                scene,
+                target,
+                backend=backend,
+                progress=progress,
+                resume=resume,
+                started=started,
+                on_block=on_block,
+            )
     if resume:
         raise SceneError("resume", resume, "needs the archive to go on from (archive=)")
     with run_progress(progress, begin + scene.run.duration) as report:

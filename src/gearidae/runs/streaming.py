@@ -169,7 +169,7 @@ class _Run:
     def _interrupted(self, archive: GrowingArchive) -> Interrupted:
         archive.close()
         kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
-        return Interrupted(kept, open_archive(self._target))
+        return Interrupted(kept, self._left())
 
     def _told(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
         """Make the final template, with the account of the run."""
@@ -191,10 +191,15 @@ class _Run:
 
     def _not_written(self, archive: GrowingArchive, reached: float, error: DiskError) -> SolverError:
         archive.close()
-        ds = open_archive(self._target)
         return early_end(
-            ds, reached, f"the archive {self._target} could not be written ({error})", _FREE_SPACE
+            self._left(), reached, f"the archive {self._target} could not be written ({error})", _FREE_SPACE
         )
+
+    def _left(self) -> xr.Dataset:
+        """Open the archive of a run that has been left; its claim lasts until the error is there."""
+        ds = open_archive(self._target)
+        ds.attrs["status"] = "interrupted"
+        return ds
 
     def _ended_at(self, point: Checkpoint) -> Ended:
         """How a run ended of which only the archive's final form was missing."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from gearidae.archive import check_target, open_archive, save
 from gearidae.archive.keep import EVERYTHING, Keep, read_keep
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["kept_beside", "prepare_archive", "run_plan", "sweep", "whole_archive"]
 
 
+@claims_archive
 def sweep(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gearidae.archive import save
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.running import prepare
@@ -39,6 +40,7 @@ Floats = NDArray[np.float64]
 METHODS: Final = ("auto", "grid", "emcee")
 
 
+@claims_archive
 def calibrate(
     scene: Scene,
     priors: Mapping[str, Any],

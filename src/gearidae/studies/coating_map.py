@@ -23,6 +23,7 @@ from gearidae.analysis.ringing import characteristic_frequency, impact_frequenci
 from gearidae.archive import dimension_names, save
 from gearidae.archive.provenance import provenance
 from gearidae.archive.stack import held
+from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.scene import describe_key
 from gearidae.studies.product_file import read_product
@@ -50,6 +51,7 @@ _SLOWEST = {
 }
 
 
+@claims_archive
 def coating_map(
     scene: Scene,
     sam_fraction: ArrayLike | None = None,

@@ -20,6 +20,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive import save
+from gearidae.archive.target import claims_archive
 from gearidae.archive.verdict import is_scheduled
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -45,6 +46,7 @@ Floats: TypeAlias = NDArray[np.float64]
 _PLACES: Final = 8
 
 
+@claims_archive
 def life(
     scene: Scene,
     law: LossLaw,

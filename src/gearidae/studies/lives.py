@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from gearidae.archive import check_target, dimension_names, save
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.engine import choose_backend
 from gearidae.errors import SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -61,6 +62,7 @@ _COLUMNS: Final = {
 }
 
 
+@claims_archive
 def lives(
     scene: Scene,
     law: LossLaw,

@@ -20,6 +20,7 @@ import xarray as xr
 
 from gearidae.archive import save
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.archive.verdict import is_scheduled
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -46,6 +47,7 @@ _PATIENCE = 1.5
 _USUAL = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
+@claims_archive
 def sticking_threshold(
     scene: Scene,
     over: str = "coating.sam_fraction",
