@@ -108,7 +108,7 @@ def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
             raise KeyboardInterrupt
         return run(*args)
 
-    monkeypatch.setattr(sys.modules["gearidae.studies.life_states"], "run_window", cut)
+    monkeypatch.setattr(sys.modules["gearidae.studies.life_rates"], "run_window", cut)
     with pytest.raises(gd.Interrupted, match="resume") as stopped:
         gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
     kept = gd.studies.open_life(path)

@@ -50,18 +50,19 @@ def life(
     resume: Annotated[bool, Parameter(help="Resume the unfinished life in the output file.")] = False,
 ) -> int:
     """Follow the coverage over the passages of the teeth until the gear sticks."""
-    from gearidae.cli.life import follow_life
+    from gearidae.cli.studies import Request, follow_life
 
-    options = {
-        "passages": passages,
-        "fraction": fraction,
-        "resolved": resolved,
-        "tolerance": tolerance,
-        "jobs": jobs,
-        "overwrite": overwrite,
-        "resume": resume,
-    }
-    return follow_life(str(case), law, parameter, arrhenius or [], options, output, settings or [])
+    request = Request(str(case), settings or [], output, jobs, None, resume, overwrite)
+    return follow_life(
+        request,
+        law,
+        parameter,
+        arrhenius or [],
+        passages=passages,
+        fraction=fraction,
+        resolved=resolved,
+        tolerance=tolerance,
+    )
 
 
 @app.command
@@ -90,19 +91,20 @@ def lives(
     Parameters of the law are drawn as law.NAME, such as --vary "law.energy=lognormal(0.5 mJ/m^2, 3)"; --parameter gives
     those that are not drawn. Lives so far are kept beside the archive, in OUT.nc.lives, until the archive is written.
     """
-    from gearidae.cli.lives import follow_lives
+    from gearidae.cli.studies import Request, follow_lives
 
-    options = {
-        "size": size,
-        "design": design,
-        "seed": seed,
-        "passages": passages,
-        "fraction": fraction,
-        "resolved": resolved,
-        "tolerance": tolerance,
-        "jobs": jobs,
-        "overwrite": overwrite,
-        "resume": resume,
-    }
-    about = (law, parameter or [], arrhenius or [])
-    return follow_lives(str(case), about, vary, options, output, settings or [])
+    request = Request(str(case), settings or [], output, jobs, None, resume, overwrite)
+    return follow_lives(
+        request,
+        law,
+        parameter or [],
+        arrhenius or [],
+        vary,
+        size=size,
+        design=design,
+        seed=seed,
+        passages=passages,
+        fraction=fraction,
+        resolved=resolved,
+        tolerance=tolerance,
+    )

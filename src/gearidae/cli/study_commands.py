@@ -23,6 +23,7 @@ __all__ = [
     "ensemble",
     "operating_map",
     "predict",
+    "starting_torque",
     "threshold",
 ]
 
@@ -65,11 +66,10 @@ def coating_map(
 
     Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
     """
-    from gearidae.cli.coating import map_case
+    from gearidae.cli.studies import Request, map_coating
 
-    return map_case(
-        str(case), over or [], output, settings or [], jobs, dask, resume=resume, overwrite=overwrite
-    )
+    request = Request(str(case), settings or [], output, jobs, dask, resume, overwrite)
+    return map_coating(request, over or [])
 
 
 @app.command
@@ -88,10 +88,38 @@ def threshold(
     resume: Annotated[bool, Parameter(help="Resume the unfinished search in the output file.")] = False,
 ) -> int:
     """Search where the gear begins to stick, against the number of mesh exits waited for."""
-    from gearidae.cli.threshold import search_threshold
+    from gearidae.cli.studies import Request, search_threshold
 
-    given = settings or []
-    return search_threshold(str(case), over, exits, output, given, jobs, overwrite=overwrite, resume=resume)
+    request = Request(str(case), settings or [], output, jobs, None, resume, overwrite)
+    return search_threshold(request, over, exits)
+
+
+@app.command(name="starting-torque")
+def starting_torque(
+    case: Case,
+    *,
+    over: Annotated[
+        str | None,
+        Parameter(
+            help="SAM fractions, coating.sam_fraction=1:0.4:-0.1. Default: the coating of the case as it is."
+        ),
+    ] = None,
+    impacts: Annotated[int, Parameter(help="Pitches to be turned, each with its mesh exit.")] = 3,
+    lowest: Annotated[
+        float | None, Parameter(help="Lowest torque to try in N m. Default: 0.001 of the drive's own.")
+    ] = None,
+    tolerance: Annotated[float, Parameter(help="Relative width at which the search ends.")] = 0.1,
+    output: Output = None,
+    settings: Settings = None,
+    jobs: Jobs = None,
+    resume: Annotated[bool, Parameter(help="Resume the unfinished search in the output file.")] = False,
+    overwrite: Overwrite = False,
+) -> int:
+    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion."""
+    from gearidae.cli.studies import Request, search_starting_torque
+
+    request = Request(str(case), settings or [], output, jobs, None, resume, overwrite)
+    return search_starting_torque(request, over, impacts=impacts, lowest=lowest, tolerance=tolerance)
 
 
 @app.command(name="operating-map")
@@ -117,10 +145,9 @@ def operating_map(
 
     Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
     """
-    from gearidae.cli.operating_map import map_outcomes
+    from gearidae.cli.studies import Request, map_outcomes
 
-    given = settings or []
-    return map_outcomes(str(case), over, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+    return map_outcomes(Request(str(case), settings or [], output, jobs, dask, resume, overwrite), over)
 
 
 @app.command
@@ -145,11 +172,10 @@ def ensemble(
 
     Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
     """
-    from gearidae.cli.ensemble import run_ensemble
+    from gearidae.cli.studies import Request, run_ensemble
 
-    drawn = {"size": size, "design": design, "seed": seed, "of": of}
-    given = settings or []
-    return run_ensemble(str(case), vary, drawn, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+    request = Request(str(case), settings or [], output, jobs, dask, resume, overwrite)
+    return run_ensemble(request, vary, size=size, design=design, seed=seed, of=of)
 
 
 @app.command
@@ -191,10 +217,11 @@ def calibrate(
     Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
     """
     from gearidae.cli.calibrate import calibrate_case
+    from gearidae.cli.studies import Request
 
-    options: dict[str, object] = {"method": method, "points": points, "steps": steps, "seed": seed}
-    options |= {"jobs": jobs, "resume": resume, "overwrite": overwrite}
-    return calibrate_case(str(case), vary, seen or [], observations, options, output, settings or [], dask)
+    request = Request(str(case), settings or [], output, jobs, dask, resume, overwrite)
+    options = {"method": method, "points": points, "steps": steps, "seed": seed}
+    return calibrate_case(request, vary, seen or [], observations, **options)
 
 
 @app.command
@@ -216,6 +243,7 @@ def predict(
     Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
     """
     from gearidae.cli.calibrate import predict_case
+    from gearidae.cli.studies import Request
 
-    options = {"size": size, "seed": seed, "jobs": jobs, "resume": resume, "overwrite": overwrite}
-    return predict_case(str(case), posterior, options, output, settings or [], dask)
+    request = Request(str(case), settings or [], output, jobs, dask, resume, overwrite)
+    return predict_case(request, posterior, size=size, seed=seed)

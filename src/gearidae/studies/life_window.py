@@ -112,7 +112,7 @@ class Window:
     origin: engine.Origin | None = None
 
 
-def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bool]:
+def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, str]:
     """Run a window.
 
     Parameters
@@ -127,8 +127,8 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     -------
     solution : Solution
         Without events, and with the exposures of a block.
-    sticks : bool
-        Whether the gear has come to stand, or has not passed the cycles in its time.
+    word : str
+        ``sticks`` if the gear has come to stand, or has not passed the cycles in its time; else ``turns``.
 
     Raises
     ------
@@ -138,8 +138,8 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     window = steady_window(scene, cycles, backend)
     found = replace(window.solution, events=unsolved("", "").events, checkpoint=None)
     if window.exposures is None:
-        return found, True
-    return with_exposures(found, window.exposures), False
+        return found, "sticks"
+    return with_exposures(found, window.exposures), "turns"
 
 
 def with_exposures(found: Solution, exposures: Floats) -> Solution:
