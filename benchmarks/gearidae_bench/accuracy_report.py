@@ -34,8 +34,8 @@ the accumulated error.
 boundary at every event, every kink of the force, every schedule knot and every sample. Method, error control and event
 detection are independent of the engine. Its own error, given in the table, is its difference from a run at a tenth of
 the tolerance. With elastic bodies the equations are partly algebraic, and the reference is a run of the engine itself
-at 1e-12, compared with one at 1e-11. This comparison shows how the error falls with the tolerance. It does not show that
-the limit is correct; the tests of the elastic contact do.
+at 1e-12, compared with one at 1e-11. This comparison shows how the error falls with the tolerance. It does not show
+that the limit is correct; the tests of the elastic contact do.
 
 **Cases.** The low-speed case is run for 20 ms and the high-speed case for 0.5 ms. Run-up, braking and alternating
 torque are run for a hundredth of their duration. Their torque schedules are faster by the same factor, so that the

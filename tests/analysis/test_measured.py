@@ -6,14 +6,17 @@ import tracemalloc
 
 import numpy as np
 import pytest
+import xarray as xr
 
-from gearidae.analysis import measured, read_signal
+from gearidae.analysis import read_signal
 from gearidae.errors import SceneError
+from gearidae.scene import text_table
 
 TIME = np.arange(64) * 1e-5
 SPEED = 1.5 + 0.01 * np.sin(7e3 * TIME)
 TABLE = np.column_stack([TIME, SPEED])
 HEADER = "time [ms], gear_speed [rad/s]"
+SPEED_44 = "line 44: column 'gear_speed [rad/s]', row 41"
 
 
 @pytest.fixture
@@ -32,8 +35,9 @@ def rows(separator=",", first=0, last=64):
 
 @pytest.fixture
 def at_once(monkeypatch):
-    """The file is read at once; looking at each line is for files in which something is wrong."""
-    monkeypatch.setattr(measured, "_numbers_by_line", lambda *_: pytest.fail("read line by line"))
+    """The file is read at once; looking at each line is for small files, and those in which something is wrong."""
+    monkeypatch.setattr(text_table, "_SMALL", 0)
+    monkeypatch.setattr(text_table.TextTable, "_row_by_row", lambda *_, **__: pytest.fail("read row by row"))
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
@@ -76,20 +80,24 @@ def test_what_is_not_regular_is_read_line_by_line(text, file):
     np.testing.assert_allclose(ds.gear_speed, SPEED, rtol=np.finfo(float).eps, atol=0.0)
 
 
+@pytest.mark.parametrize("rows_at_once", [0, 2**30])
 @pytest.mark.parametrize(
     ("cell", "reason"),
     [
-        ("1,fast", "line 44: gear_speed is 'fast', not a number"),
-        ("1", "line 44: gear_speed is 'nothing', not a number"),
-        ("1,", "line 44: gear_speed is '', not a number"),
-        ("NA,1.5", "line 44: time is 'NA', not a number"),
-        ("1,nan", "line 44: every number must be finite"),
-        ("inf,1", "line 44: every number must be finite"),
-        ("1,1e999", "line 44: every number must be finite"),
-        ("1,1.5 # a remark", "line 44: gear_speed is '1.5 # a remark', not a number"),
+        ("1,fast", f"{SPEED_44} is 'fast', no number"),
+        ("1", "line 44: row 41 has 1 cells, but there are 2 headings"),
+        ("1,2,3", "line 44: row 41 has 3 cells, but there are 2 headings"),
+        ("0,4,1,5", "line 44: row 41 has 4 cells, but there are 2 headings"),
+        ("1,inf", f"{SPEED_44} is inf, not a finite number"),
+        ("1,1e999", f"{SPEED_44} is 1e999, not a finite number"),
+        ("1,1_0", f"{SPEED_44} is '1_0', no number"),
+        ("NA,1.5", "time = nan: sample 40 has no time"),
+        (f"{float(TIME[40])!r},", "sample 40 (0.0004 s) is missing, within the record (1 in all)"),
+        (f"{float(TIME[40])!r},nan", "sample 40 (0.0004 s) is missing, within the record (1 in all)"),
     ],
 )
-def test_a_bad_row_is_named_wherever_it_stands(cell, reason, file):
+def test_a_bad_row_is_named_wherever_it_stands(cell, reason, rows_at_once, file, monkeypatch):
+    monkeypatch.setattr(text_table, "_SMALL", rows_at_once)
     text = f"# a rig\n\ntime [s],gear_speed [rad/s]\n{rows(last=40)}{cell}\n{rows(first=41)}"
     with pytest.raises(SceneError) as caught:
         read_signal(file(text))
@@ -122,3 +130,16 @@ def test_a_long_record_takes_little_memory(tmp_path):
         tracemalloc.stop()
     assert ds.sizes["time"] == count
     assert peak < 6 * 16 * count
+
+
+def test_units_of_a_netcdf_record_are_converted(tmp_path):
+    """Milliseconds and revolutions per minute, which an online assessment would take for SI."""
+    path = tmp_path / "record.nc"
+    rpm = 2 * np.pi / 60
+    speeds = ("time", SPEED / rpm, {"units": "rpm", "long_name": "of the gear"})
+    xr.Dataset({"gear_speed": speeds}, {"time": ("time", 1e3 * TIME, {"units": "ms"})}).to_netcdf(path)
+    ds = read_signal(path)
+    np.testing.assert_allclose(ds.time, TIME, rtol=1e-12)
+    np.testing.assert_allclose(ds.gear_speed, SPEED, rtol=1e-12)
+    assert ds.time.attrs["units"] == "s"
+    assert ds.gear_speed.attrs == {"units": "rad s-1", "long_name": "of the gear"}

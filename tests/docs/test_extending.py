@@ -195,14 +195,14 @@ for sign in (1.0, -1.0):
     np.testing.assert_allclose(found[:, 0] - found[:, 2], approach, atol=1e-9)
 """
 
-DRIVE_TORQUE = """
+DRIVE_POWER = """
 from gearidae.archive.variables import SAMPLES, columns
 from gearidae.records import GEAR_COLUMNS
-assert columns(False)[9] == GEAR_COLUMNS[9] == "drive_torque"
-assert SAMPLES["drive_torque"].units == "N m"
+assert columns(False)[12] == GEAR_COLUMNS[12] == "drive_power"
+assert SAMPLES["drive_power"].units == "W"
 import inspect
 from gearidae.engine.motion import observe
-assert "row[9] = drive" in inspect.getsource(observe.observe)
+assert "row[12] = row[9] * row[1]" in inspect.getsource(observe.observe)
 """
 
 
@@ -210,7 +210,7 @@ assert "row[9] = drive" in inspect.getsource(observe.observe)
     ("is_event", "files", "script"),
     [
         (True, {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
-        (False, {"records/columns.py", "engine/motion/observe.py"}, DRIVE_TORQUE),
+        (False, {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
     ],
     ids=["event", "variable"],
 )

@@ -13,6 +13,7 @@ from gearidae.engine.pairs.tooth_pairs import nearest_gap
 from gearidae.engine.setup import build
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Ending, EventKind, Flank, Statistics
+from same import assert_same
 
 HIGH = gd.preset("teodorescu2009")
 SCENE = HIGH.replace(  # the first impact is deep, and no other
@@ -106,7 +107,7 @@ def test_a_run_can_be_resumed_before_between_and_after_the_changes(changes, driv
         seen.add(made)
         parts = [each.rows for each in (*whole[: k + 1], *rest)]
         np.testing.assert_array_equal(np.concatenate(parts), rows)
-        assert (rest[-1] if rest else whole[-1]).extremes == whole[-1].extremes
+        assert_same((rest[-1] if rest else whole[-1]).extremes, whole[-1].extremes)
         assert outlook(SCENE, driver, block.checkpoint)[1]["elastic_deflection"] == made.count("change_over")
     assert seen == {("change_over", "lighten"), ("lighten",), ()}
 

@@ -19,12 +19,12 @@ CONTRACT = {
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
     "provenance",
     "coating": "sam_fraction energy pairing thickness pinion_fraction gear_fraction pinion_table gear_table",
-    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
-    "law.parameters speed speed_gain",
-    "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
-    "law.parameters",
+    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
+    "law.name law.parameters speed speed_gain",
+    "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
+    "harmonic.phase law law.name law.parameters",
     "initial": "gear_speed gap mesh_phase",
-    "run": "exposures duration samples rtol method stop checkpoints",
+    "run": "balance exposures duration samples rtol method stop checkpoints",
     "roller": "radius mass width speed height",
     "contact": "model asperity",
 }

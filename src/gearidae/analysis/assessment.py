@@ -188,6 +188,15 @@ def judge(signal: Signal, model: MapModel, history: str, cutoff: float) -> Asses
     -------
     Assessment
     """
+    given, signal = signal, signal.forward()
+    found = _judged(signal, model, history, cutoff)
+    if signal is given:
+        return found
+    return replace(found, explanation=f"{found.explanation}; the speed is taken with its sign reversed")
+
+
+def _judged(signal: Signal, model: MapModel, history: str, cutoff: float) -> Assessment:
+    """Judge the record of a gear that turns forward."""
     rings = rings_of(signal, model.width)
     step = doubts.quantum(signal.values)
     frequencies = tuple(ring.frequency for ring in rings)

@@ -68,7 +68,7 @@ def impact_windows(
         If there is no gear speed, or nothing tells the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
-    found = [windows_of(each, check_width(width)) for each in batch.signals]
+    found = [windows_of(each.forward(), check_width(width)) for each in batch.signals]
     names = {
         "impact_time": "time of the mesh impact",
         "window_start": "start of the impact's window",

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-import csv
 import os
-import re
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
 
-import numpy as np
-import pandas as pd
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
+from gearidae.scene.table_head import open_table
+from gearidae.scene.text_table import check_regular, listed, split_unit
 
 __all__ = ["read_signal"]
 
-Floats = NDArray[np.float64]
-
-_HEADING = re.compile(r"\s*([^\[\](]+?)\s*[\[(]\s*(.*?)\s*[\])]\s*")
 _SI = {"time": "s", "gear_speed": "rad s-1"}
 _NAMES = {"t": "time", "time": "time", "speed": "gear_speed", "gear_speed": "gear_speed"}
+_EXAMPLE = "the first line must name the columns and their units, such as: time [s], gear_speed [rad/s]"
 _LARGEST = 2**30
 """Files larger than this [bytes] are refused: a record of a minute at 100 kHz has a tenth of it."""
 
@@ -53,16 +48,19 @@ def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
     """
     source = Path(path)
     try:
+        check_regular(source, _LARGEST)
         with source.open("rb") as file:
             head = file.read(8)
-            size = file.seek(0, os.SEEK_END)
-    except OSError as error:
-        raise SceneError("signal", path, f"cannot be read ({error.strerror})") from error
-    if size > _LARGEST:
-        raise SceneError("signal", path, f"is larger than {_LARGEST >> 20} MB")
-    binary = head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF"))
-    ds = _from_netcdf(source) if binary else _from_csv(source)
-    signals(ds)  # refuses an uneven time and the like while the file can be named
+        binary = head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF"))
+        ds = _from_netcdf(source) if binary else _from_csv(source)
+    except SceneError:
+        raise
+    except (OSError, ValueError) as error:
+        raise SceneError("signal", path, str(error)) from None
+    try:
+        signals(ds)  # refuses an uneven time and the like while the file can be named
+    except SceneError as error:
+        raise SceneError("signal", path, f"{error.key} = {error.value}: {error.allowed}") from None
     return ds
 
 
@@ -71,29 +69,31 @@ def _from_netcdf(source: Path) -> xr.Dataset:
     try:
         ds = loaded(source)
     except Exception as error:
-        raise SceneError("signal", source, f"is damaged or not a netCDF file ({error})") from error
+        raise ValueError(f"is damaged or not a netCDF file ({error})") from error
     for name in _SI:
         if name not in ds.variables:
-            raise SceneError("signal", source, f"lacks the variable {name}")
+            raise ValueError(f"lacks the variable {name}")
         if "units" not in ds[name].attrs:
-            raise SceneError("signal", source, f"does not state the units of {name} (attribute units)")
-    return ds
+            raise ValueError(f"does not state the units of {name} (attribute units)")
+    in_si = {
+        name: (
+            ds[name].dims,
+            to_si(ds[name], units, f"{source.name}: {name}"),
+            {**ds[name].attrs, "units": units},
+        )
+        for name, units in _SI.items()
+        if str(ds[name].attrs["units"]) != units
+    }
+    return ds.assign_coords({"time": in_si.pop("time")} if "time" in in_si else {}).assign(in_si)
 
 
 def _from_csv(source: Path) -> xr.Dataset:
-    try:
-        head = _read_head(source)
-        columns = _columns(source, head.headings)
-        numbers = _numbers(source, head, [column for column, _ in columns.values()])
-        if numbers is None:
-            numbers = _numbers_by_line(source, head, columns)
-    except (OSError, UnicodeDecodeError) as error:
-        raise SceneError("signal", source, f"is neither text nor netCDF ({error})") from error
+    table = open_table(source, largest=_LARGEST, names=_names, unit_row=True)
+    columns = _columns(table.headings)
+    numbers = table.numbers([place for place, _ in columns.values()], holes=True)
     values = {
-        name: to_si(
-            xr.DataArray(numbers[:, place], attrs={"units": unit}), _SI[name], f"{source.name}: {name}"
-        )
-        for place, (name, (_, unit)) in enumerate(columns.items())
+        name: to_si(xr.DataArray(column, attrs={"units": unit}), _SI[name], f"{source.name}: {name}")
+        for column, (name, (_, unit)) in zip(numbers.T, columns.items(), strict=True)
     }
     return xr.Dataset(
         {"gear_speed": ("time", values["gear_speed"], {"units": _SI["gear_speed"]})},
@@ -101,145 +101,30 @@ def _from_csv(source: Path) -> xr.Dataset:
     )
 
 
-class _Head(NamedTuple):
-    """What the beginning of a file tells.
-
-    Attributes
-    ----------
-    headings : list of str
-        Of the columns.
-    separator : str
-        Between the numbers; empty for blanks.
-    line, place : int
-        Number of lines before the first row of numbers, and its place in the file [bytes].
-    """
-
-    headings: list[str]
-    separator: str
-    line: int
-    place: int
+def _names(headings: Sequence[str]) -> bool:
+    """Whether texts are headings of the columns that are read."""
+    return set(_SI) <= {_known(heading) for heading in headings}
 
 
-def _read_head(source: Path) -> _Head:
-    """Find headings and first row of numbers; headings may stand in a comment, as `numpy.savetxt` writes them.
-
-    Raises
-    ------
-    SceneError
-        If there is nothing in the file.
-    """
-    heading, remark, separator = "", "", ","
-    line = place = 0
-    with source.open("rb") as file:
-        for raw in file:
-            text = raw.decode("utf-8-sig" if line == 0 else "utf-8").strip()
-            if text.startswith("#"):
-                remark = text.lstrip("# ") if not heading and _names(text.lstrip("# ")) else remark
-            elif text and not heading and not (remark and _is_row(text)):
-                heading, separator = text, _separator(text)
-            elif text:
-                heading, separator = heading or remark, _separator(text) if not heading else separator
-                break
-            line, place = line + 1, place + len(raw)
-    if not heading:
-        raise SceneError("signal", source, "is empty")
-    return _Head(_headings(heading), separator, line, place)
+def _known(heading: str) -> str | None:
+    """Which column of a record a heading names."""
+    return _NAMES.get(split_unit(heading)[0].lower().replace(" ", "_"))
 
 
-def _separator(text: str) -> str:
-    """Separator of the cells of a line; empty if they are separated by blanks."""
-    best = max(",;\t", key=text.count)
-    return best if best in text else ""
-
-
-def _headings(text: str) -> list[str]:
-    """Cells of the line of headings, which may contain blanks before their unit."""
-    separator = _separator(text)
-    if separator:
-        return next(csv.reader([text], delimiter=separator))
-    found = re.findall(r"[^\[\]()]+[\[(][^\])]*[\])]", text)
-    return found if len(found) > 1 else [text]
-
-
-def _names(text: str) -> bool:
-    """Whether a comment names the columns that are read."""
-    bare = (match[1] if (match := _HEADING.fullmatch(one)) else one for one in _headings(text))
-    return set(_SI) <= {_NAMES.get(one.strip().lower().replace(" ", "_")) for one in bare}
-
-
-def _is_row(text: str) -> bool:
-    """Whether a line holds numbers."""
-    try:
-        return all(float(cell) is not None for cell in text.split(_separator(text) or None))
-    except ValueError:
-        return False
-
-
-def _numbers(source: Path, head: _Head, wanted: list[int]) -> Floats | None:
-    """Read all rows at once; None if a row is not as it should be, which `_numbers_by_line` then looks for."""
-    with source.open("rb") as file:
-        file.seek(head.place)
-        try:
-            table = pd.read_csv(
-                file,
-                sep=head.separator or r"\s+",
-                header=None,
-                usecols=wanted,
-                dtype=np.float64,
-                na_filter=False,
-                engine="c",
-            )
-        except ValueError:  # pandas' own errors are of this kind
-            return None
-    numbers = np.column_stack([table[column].to_numpy() for column in wanted])
-    return numbers if np.isfinite(numbers).all() else None
-
-
-def _numbers_by_line(source: Path, head: _Head, columns: dict[str, tuple[int, str]]) -> Floats:
-    """Read row by row, and name the first that is wrong.
-
-    Raises
-    ------
-    SceneError
-        If one is.
-    """
-    rows: list[list[float]] = []
-    with source.open(encoding="utf-8-sig") as file:
-        for number, line in enumerate(file, 1):
-            if number <= head.line or not line.strip() or line.lstrip().startswith("#"):
-                continue
-            cells = line.split(head.separator or None)
-            row = []
-            for name, (column, _) in columns.items():
-                found = cells[column].strip() if column < len(cells) else "nothing"
-                try:
-                    row.append(float(cells[column]))
-                except (ValueError, IndexError):
-                    raise SceneError(
-                        "signal", source, f"line {number}: {name} is {found[:40]!r}, not a number"
-                    ) from None
-            if not np.isfinite(row).all():
-                raise SceneError("signal", source, f"line {number}: every number must be finite")
-            rows.append(row)
-    return np.array(rows).reshape(-1, len(columns))
-
-
-def _columns(source: Path, headings: list[str]) -> dict[str, tuple[int, str]]:
+def _columns(headings: Sequence[str]) -> dict[str, tuple[int, str]]:
     """Place and unit of the time and the speed among the headings."""
-    example = "the first line must name the columns and their units, such as: time [s], gear_speed [rad/s]"
     found: dict[str, tuple[int, str]] = {}
-    for column, heading in enumerate(headings):
-        match = _HEADING.fullmatch(heading)
-        bare = match[1] if match else heading.strip()
-        name = _NAMES.get(bare.strip().lower().replace(" ", "_"))
+    for place, heading in enumerate(headings):
+        name = _known(heading)
         if name is None:
             continue
-        if match is None or not match[2]:
-            raise SceneError("signal", source, f"{bare!r} states no unit; {example}")
+        bare, unit = split_unit(heading)
+        if not unit:
+            raise ValueError(f"{bare!r} states no unit; {_EXAMPLE}")
         if name in found:
-            raise SceneError("signal", source, f"has two columns for {name}")
-        found[name] = (column, match[2])
+            raise ValueError(f"has two columns for {name}")
+        found[name] = (place, unit)
     missing = [name for name in _SI if name not in found]
     if missing:
-        raise SceneError("signal", source, f"has no column {' nor '.join(missing)}; {example}")
+        raise ValueError(f"has no column {' nor '.join(missing)} among {listed(headings)}; {_EXAMPLE}")
     return {name: found[name] for name in _SI}

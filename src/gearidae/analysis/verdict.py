@@ -78,6 +78,10 @@ class GearOutcome(Shown):
     window: float
     imbalance: float = math.nan
 
+    def resolved_min_speed(self, rtol: float) -> float:
+        """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
+        return 0.0 if abs(self.min_speed) <= rtol * self.max_speed else self.min_speed
+
     @property
     def words(self) -> str:
         """The verdict in words, with its window, and a doubt where the energy balance does not close."""

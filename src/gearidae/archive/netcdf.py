@@ -24,6 +24,7 @@ from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
 from gearidae.archive.variables import EVENTS, columns
 from gearidae.errors import SceneError
+from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES
 from gearidae.scene import Scene
 
 __all__ = ["open_archive", "save"]
@@ -169,8 +170,9 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 
 
 def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
-    """Variables that an archive has at least."""
-    sampled = columns(is_roller="roller" in scene)
+    """Variables that an archive has at least, of whichever version."""
+    later = {one.name for one in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if one.since}
+    sampled = tuple(name for name in columns(is_roller="roller" in scene) if name not in later)
     if "keep" not in ds.attrs:
         return ("time", *sampled, *EVENTS)
     try:

@@ -6,6 +6,9 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from gearidae.archive.variables import EVENTS, columns
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
@@ -79,10 +82,10 @@ def _estimates(scene: Scene) -> Rows:
     from gearidae.studies.equilibrium import natural_frequency
 
     assert scene.gears is not None
-    yield "Estimates", "", "from the constant torques, without sticking"
+    yield "Estimates", "", "from the mean torques over the run, without sticking"
     speed = steady_speed(scene)
     if speed == 0.0:
-        yield "gear speed", "0 rad/s", "the drive torque does not overcome the dry resistance"
+        yield "gear speed", "0 rad/s", "the mean drive torque does not overcome the dry resistance"
     elif math.isinf(speed):
         yield "gear speed", "unbounded", "no limit: load.drag is 0"
     else:
@@ -153,15 +156,14 @@ def _coating(scene: Scene) -> Rows:
 
 def _run(scene: Scene) -> Rows:
     run = scene.run
-    columns = 3 if scene.roller is not None else 9
     yield "Run", "", ""
-    yield (
-        "duration",
-        f"{run.duration * 1e3:g} ms",
-        f"{run.sample_count} samples, {columns * run.sample_count * 8e-6:.3g} MB",
-    )
-    yield "relative tolerance", f"{run.rtol:g}", ""
+    yield "duration", f"{run.duration * 1e3:g} ms", ""
     expected = run_time(scene)
+    numbers = 1 + len(columns(scene.roller is not None, scene.contact.model == "elastic"))  # with the time
+    event = sum(np.dtype(variable.dtype).itemsize for variable in EVENTS.values())
+    sizes = 8e-6 * numbers * run.sample_count, 1e-6 * event * expected.events
+    yield "samples", f"{run.sample_count}", f"{sizes[0]:.3g} MB, and some {sizes[1]:.1g} MB of events"
+    yield "relative tolerance", f"{run.rtol:g}", ""
     yield (
         "expected wall time",
         expected.words(),

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.compiled import compiles
 from gearidae.engine.changeover import change_over, deepen, lighten
 from gearidae.engine.continuing import Origin, checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
@@ -57,8 +58,11 @@ def choose_backend(backend: str = "auto", method: str = "auto") -> str:
     Raises
     ------
     SceneError
-        If the native driver is asked for and cannot work here, or the name is unknown.
+        If the native driver is asked for and cannot work here, the name is unknown, or numba has been told to compile
+        nothing.
     """
+    if not compiles():
+        raise SceneError("NUMBA_DISABLE_JIT", 1, "must not be set: the solver runs compiled only")
     if backend not in ("auto", "native", "sksundae"):
         raise SceneError("backend", backend, "must be auto, native or sksundae")
     if backend == "sksundae":
@@ -341,7 +345,7 @@ def outlook(
 
 def kept_at(
     scene: Scene, checkpoint: NDArray[np.float64], backend: str, origin: Origin | None = None
-) -> tuple[EnergyBalance, Extremes]:
+) -> tuple[EnergyBalance | None, Extremes | None]:
     """Return the energy balance and the extremes at a checkpoint of a run.
 
     Parameters

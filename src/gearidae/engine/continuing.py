@@ -6,7 +6,8 @@ last bit. A new torque changes the units of time and force, a new coating what a
 
 - Joined heights are places on the surface, and stay; where asperities cannot stretch so far any more they have let go.
   A material that remembers nothing so far, or has not been there, starts with nothing stretched.
-- What the contacts store with the new materials less what they stored is booked as change of the model.
+- What the contacts store with the new materials less what they stored is booked as change of the model. An energy
+  balance that the other run has not kept begins here.
 - Where the contact was elastic it stays so, with its nodes carried to those of the new scene.
 """
 
@@ -28,10 +29,12 @@ from gearidae.engine.changeover import (
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.follow import QUANTITIES, exposures_of
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.state import (
     EMPTY,
+    ENERGY,
     EXTREMES,
     GEARS,
     MATERIALS,
@@ -42,9 +45,11 @@ from gearidae.engine.model.state import (
     Record,
     V,
     W,
+    assign,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.setup.build import Begin, make_problem
+from gearidae.engine.setup.build_torques import KNOT_SPACING
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
@@ -67,7 +72,9 @@ MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
 _AS_THERE: Final = "as in the run to go on from"
 _SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
 _FORCES: Final = ("largest_force", "smallest_force")
-_TIMES: Final = ("held_time", "largest_force_time", "smallest_force_time")
+_TIMES: Final = ("held_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")
+_SAME: Final = 1e-12
+"""Relative difference of forces below which materials are the same: units of other torques round their last digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +159,7 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     units.convert_motion(old_y, y)
     take_over(source, m)
     units.convert_state(m.state)
-    changed = _materials(source) != _materials(m)
+    changed = not _same_materials(source, m)
     if changed:  # what other materials have been exposed to says nothing of these
         exposures_of(m)[:] = 0.0
     else:
@@ -163,6 +170,8 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     _carry_contacts(old, old_y, new, y, changed=changed)
     _begin_stretch(m)
     _hold_or_slip(source, m, time, y)
+    if source.scene.follow.balance != m.scene.follow.balance:
+        _begin_balance(m, y)
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)
@@ -171,13 +180,16 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
 def knots_at_start(problem: Problem) -> Floats:
     """Return the event of a schedule that has a knot where a continued run begins; the run before ended just there.
 
+    A knot that the solver could not tell from the end has been left out there.
+
     Returns
     -------
     ndarray, shape (0 or 1, 5)
         Time [s], kind, pair, flank, gap rate [m/s].
     """
     s, tables = problem.model.scene, problem.model.tables
-    if not any((segment_ends(own, tables) == s.start).any() for own in s.schedule):
+    ends = np.concatenate([segment_ends(own, tables) for own in s.schedule])
+    if not ((ends <= s.start) & (s.start - ends <= KNOT_SPACING * s.start)).any():
         return np.empty((0, 5))
     time = float(s.start * s.time_unit)
     return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0]])
@@ -255,21 +267,21 @@ class _Units:
                 e[name] *= ratio
 
 
-def _materials(m: Model) -> list[tuple[float, ...]]:
+def _same_materials(old: Model, new: Model) -> bool:
+    """Whether contacts of two models are of the same materials."""
+    before, after = _materials(old), _materials(new)
+    return len(before) == len(after) and bool(np.allclose(before, after, rtol=_SAME, atol=0.0))
+
+
+def _materials(m: Model) -> Floats:
     """What of the materials contacts depend on, in roughnesses and newtons, and fractions by tooth and place."""
-    by_place = [
-        (float(own.teeth), *m.tables[own.values_at : own.values_at + own.teeth * own.places].tolist())
-        for own in m.scene.coverage
-    ]
-    return by_place + [
-        (
-            float(own.force_scale * m.scene.force_unit),
-            float(own.stretch_limit),
-            float(own.joining_energy),
-            float(own.gap_offset),
-        )
-        for own in m.scene.material
-    ]
+    numbers: list[float] = []
+    for own in m.scene.coverage:
+        numbers += [own.teeth, *m.tables[own.values_at : own.values_at + own.teeth * own.places]]
+    for own in m.scene.material:
+        force = own.force_scale * m.scene.force_unit
+        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset]
+    return np.array(numbers)
 
 
 def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:
@@ -316,6 +328,15 @@ def _begin_stretch(m: Model) -> None:
     for which in range(len(m.scene.schedule)):
         ends = segment_ends(m.scene.schedule[which], m.tables)
         s.segment[which] = int((ends <= time).sum())
+
+
+def _begin_balance(m: Model, y: Floats) -> None:
+    """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
+    assign(m.state.energy, np.zeros(1, ENERGY)[0])
+    for name in ("lag", "lag_power", "lag_rate"):
+        m.state.history[name] = 0.0
+    if m.scene.follow.balance:
+        open_balance(m, y)
 
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:

@@ -1,7 +1,7 @@
-"""What the solver samples: name, unit and meaning of each column, in the order in which the engine writes them.
+"""Sampled columns: name, unit and meaning of each, in the order of a row.
 
-The engine fills a row of these (`gearidae.engine.motion.observe`); dataset, files and their documentation follow from
-here.
+The engine fills the rows (`gearidae.engine.motion.observe`); dataset, files and their documentation follow from
+these lists.
 """
 
 from __future__ import annotations
@@ -30,15 +30,18 @@ class Column(NamedTuple):
     units : str
         UDUNITS unit.
     long_name : str
-        What it is, in words.
+        Meaning, in words.
     comment : str
         Sign convention and the like.
+    since : str
+        Version of gearidae that began to sample it; archives without it are older. Empty for the first version.
     """
 
     name: str
     units: str
     long_name: str
     comment: str = ""
+    since: str = ""
 
 
 GEAR_SAMPLES: Final = (
@@ -61,6 +64,23 @@ GEAR_SAMPLES: Final = (
     Column("drive_gap", "m", "smallest gap of all pairs on the drive flank"),
     Column("coast_gap", "m", "smallest gap of all pairs on the coast flank"),
     Column("pairs_in_contact", "1", "number of tooth pairs that transmit force"),
+    Column(
+        "drive_torque", "N m", "torque of the drive on the pinion", "positive turns the gears forward", "0.2"
+    ),
+    Column(
+        "load_torque",
+        "N m",
+        "torque that resists the gear",
+        "dry resistance and drag, Teodorescu et al. 2009, Eq. 2; of a gear at rest the torque that holds it",
+        "0.2",
+    ),
+    Column(
+        "pinion_angle",
+        "rad",
+        "rotation of the pinion since the start",
+        "of the first run of a chain; not wrapped",
+        "0.2",
+    ),
 )
 ROLLER_SAMPLES: Final = (
     Column("height", "m", "height of the roller above the mean plane of the asperities"),
@@ -74,9 +94,9 @@ ELASTIC_SAMPLES: Final = (
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
-"""What is sampled of elastic contacts besides, last."""
+"""Additional columns of elastic contacts, after the others."""
 
 
 def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
-    """Names of what is sampled of a scene of gears or a roller, whose contact model is `elastic` or not."""
+    """Names of the columns of a scene of gears or a roller, whose contact model is `elastic` or not."""
     return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())

@@ -1,7 +1,6 @@
-"""When samples are taken: uniformly, at whole multiples of their spacing where the run's start is one.
+"""Sample times: uniform, and whole multiples of their spacing if the start of the run is one.
 
-So the samples of a run that goes on from another are those that a single run over both would have, to the last bit
-where the spacing is the same.
+A continued run therefore has the sample times of a single run over both, to the last bit if the spacing is the same.
 """
 
 from __future__ import annotations
@@ -14,11 +13,11 @@ from numpy.typing import NDArray
 __all__ = ["first_sample", "sample_times"]
 
 _ON_GRID: Final = 1e-9
-"""Of a spacing: so close to a whole multiple a start counts as one."""
+"""A start counts as a whole multiple within this part of a spacing."""
 
 
 def first_sample(start: float, end: float, count: int) -> float:
-    """Return the start over the spacing of the samples, a whole number where it is one but for rounding.
+    """Return the start over the spacing of the samples, rounded if it is a whole number but for rounding errors.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
-    return [*_sizes(scene), *_long_run(scene)]
+    return [*_sizes(scene), *_resistance(scene), *_long_run(scene)]
 
 
 def log_doubts(scene: Scene) -> None:
@@ -85,6 +85,19 @@ def _sizes(scene: Scene) -> list[str]:
             f"face width of {with_prefix(width, 'm')}"
         )
     return found
+
+
+def _resistance(scene: Scene) -> list[str]:
+    """Compare the harmonics of the dry resistance with its constant part and its schedule."""
+    load = scene.load
+    if load is None or not load.harmonic:
+        return []
+    least = load.torque + min((value for _, value in load.schedule), default=0.0)
+    swing = sum(abs(one.amplitude) for one in load.harmonic)
+    if swing <= least:
+        return []
+    about = f"{with_prefix(swing, 'N m')} about a dry resistance of {with_prefix(least, 'N m')}"
+    return [f"load.harmonic swings by {about}: it is cut off where the sum falls below 0"]
 
 
 def _long_run(scene: Scene) -> list[str]:

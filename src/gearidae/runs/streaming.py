@@ -181,7 +181,7 @@ class _Run:
                 archive.read,
                 archive.samples,
                 archive.events,
-                end,
+                (float(template.attrs.get("start_time", 0.0)), end),
                 balance_of(template),
                 ended.extremes,
             )

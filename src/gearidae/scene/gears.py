@@ -98,7 +98,7 @@ class Mesh(Group):
         Field(default=10e-6, description="radius of the rounded tooth end, rho")
     )
     damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
-        default=0.0, description="viscous damping of the transmission error"
+        default=0.0, description="viscous damping of the transmission error; it acts without contact, too"
     )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(
         default=(), description="harmonics of the static transmission error, a list of tables"

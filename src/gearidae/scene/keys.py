@@ -71,9 +71,27 @@ def find_key(model: type[Group], key: str, value: object = "(key)") -> KeyInfo:
         )
     plain = ".".join(part for part in key.split(".") if not part.isdecimal())
     known = {info.key: info for info in keys_of(model)}
+    if plain not in known and (info := _open_key(model, plain)) is not None:
+        return info
     if plain not in known:
         raise SceneError(str(shorten(key)), shorten(value), _unknown(key, [*known, *model.model_fields]))
     return known[plain]
+
+
+def _open_key(model: type[Group], key: str) -> KeyInfo | None:
+    """Look up a key of a table that has more keys than fields."""
+    *path, last = key.split(".")
+    table: type[Group] | None = model
+    for part in path:
+        table = (
+            _table(table.model_fields[part].annotation)[0] if table and part in table.model_fields else None
+        )
+    found = table.open_key(last) if table else None
+    if found is None:
+        return None
+    unit, description = found
+    allowed = f"a number in {unit or 'SI'} or a text with a unit"
+    return KeyInfo(key, unit, required=False, default=None, allowed=allowed, description=description)
 
 
 def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> None:
@@ -98,7 +116,10 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     """
     value = value.plain_tables() if isinstance(value, Group) else value
     if isinstance(key, str) and key in model.model_fields:
-        data[key] = deepcopy(value) if isinstance(value, dict) else value  # dotted keys may change it later
+        try:  # dotted keys may change a table later
+            data[key] = deepcopy(value) if isinstance(value, dict) else value
+        except RecursionError:
+            raise SceneError(key, shorten(value), "is nested too deeply") from None
         return
     info = find_key(model, key, value)
     *path, last = key.split(".")

@@ -10,7 +10,8 @@ from pydantic import BeforeValidator, Field, model_validator
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group
 from gearidae.scene.knots import Time
-from gearidae.scene.quantity import Count, Quantity, Sampling
+from gearidae.scene.quantity import Count, Quantity, Sampling, Switch
+from gearidae.scene.roughnesses import Length
 
 __all__ = ["Initial", "Roller", "Run"]
 
@@ -25,7 +26,9 @@ class Initial(Group):
     gear_speed: Annotated[float, Quantity(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)] = Field(
         default=0.0, description="speed of the gear"
     )
-    gap: Annotated[float, Quantity(unit="m", shown=("nm", -9))] = Field(description="gap of the drive flank")
+    gap: Annotated[float, Length(unit="m", shown=("nm", -9))] = Field(
+        description="gap of the drive flank, a length or in roughnesses"
+    )
     mesh_phase: Annotated[float, Quantity(unit="1", at_least=0, below=1)] = Field(
         default=0.3, description="position of pair 0 on the path of contact, in base pitches"
     )
@@ -75,6 +78,9 @@ class Run(Group):
         default=0,
         description="places along the flank at which contacts, adhesion and sliding work are kept; 0 for none",
     )
+    balance: Switch = Field(
+        default=True, description="whether the energy balance is kept; exposures and a life need it"
+    )
     stop: Annotated[str, BeforeValidator(_read_stop)] = Field(
         default="time", description="what ends the run before its time: sticks, or turns N of the gear"
     )
@@ -93,6 +99,13 @@ class Run(Group):
                     self.samples,
                     f"gives {wanted:.4g} samples in {self.duration:g} s; there must be 2..{MOST_SAMPLES:g}",
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _balance_for_exposures(self) -> Self:
+        """Refuse exposures without the balance, whose losses by joining they are part of."""
+        if self.exposures and not self.balance:
+            raise SceneError("balance", self.balance, "must be true where run.exposures are kept")
         return self
 
     @property

@@ -15,6 +15,7 @@ from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import check_gaps, check_reach, check_stretch, check_thickness
+from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
 from gearidae.scene.showing import as_html, as_line
@@ -97,6 +98,7 @@ class Scene(Group):
     @model_validator(mode="after")
     def _whole(self) -> Self:
         """Check what no table can check alone."""
+        self._set_gap()
         given = [table for table in _GEAR_TABLES if getattr(self, table) is not None]
         check_stretch(self)
         check_thickness(self)
@@ -118,6 +120,15 @@ class Scene(Group):
                 raise SceneError(table, "(missing)", "is required in a scene without a roller")
         self._check_mesh()
         return self
+
+    def _set_gap(self) -> None:
+        """Let a gap that is given in roughnesses follow this scene's roughness."""
+        gap = None if self.initial is None else self.initial.gap
+        if self.initial is None or not isinstance(gap, InRoughnesses):
+            return
+        length = InRoughnesses(gap.number, self.surface.roughness)
+        if length != gap:  # a table of its own then: scenes share those that do not change
+            object.__setattr__(self, "initial", self.initial.model_copy(update={"gap": length}))
 
     def _check_mesh(self) -> None:
         """Refuse gears that cannot mesh, and starts from within the teeth."""

@@ -18,6 +18,7 @@ derivatives differ by counts too. If that is not good enough, the tolerance is m
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
@@ -216,6 +217,8 @@ def _number(scene: Scene, key: str) -> float:
     """Return the number that a key holds."""
     scene.replace({key: _held(scene, key)})  # names a key that there is not
     value = _held(scene, key)
+    if isinstance(value, str):
+        value = functools.reduce(getattr, key.split("."), scene)  # a gap in roughnesses is a length here
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise SceneError(key, str(value)[:40], "must hold a number to differentiate by")
     return float(value)

@@ -20,7 +20,6 @@ Flags = NDArray[np.bool_]
 FEWEST_POINTS = 64
 """Points along each side of a map that are needed at least: sixteen wavelengths of four points."""
 _MOST_HOLES = 0.2
-_HIGHEST = 0.1  # m; rougher than that is no surface of a gear but a wrong unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +50,13 @@ class HeightMap:
     def spacing(self) -> float:
         """Distance of neighbouring points, the larger of both directions [m]."""
         return float(max(length / count for length, count in zip(self.size, self.heights.shape, strict=True)))
+
+    @property
+    def steepness(self) -> float:
+        """Root mean square of the slopes from point to point, along the direction in which it is larger [1]."""
+        steps = (np.sqrt(np.square(np.diff(self.heights, axis=axis)).mean()) for axis in (0, 1))
+        spacings = (length / count for length, count in zip(self.size, self.heights.shape, strict=True))
+        return float(max(step / spacing for step, spacing in zip(steps, spacings, strict=True)))
 
     @property
     def hole_count(self) -> int:
@@ -97,10 +103,6 @@ def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
     spread = float(np.nanstd(levelled))
     if not spread > 1e-9 * float(np.nanmax(np.abs(measured))):
         raise SceneError("surface scan", "(flat)", "the heights lie on a paraboloid: there is no roughness")
-    if spread > _HIGHEST:
-        raise SceneError(
-            "surface scan", f"(rms {spread:.3g} m)", "heights must be in metres: give their unit"
-        )
     _, b, c, d, e, f = coefficients
     half = [length / 2 for length in size]
     slopes = (b / half[0], c / half[1])

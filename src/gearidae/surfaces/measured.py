@@ -23,6 +23,8 @@ __all__ = ["MeasuredSurface", "surface_from"]
 
 _DIGITS = 4
 """Significant digits of the numbers that go into a scene: sampling leaves two or three."""
+_STEEPEST = 10.0
+"""Root mean square of the slopes from point to point that no surface has: measured ones are below 2."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,6 +184,12 @@ def surface_from(
         raise SceneError("by", shorten(by), f"must be {' or '.join(METHODS)}")
     extent = _extent(size, np.shape(heights))
     surface = height_map(heights, extent)
+    if surface.steepness > _STEEPEST:
+        raise SceneError(
+            "surface scan",
+            f"(rms slope {surface.steepness:.3g})",
+            f"slopes above {_STEEPEST:g} come from a wrong unit: heights must be in metres; give their unit",
+        )
     chosen = None if cutoff is None else _length("cutoff", cutoff)
     asked = usual_cutoffs(surface)
     if chosen is not None:

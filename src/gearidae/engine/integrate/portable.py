@@ -1,7 +1,7 @@
 """The portable driver: the same residual, Jacobian and guard through scikit-sundae's public API.
 
 Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. The formulas are
-IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.integrate.adams`); histories and
+IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.formulas.adams`); histories and
 events are dealt with as in the native driver (`gearidae.engine.integrate.epilogue`). Between steps it interpolates for
 itself, because the API has no dense output.
 """
@@ -16,6 +16,7 @@ import numpy as np
 from sksundae.ida import IDA
 
 from gearidae.compiled import compiled
+from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate.by_address import (
     finish_step_at,
@@ -36,7 +37,7 @@ from gearidae.engine.integrate.driver import (
     sample_time,
     update_statistics,
 )
-from gearidae.engine.integrate.epilogue import ROOT, STOP, has_room, prepare_restart, prepare_start
+from gearidae.engine.integrate.epilogue import has_room, prepare_restart, prepare_start
 from gearidae.engine.integrate.start import first_step
 from gearidae.engine.model.located import Located
 from gearidae.engine.model.state import Floats, Model, Record

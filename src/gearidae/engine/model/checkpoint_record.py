@@ -112,6 +112,11 @@ EXTREMES: Final = record_type(  # of a run so far, at accepted times and located
 STATE: Final = record_type(
     ("time", REAL),  # last accepted time
     ("turns", REAL),  # whole pitches taken out of the phase
+    (
+        "first_place",
+        REAL,
+    ),  # of the gear where a chain of runs began, in pitches: angles of shafts are 0 there
+    ("first_lead", REAL),  # u + e there: by how much the pinion's base circle was ahead of the gear's
     ("mark_low", REAL),  # phases of the nearest mesh entries and exits
     ("mark_high", REAL),
     (

@@ -14,6 +14,7 @@ from gearidae.engine.model.record_types import (
 
 __all__ = [
     "COVERAGE",
+    "FOLLOW",
     "MATERIAL",
     "SCENE",
     "SCHEDULE",
@@ -42,10 +43,14 @@ TORQUE: Final = record_type(
     ("constant", REAL),
     ("harmonic_count", INT),  # (amplitude, angular frequency, phase) of each
     ("harmonics_at", INT),
+    ("order_count", INT),  # harmonics of the shaft's angle: (amplitude, order, phase) of each
+    ("orders_at", INT),
+    ("takes_angle", INT),  # 1 if the torque depends on the shaft's angle
     ("law_count", INT),  # parameters of the law, whose address is in `WORK`
     ("law_at", INT),
-    ("law_torque", REAL),  # units of the law's torque [N m] and of the shaft's speed [rad/s]
+    ("law_torque", REAL),  # units of the law's torque [N m] and of the shaft's speed [rad/s],
     ("law_speed", REAL),
+    ("angle_unit", REAL),  # and of its angle: the roughness over the base radius [rad]
 )
 
 SCHEDULE: Final = record_type(
@@ -54,7 +59,14 @@ SCHEDULE: Final = record_type(
     ("cubic", INT),  # 1 for monotone cubics between the knots, 0 for straight lines
 )
 
+FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
+    ("balance", INT),
+    ("extremes", INT),
+    ("exposures", INT),
+)
+
 SCENE: Final = record_type(
+    ("follow", FOLLOW),
     ("kind", INT),  # GEARS or ROLLER
     ("length_unit", REAL),  # sigma [m]
     ("time_unit", REAL),  # tau [s]
@@ -161,6 +173,7 @@ SCENE: Final = record_type(
         "longest_step",
         REAL,
     ),  # that a cubic schedule allows, which may be flat where a pulse is to come; 0 for any
+    ("angle_omega", REAL),  # the same of the torques of an angle, per pitch,
     ("mesh_omega", REAL),  # and along the mesh, per pitch
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once,
     ("balance_span", REAL),  # over which they may last,

@@ -7,10 +7,12 @@ from typing import Final
 
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import mesh_forces, roller_force
+from gearidae.engine.model.state import DRIVE, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.motion.residual import held, mesh_forces, resisting_force, roller_force
 from gearidae.engine.motion.separation import separation
+from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
+from gearidae.engine.torques.torque import torque_force
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
 
 __all__ = ["observe"]
@@ -65,5 +67,11 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         if gap < m.scene.contact_gap:
             touching += 1.0
     row[8] = touching
+    turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
+    drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
+    resistance = force + relief if held(m) else resisting_force(m, t, u, phase, w)
+    row[9] = drive * unit * m.scene.pinion_radius
+    row[10] = resistance * unit * radius
+    row[11] = angle_of_shaft(m, DRIVE, u, phase)
     if row.size > _GEARS:
         row[_GEARS] = separation(m, y) * length

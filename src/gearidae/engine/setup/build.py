@@ -29,7 +29,7 @@ from gearidae.engine.model.state import (
     blank_model,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
-from gearidae.engine.pairs.tooth_pairs import contact_length
+from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
 from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop
 from gearidae.engine.setup.checkpoint import scene_digest
@@ -160,6 +160,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     relief = float(0.5 * s.relief_curvature * outside**2)
     u = float(s.half_backlash) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
+    model.state.first_place = start.mesh_phase
+    model.state.first_lead = u + static_error(model, u, start.mesh_phase)[1]
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
@@ -307,7 +309,9 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
     if s.places > 0:
         make_part_ready(EXPOSURES)
     begin(m, 0.0, y)
-    open_balance(m, y)
+    s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.places > 0
+    if s.follow.balance != 0:
+        open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]
     columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
     return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
