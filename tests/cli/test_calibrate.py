@@ -92,7 +92,7 @@ def test_a_whole_posterior_is_not_computed_again_nor_replaced(folder, monkeypatc
     calibrate("--seen", SEEN, code=2)
     assert "exists already" in capsys.readouterr().err
     calibrate("--seen", "sticks=false", "--resume", code=2)
-    assert "something else" in capsys.readouterr().err
+    assert "of another sweep or study" in capsys.readouterr().err
     assert (folder / f"{CASE}_posterior.nc").read_bytes() == before
 
 

@@ -92,7 +92,8 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
         show_account(ds)
     else:
         found = answer(ds, kind)
-        show_rows([*_contents(archive, ds), *_scene_rows(ds), ("", "", ""), *found.rows])
+        show_rows([*_contents(archive, ds), *_scene_rows(ds)])
+        show_rows(found.rows)
         say(found.sentence)
     if kind == "runs" or ATTRIBUTE in ds.attrs:  # working the rows out loads the solver
         show_validity(validity_of(ds), about=contact_subject(roller=is_roller(ds), swept=swept_dims(ds)))

@@ -141,11 +141,15 @@ def member_table(ds: xr.Dataset, kind: str) -> str:
             ("member", *(name.replace("_", " ") for name in columns)), rows, caption="Members"
         )
     elif kind == "ensemble":
-        judged = outcomes(ds)
+        judged, rtol = outcomes(ds), scene_of(ds)["run"]["rtol"]
         drawn = [str(name) for name in dimension_names(json.loads(ds.attrs["swept"])).values()]
         headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
         rows = [
-            [str(number), *(_value(values.item(), _unit(values)) for values in columns), *_outcome_cells(one)]
+            [
+                str(number),
+                *(_value(values.item(), _unit(values)) for values in columns),
+                *_outcome_cells(one, rtol),
+            ]
             for number, (one, *columns) in enumerate(zip(judged, *(ds[name] for name in drawn), strict=True))
         ]
         listed = html.table(("member", *drawn, *headings), rows, caption="Members")

@@ -158,7 +158,7 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
         try:
             return require(ds, kind), kind
         except SceneError as error:
-            raise SceneError(kind, path, error.allowed) from None
+            raise SceneError(_last(kind), path, error.allowed) from None
     try:
         ds = open_archive(path)
         return ds, kind_of(ds)
@@ -195,23 +195,28 @@ def kind_of(ds: xr.Dataset) -> str:
     return "operating_map" if "outcome" in ds and ds["outcome"].ndim == 2 else "runs"
 
 
+def _last(kind: str) -> str:
+    """Name a file as errors do: ``map``."""
+    return kind.rpartition("_")[2]
+
+
 def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
     source, about = Path(path), _KINDS[kind]
     if not source.is_file():
-        raise SceneError(kind, path, "there is no such file")
+        raise SceneError(_last(kind), path, "there is no such file")
     try:
         with source.open("rb") as file:
             head = file.read(8)
     except OSError as error:
-        raise SceneError(kind, path, f"cannot be read ({error.strerror})") from error
+        raise SceneError(_last(kind), path, f"cannot be read ({error.strerror})") from error
     if not head.startswith(_HEADERS):
         allowed = f"is no {about.words} but another kind of file; make one with {about.maker}"
-        raise SceneError(kind, path, allowed)
-    check_heaps(kind, source)
+        raise SceneError(_last(kind), path, allowed)
+    check_heaps(_last(kind), source)
     try:
         return loaded(source)
     except Exception as error:
-        raise SceneError(kind, path, f"is damaged ({error})") from error
+        raise SceneError(_last(kind), path, f"is damaged ({error})") from error
 
 
 def open_life(path: str | os.PathLike[str]) -> xr.Dataset:
