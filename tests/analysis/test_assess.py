@@ -166,7 +166,7 @@ ROWS = "\n".join(f"{n * 1e-4:.4f}, 1.5" for n in range(20))
             f"{HEADING}\n{ROWS}\n0.002, fast",
             r"line 22: column 'gear_speed \[rad/s\]', row 21 is 'fast', no number",
         ),
-        (f"{HEADING}\n{ROWS}\n0.002", "line 22: row 21 has 1 cells, but there are 2 headings"),
+        (f"{HEADING}\n{ROWS}\n0.002", "line 22: row 21 has 1 cell, but there are 2 headings"),
         (f"{HEADING}\n{ROWS}\n0.002, nan\n0.0021, 1.5", r"sample 20 \(0.002 s\) is missing"),
         (f"{HEADING}\n{ROWS}\n0.1, 1.5", "off the uniform grid"),
         (f"{HEADING}\n0, 1.5", "16 samples or more"),

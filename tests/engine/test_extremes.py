@@ -92,7 +92,7 @@ def test_a_resumed_run_keeps_the_same_extremes():
         scene,
         lambda *_: None,
         backend="native",
-        begin=engine.Start(checkpoint=start.checkpoint, time=start.time),
+        start=engine.Start(checkpoint=start.checkpoint, reached=start.time),
     )
     assert repr(again.extremes) == repr(ended.extremes)  # to the last bit, NaN too
 

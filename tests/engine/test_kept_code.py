@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from gearidae.compiled import cache
-from gearidae.engine.sundials import self_test
+from gearidae.engine import self_test
 
 PROGRAM = """
 import logging

@@ -120,8 +120,8 @@ def test_a_run_that_goes_on_is_equal_to_one_without_a_break():
         first = scene.replace({"run.duration": share * scene.run.duration})
         second = scene.replace({"run.duration": (1.0 - share) * scene.run.duration})
         begun = solve(first)
-        origin = gd.engine.end_of(first, begun.checkpoint, 0.0)
-        found = solve(second, origin=origin)
+        start = gd.engine.end_of(first, begun.checkpoint, 0.0)
+        found = solve(second, start=start)
         # a break restarts the solver: equal within what its tolerance does
         assert found.extremes.final_speed == pytest.approx(whole.extremes.final_speed, rel=1e-5, abs=0)
         assert found.statistics.skipped["elastic_deflection"] == int(share > 0.5)

@@ -34,7 +34,6 @@ def test_nothing_is_said_of_the_shipped_cases(case):
         (LOW, {"surface.roughness": 10e-6}, "addendum of the teeth, 3.89 um"),
         (LOW, {"surface.asperity_radius": 5e-6}, "surface.asperity_radius = 5 um is larger than the tooth"),
         (LOW, {"surface.asperity_density": 1e11}, "asperities stand 3.16 um apart"),
-        (LOW, {"run.duration": 1e6}, "this run is expected to take 7.4 h"),
         (
             LOW,
             {"load.harmonic": {"amplitude": 1e-18, "frequency": 1e3}},

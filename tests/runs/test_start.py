@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearidae.engine.model.build import Begin, make_problem
 
 import gearidae as gd
 from gearidae.archive.end_state import end_state_of, packed_state
@@ -16,6 +15,8 @@ from gearidae.archive.run_summary import counted_over
 from gearidae.cli.tables import show_account
 from gearidae.engine.continuing import checkpoint_of_start, end_of
 from gearidae.engine.model.state import EMPTY
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.start import Start
 from gearidae.errors import SceneError
 from gearidae.records import EventKind
 from gearidae.report.tables import account_table
@@ -252,7 +253,7 @@ def test_bad_starts(tmp_path):
 
 
 def test_a_damaged_state_is_refused_or_checked():
-    """Text that is none, words cut short, another layout, another scene, and numbers that no run leaves."""
+    """Text that is none, words cut short, another layout, another scene, and what is no number."""
     first = gd.simulate(LOW)
     words, _ = end_state_of(first)
     text = first.attrs["end_state"]
@@ -267,7 +268,6 @@ def test_a_damaged_state_is_refused_or_checked():
     refused(end_state=packed_state(words[:-3]))
     refused(start_time=float("nan"))
     refused(start_time="x")
-    refused(start_time=1.0)
     refused(scene=json.dumps(LOW.replace({"coating.sam_fraction": 0.7}).to_dict()))
     for place, value in ((0, 1.0), (1, 5.0), (5, 3.0), (6, 9.0)):
         changed = words.copy()
@@ -401,7 +401,7 @@ UNITS = {
 
 def kept(scene, words, start):
     """Extremes, energy balance and the histories' rates (SI) in a checkpoint."""
-    problem = make_problem(scene, begin=Begin(start, 0.0)).of_checkpoint(words)
+    problem = make_problem(scene, start=Start(start, 0.0)).of_checkpoint(words)
     problem.prepare(scene.run.rtol, scene.run.sample_count)
     time, y = problem.restored(words)
     balance, extremes = problem.kept(time, y, np.zeros_like(y))
@@ -431,12 +431,12 @@ def test_every_number_of_a_chain_is_the_same_in_other_units():
     assert float(run.time_adhering) > 0.01
     for change in UNITS.values():
         words, start = end_state_of(run)
-        before, origin = kept(scene, words, start), end_of(scene, words, start)
+        before, at_end = kept(scene, words, start), end_of(scene, words, start)
         scene = WORN.replace({"run.duration": "1 ms"} | change)
-        after = kept(scene, checkpoint_of_start(scene, origin), origin.time)
+        after = kept(scene, checkpoint_of_start(scene, at_end), at_end.time)
         for name, number in before.items():
             # sums are rounded as sums are: energies over all that was exchanged, times over the time of the chain
-            size = {"energy": before["energy throughput"], "time": origin.time}.get(
+            size = {"energy": before["energy throughput"], "time": at_end.time}.get(
                 re.split("[ _]", name)[0], 0.0
             )
             size = max(size, np.max(np.abs(number), initial=0.0))

@@ -69,7 +69,7 @@ WRONG = [
     ("mesh.damping", 1e10, "must lie in 0..1e+09"),
     ("initial.gear_speed", 1e13, "must lie in -1e+12..1e+12 rad/s"),
     ("initial.gear_speed", 1e-31, "0 or at least 1e-30 in size"),
-    ("initial.gap", 1e-24, "cannot be told beside backlash and roughness"),
+    ("initial.gap", 1e-24, "cannot be resolved beside backlash and roughness"),
     ("run.duration", 1e-300, "must lie in 1e-20..1e+12 s"),
     ("run.duration", 1e13, "must lie in 1e-20..1e+12 s"),
     ("drive.schedule", [[1.0, 1.0], [1.0 + 1e-15, 2.0]], "too close to step between"),

@@ -78,7 +78,7 @@ def test_encodings_of_windows_programs(encoding, tmp_path):
     ("row", "reason"),
     [
         ("0,4.5,1", "line 3: row 2 has 3 cells, but there are 2 headings: if a comma is the decimal sign"),
-        ("1", "line 3: row 2 has 1 cells, but there are 2 headings"),
+        ("1", "line 3: row 2 has 1 cell, but there are 2 headings"),
         ("1,", "line 3: column 'v', row 2 is empty"),
         ("1,x", "line 3: column 'v', row 2 is 'x', no number"),
         ("1,nan", "line 3: column 'v', row 2 is nan, not a finite number"),

@@ -220,6 +220,26 @@ def test_command(heights, tmp_path, monkeypatch, capfd):
     assert "--size" in capfd.readouterr().err
 
 
+def test_lines_of_a_scan_are_aligned(heights, tmp_path, monkeypatch, capfd):
+    """Also those of SurfaceTopography, whose first index runs along a line."""
+    monkeypatch.chdir(tmp_path)
+    lines = np.nan_to_num(heights) + 2e-9 * np.random.default_rng(1).standard_normal(128)[:, None]
+    np.save("scan.npy", lines)
+    fake = SimpleNamespace(read_topography=lambda name: Other(1e6 * lines.T, (1.0, 1.0), "um"))
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", fake)
+    (tmp_path / "scan.ibw").write_bytes(b"not for us")
+    for name, size in (("scan.npy", ["--size", "1 um"]), ("scan.ibw", [])):
+        assert main(["surface", name, *size, "--cutoff", "60 nm"]) == 0
+        assert "Note: Line noise: rows are offset against each other by" in capfd.readouterr().out
+        assert main(["surface", name, *size, "--cutoff", "60 nm", "--align-rows", "-o", f"{name}.toml"]) == 0
+        printed = capfd.readouterr().out
+        assert "Line noise" not in printed
+        assert "count from the summits' mean plane" in printed
+        assert "; rows aligned" in (tmp_path / f"{name}.toml").read_text()
+    assert main(["surface", "scan.ibw", "--size", "1.1 um"]) == 0
+    assert "the file states an extent of 1 um, 1 um; --size replaces it" in capfd.readouterr().out
+
+
 def test_picture_shows_both_ways(heights):
     found = gd.surface_from(heights, "1 um", "60 nm")
     figure = gd.plot.surface(found.statistics, found.cutoff)

@@ -3,76 +3,157 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict
 
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
+from gearidae.analysis.record_columns import Column, find_columns, has_columns
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
+from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
-from gearidae.scene.text_table import check_regular, listed, split_unit
+from gearidae.scene.text_table import check_regular
 
-__all__ = ["read_signal"]
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Reading", "read_signal"]
+
+Floats = NDArray[np.float64]
 
 _SI = {"time": "s", "gear_speed": "rad s-1"}
-_NAMES = {"t": "time", "time": "time", "speed": "gear_speed", "gear_speed": "gear_speed"}
-_EXAMPLE = "the first line must name the columns and their units, such as: time [s], gear_speed [rad/s]"
+_SETTINGS = ("columns", "skip", "delimiter", "decimal", "bridge")
+_DELIMITERS = {
+    "tab": "\t",
+    "tabs": "\t",
+    "\\t": "\t",
+    "semicolon": ";",
+    "comma": ",",
+    "blank": "",
+    "blanks": "",
+    " ": "",
+}
 _LARGEST = 2**30
 """Files larger than this [bytes] are refused: a record of a minute at 100 kHz has a tenth of it."""
 
 
-def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
+class Reading(TypedDict, total=False):
+    """How to read a record; see `read_signal`."""
+
+    columns: Sequence[str] | None
+    skip: int | None
+    delimiter: str | None
+    decimal: str | None
+    bridge: int
+
+
+def read_signal(
+    signal: str | os.PathLike[str] | pd.DataFrame,
+    *,
+    columns: Sequence[str] | None = None,
+    skip: int | None = None,
+    delimiter: str | None = None,
+    decimal: str | None = None,
+    bridge: int = 0,
+) -> xr.Dataset:
     """Read a record of the gear's speed.
 
     Parameters
     ----------
-    path : path-like
-        A CSV file whose first line names two columns and their units, ``time [s], gear_speed [rad/s]`` (other columns
-        are ignored, lines that begin with ``#`` too; separated by comma, semicolon or tab). The names may also stand in
-        a comment before the numbers, as ``numpy.savetxt(..., header="time [s], gear_speed [rad/s]")`` writes them; the
-        numbers below may then be separated by blanks. Or a netCDF file with the variables ``time`` and ``gear_speed``
-        and their attributes ``units``.
+    signal : path-like or DataFrame
+        A text file with a line of headings that name the columns and their units, ``time [s], gear_speed [rad/s]``; a
+        table with such columns; or a netCDF file with the variables ``time`` and ``gear_speed`` and their attributes
+        ``units``. In text, the headings may stand below other lines, their units in the line below them, or both in a
+        remark (after ``#``) as ``numpy.savetxt`` writes them. Other columns are ignored.
+    columns : pair of str, optional
+        Headings of time and speed, with the units where the headings have none; variables of a netCDF file. By default
+        the columns called ``time`` (or ``t``) and ``gear_speed`` (or ``speed``), or else the only ones with a unit of
+        time and of angular speed.
+    skip : int, optional
+        Lines above that of the headings, which is recognised by the columns otherwise.
+    delimiter : str, optional
+        What separates the cells: ``;``, ``,``, ``tab``, ``blanks`` or another character; recognised by default.
+    decimal : {'.', ','}, optional
+        Decimal sign; recognised by default.
+    bridge : int, optional
+        Missing samples in a row that are interpolated. A longer gap is an error; what is missing at the end is not part
+        of the record.
 
     Returns
     -------
     Dataset
-        ``gear_speed`` [rad/s] along ``time`` [s]; events and scene if the file is an archive.
+        ``gear_speed`` [rad/s] along ``time`` [s]; events and scene if the file is an archive. The attribute ``reading``
+        says in words what was recognised: separator, decimal sign, skipped lines, columns, interpolated samples.
 
     Raises
     ------
     SceneError
-        If the file cannot be read, lacks a column or a unit, or holds what is no number or an uneven time.
+        If the record cannot be read, lacks a column or a unit, or holds what is no number or an uneven time.
     """
-    source = Path(path)
+    table = {"skip": skip, "delimiter": delimiter, "decimal": decimal}
+    name = signal if isinstance(signal, str | os.PathLike) else type(signal).__name__
     try:
-        check_regular(source, _LARGEST)
-        with source.open("rb") as file:
-            head = file.read(8)
-        binary = head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF"))
-        ds = _from_netcdf(source) if binary else _from_csv(source)
-    except SceneError:
-        raise
-    except (OSError, ValueError) as error:
-        raise SceneError("signal", path, str(error)) from None
-    try:
+        wanted, most = _checked(columns, bridge), int(bridge)
+        if not isinstance(signal, str | os.PathLike):
+            _refuse(table, "a DataFrame")
+            ds = _from_frame(signal, wanted)
+        elif _is_netcdf(Path(signal)):
+            _refuse(table, "a netCDF file")
+            ds = _from_netcdf(Path(signal), wanted)
+        else:
+            ds = _from_text(Path(signal), wanted, table)
+        ds = _bridged(ds, most)
         signals(ds)  # refuses an uneven time and the like while the file can be named
     except SceneError as error:
-        raise SceneError("signal", path, f"{error.key} = {error.value}: {error.allowed}") from None
+        if error.key in _SETTINGS:
+            raise
+        raise SceneError("signal", name, f"{error.key} = {error.value}: {error.allowed}") from None
+    except (OSError, ValueError) as error:
+        raise SceneError("signal", name, str(error)) from None
     return ds
 
 
-def _from_netcdf(source: Path) -> xr.Dataset:
+def _checked(columns: Sequence[str] | None, bridge: int) -> tuple[str, str] | None:
+    """Refuse settings that are none."""
+    if isinstance(bridge, bool) or not isinstance(bridge, int) or bridge < 0:
+        raise SceneError("bridge", shorten(bridge), "must be a whole number of samples, 0 or more")
+    if columns is None:
+        return None
+    if isinstance(columns, str) or len(columns) != 2 or not all(isinstance(name, str) for name in columns):
+        raise SceneError(
+            "columns", shorten(columns), "must be two headings, that of the time and that of the speed"
+        )
+    return columns[0].strip(), columns[1].strip()
+
+
+def _refuse(table: Mapping[str, object], what: str) -> None:
+    for name, value in table.items():
+        if value is not None:
+            raise SceneError(name, shorten(value), f"is for text files; this is {what}")
+
+
+def _is_netcdf(source: Path) -> bool:
+    check_regular(source, _LARGEST)
+    with source.open("rb") as file:
+        return file.read(8).startswith((b"\x89HDF\r\n\x1a\n", b"CDF"))
+
+
+def _from_netcdf(source: Path, wanted: tuple[str, str] | None) -> xr.Dataset:
     check_heaps("signal", source)
     try:
         ds = loaded(source)
     except Exception as error:
         raise ValueError(f"is damaged or not a netCDF file ({error})") from error
-    for name in _SI:
-        if name not in ds.variables:
-            raise ValueError(f"lacks the variable {name}")
+    for name, asked in zip(_SI, wanted or _SI, strict=True):
+        if asked not in ds.variables:
+            raise ValueError(f"lacks the variable {asked}")
+        ds = ds if asked == name else ds.rename({asked: name})
         if "units" not in ds[name].attrs:
             raise ValueError(f"does not state the units of {name} (attribute units)")
     in_si = {
@@ -87,44 +168,93 @@ def _from_netcdf(source: Path) -> xr.Dataset:
     return ds.assign_coords({"time": in_si.pop("time")} if "time" in in_si else {}).assign(in_si)
 
 
-def _from_csv(source: Path) -> xr.Dataset:
-    table = open_table(source, largest=_LARGEST, names=_names, unit_row=True)
-    columns = _columns(table.headings)
-    numbers = table.numbers([place for place, _ in columns.values()], holes=True)
-    values = {
-        name: to_si(xr.DataArray(column, attrs={"units": unit}), _SI[name], f"{source.name}: {name}")
-        for column, (name, (_, unit)) in zip(numbers.T, columns.items(), strict=True)
-    }
+def _from_frame(frame: Any, wanted: tuple[str, str] | None) -> xr.Dataset:
+    if not (hasattr(frame, "columns") and hasattr(frame, "reset_index")):
+        raise ValueError("must be a file, a DataFrame, a Dataset or a DataArray")
+    if frame.index.name is not None:
+        frame = frame.reset_index()
+    found = find_columns([str(name) for name in frame.columns], wanted)
+    try:
+        columns = [frame.iloc[:, each.place].to_numpy(np.float64, na_value=np.nan) for each in found]
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"must hold numbers ({error})") from None
+    return _dataset(columns, found, ())
+
+
+def _from_text(source: Path, wanted: tuple[str, str] | None, given: Mapping[str, Any]) -> xr.Dataset:
+    table = open_table(
+        source,
+        largest=_LARGEST,
+        names=lambda headings: has_columns(headings, wanted),
+        delimiter=_character(given["delimiter"]),
+        decimal=_decimal(given["decimal"]),
+        skip=_lines(given["skip"]),
+        unit_row=True,
+    )
+    found = find_columns(table.headings, wanted)
+    numbers = table.numbers([each.place for each in found], holes=True)
+    return _dataset(list(numbers.T), found, table.recognised)
+
+
+def _dataset(columns: Sequence[Floats], found: Sequence[Column], said: Sequence[str]) -> xr.Dataset:
+    """Put columns into SI units; say which they are where their names do not."""
+    time, speed = (
+        to_si(xr.DataArray(values, attrs={"units": each.unit}), unit, each.heading)
+        for values, each, unit in zip(columns, found, _SI.values(), strict=True)
+    )
+    said = [*said, *(f"{each.heading!r} taken for the {each.meaning}" for each in found if each.recognised)]
     return xr.Dataset(
-        {"gear_speed": ("time", values["gear_speed"], {"units": _SI["gear_speed"]})},
-        coords={"time": ("time", values["time"], {"units": "s"})},
+        {"gear_speed": ("time", speed, {"units": _SI["gear_speed"]})},
+        coords={"time": ("time", time, {"units": "s"})},
+        attrs={"reading": ", ".join(said)},
     )
 
 
-def _names(headings: Sequence[str]) -> bool:
-    """Whether texts are headings of the columns that are read."""
-    return set(_SI) <= {_known(heading) for heading in headings}
+def _bridged(ds: xr.Dataset, most: int) -> xr.Dataset:
+    """Interpolate gaps of at most so many samples; say how many samples that are."""
+    if most == 0 or ds["gear_speed"].dims != ("time",):
+        return ds
+    times, first = _filled(ds["time"].values, most)
+    speeds, second = _filled(ds["gear_speed"].values, most)
+    if not first + second:
+        return ds
+    count = "1 sample" if first + second == 1 else f"{first + second} samples"
+    said = ", ".join(filter(None, [ds.attrs.get("reading", ""), f"{count} bridged"]))
+    ds = ds.assign_coords(time=("time", times, ds["time"].attrs))
+    return ds.assign(gear_speed=("time", speeds, ds["gear_speed"].attrs)).assign_attrs(reading=said)
 
 
-def _known(heading: str) -> str | None:
-    """Which column of a record a heading names."""
-    return _NAMES.get(split_unit(heading)[0].lower().replace(" ", "_"))
+def _filled(values: Floats, most: int) -> tuple[Floats, int]:
+    """Values with short gaps interpolated, and how many they are."""
+    edges = np.flatnonzero(np.diff(np.isnan(values), prepend=False, append=False))
+    gaps = zip(edges[::2], edges[1::2], strict=True)
+    inside = [np.arange(a, b) for a, b in gaps if a > 0 and b < len(values) and b - a <= most]
+    if not inside:
+        return values, 0
+    missing, known = np.concatenate(inside), np.flatnonzero(~np.isnan(values))
+    filled = values.copy()
+    filled[missing] = np.interp(missing, known, values[known])
+    return filled, len(missing)
 
 
-def _columns(headings: Sequence[str]) -> dict[str, tuple[int, str]]:
-    """Place and unit of the time and the speed among the headings."""
-    found: dict[str, tuple[int, str]] = {}
-    for place, heading in enumerate(headings):
-        name = _known(heading)
-        if name is None:
-            continue
-        bare, unit = split_unit(heading)
-        if not unit:
-            raise ValueError(f"{bare!r} states no unit; {_EXAMPLE}")
-        if name in found:
-            raise ValueError(f"has two columns for {name}")
-        found[name] = (place, unit)
-    missing = [name for name in _SI if name not in found]
-    if missing:
-        raise ValueError(f"has no column {' nor '.join(missing)} among {listed(headings)}; {_EXAMPLE}")
-    return {name: found[name] for name in _SI}
+def _character(delimiter: str | None) -> str | None:
+    if delimiter is None:
+        return None
+    found = _DELIMITERS.get(delimiter.lower(), delimiter) if isinstance(delimiter, str) else "?"
+    if len(found) > 1 or found.isalnum() or found in ('"', ".", "?", "#", "\n", "\r"):
+        raise SceneError(
+            "delimiter", shorten(delimiter), "must be one character, such as ';', or tab or blanks"
+        )
+    return found
+
+
+def _decimal(decimal: str | None) -> str | None:
+    if decimal not in (None, ".", ","):
+        raise SceneError("decimal", shorten(decimal), "must be '.' or ','")
+    return decimal
+
+
+def _lines(skip: int | None) -> int | None:
+    if skip is not None and (isinstance(skip, bool) or not isinstance(skip, int) or skip < 0):
+        raise SceneError("skip", shorten(skip), "must be a whole number of lines, 0 or more")
+    return skip

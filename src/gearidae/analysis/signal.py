@@ -17,12 +17,14 @@ from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene.units import from_text
 
-__all__ = ["FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
+__all__ = ["CALIBRATION", "FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
 
 Floats = NDArray[np.float64]
 
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""
+CALIBRATION = 0.015
+"""Relative uncertainty of a speed of whose sensor nothing is known."""
 _UNEVEN = 0.1
 """Largest departure of a sample's time from the uniform grid, in sampling intervals."""
 _EXPONENT = re.compile(r"(?<=[A-Za-z])(-?\d)")
@@ -44,6 +46,8 @@ class Signal:
         Times at which tooth pairs left the mesh on the drive flank [s]; None if no events are known.
     gear_teeth : int or None
         Teeth of the gear, if the scene is known.
+    calibration : float
+        Relative uncertainty of the values, which all of them share [1].
     """
 
     start: float
@@ -51,6 +55,7 @@ class Signal:
     values: Floats
     exits: Floats | None = None
     gear_teeth: int | None = None
+    calibration: float = CALIBRATION
 
     @property
     def time(self) -> Floats:
@@ -260,7 +265,7 @@ def _until_end(values: Floats, name: str, time: Floats, late: int) -> Floats:
             name,
             values[first],
             f"sample {first + late} ({time[first + late]:.9g} s) is missing, within the record ({count} in all): "
-            "interpolate them, as .interpolate_na('time') does, or take a part without any",
+            "interpolate them (bridge=..., --bridge of a file; .interpolate_na('time')), or take a part without any",
         )
     return values[:end]
 

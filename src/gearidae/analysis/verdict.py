@@ -20,11 +20,11 @@ from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of
 from gearidae.archive.verdict import IRREGULAR_ABOVE, gear_verdict, in_touch, is_scheduled, roller_verdict
-from gearidae.records import EventKind
+from gearidae.records import RUN_PARTS, EventKind
 
 __all__ = ["IRREGULAR_ABOVE", "START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
 
-START_UP = 0.05
+START_UP = RUN_PARTS[0]
 """Share of the run in which the teeth may still bounce from how they were set down."""
 
 

@@ -14,10 +14,11 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.validity_table import show_validity
+from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
-from gearidae.scene.validity_row import contact_subject
+from gearidae.scene.validity_row import contact_subject, mean_note
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -49,7 +50,10 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     """
     scene = read_scene(case, settings)
     show_rows(_rows(scene))
-    show_validity(validity_rows(scene), about=contact_subject(roller=scene.roller is not None))
+    rows = validity_rows(scene)
+    show_validity(rows, about=contact_subject(roller=scene.roller is not None))
+    if note := mean_note(rows):
+        say(f"Verdicts of runs are a {note}")
     for doubt in doubts(scene):
         say(f"Warning: {doubt}")
     return DONE
@@ -166,6 +170,6 @@ def _run(scene: Scene) -> Rows:
     yield "relative tolerance", f"{run.rtol:g}", ""
     yield (
         "expected wall time",
-        expected.words(),
+        in_words(expected.seconds),
         f"{expected.steps:.2g} steps, within a factor of about three",
     )

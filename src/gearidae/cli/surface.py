@@ -13,6 +13,8 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.surface_table import show_surface
 from gearidae.errors import SceneError
+from gearidae.scene.prefixes import with_prefix
+from gearidae.surfaces.files import read_lines
 
 __all__ = ["Choices", "analyse_scan"]
 
@@ -33,6 +35,8 @@ class Choices:
         ``summits`` or ``moments``.
     both_flanks : bool
         Whether both flanks are as rough.
+    align_rows : bool
+        Whether to align the lines of the scan.
     case : str or None
         Case file or preset whose surface is to be replaced; None for a table ``[surface]`` alone.
     """
@@ -42,6 +46,7 @@ class Choices:
     cutoff: str | None
     by: str
     both_flanks: bool
+    align_rows: bool
     case: str | None
 
 
@@ -79,13 +84,14 @@ def analyse_scan(
     for target in (output, picture):
         if target is not None:
             check_target(target, overwrite=overwrite, name="output")
-    heights, own_size = gd.surfaces.read_scan(scan, choices.unit)
+    heights, own_size = read_lines(scan, choices.unit)
     found = gd.surface_from(
         heights,
         _size(choices.size, own_size),
         choices.cutoff,
         by=choices.by,
         both_flanks=choices.both_flanks,
+        align_rows=choices.align_rows,
         source=scan.name,
     )
     text = None if output is None else _text(found, choices.case)
@@ -110,6 +116,9 @@ def _size(given: str | None, own: tuple[float, float] | None) -> str | tuple[flo
         parts = [part.strip() for part in given.split(",")]
         if len(parts) > 2:
             raise SceneError("--size", given, "must be one length or two")
+        if own is not None:
+            stated = ", ".join(with_prefix(length, "m", 4) for length in own)
+            say(f"Note: the file states an extent of {stated}; --size replaces it.")
         return parts[0] if len(parts) == 1 else (parts[0], parts[1])
     if own is None:
         raise SceneError("--size", "(none)", "is needed: this file does not tell its extent, such as 2 um")

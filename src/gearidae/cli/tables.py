@@ -16,8 +16,9 @@ from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes, imbalance
 from gearidae.archive.run_summary import counted_over
 from gearidae.archive.select import scene_of, swept_dims
-from gearidae.cli.output import complain, show
+from gearidae.cli.output import complain, say, show
 from gearidae.scene.prefixes import with_prefix
+from gearidae.scene.validity_row import ATTRIBUTE, holds_rows, mean_note, rows_from_json
 
 __all__ = ["label_text", "name_failures", "show_account", "show_outcomes", "show_rows"]
 
@@ -62,6 +63,9 @@ def show_outcomes(ds: xr.Dataset) -> None:
         cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome, rtol)
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
     show(table)
+    kept = ds.attrs.get(ATTRIBUTE)
+    if isinstance(kept, str) and holds_rows(kept) and (note := mean_note(rows_from_json(kept))):
+        say(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")
 
 
 def show_account(ds: xr.Dataset) -> None:

@@ -50,9 +50,9 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
         if _depth > 1:  # whoever is outside says it
             yield
             return
-        told = _Told(what, how_long)
-        stack.callback(told.end)
-        stack.enter_context(event.install_listener("numba:compile", told))
+        listener = CompileListener(what, how_long)
+        stack.callback(listener.end)
+        stack.enter_context(event.install_listener("numba:compile", listener))
         yield
 
 
@@ -68,8 +68,8 @@ def _leave() -> None:
     _depth -= 1
 
 
-class _Told(event.Listener):
-    """What numba tells when it compiles a function that it has not found on disk."""
+class CompileListener(event.Listener):
+    """Counts and shows the functions that numba compiles because it has not found them on disk."""
 
     def __init__(self, what: str, how_long: str) -> None:
         self._what, self._how_long = what, how_long

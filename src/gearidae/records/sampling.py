@@ -33,8 +33,10 @@ def first_sample(start: float, end: float, count: int) -> float:
     return whole if abs(due - whole) <= _ON_GRID * max(due, 1.0) else due
 
 
-def sample_times(start: float, duration: float, count: int) -> NDArray[np.float64]:
-    """Times of all samples of a run.
+def sample_times(
+    start: float, duration: float, count: int, numbers: range | None = None
+) -> NDArray[np.float64]:
+    """Times of the samples of a run.
 
     Parameters
     ----------
@@ -42,15 +44,17 @@ def sample_times(start: float, duration: float, count: int) -> NDArray[np.float6
         Of the run [s].
     count : int
         Samples, both ends included; 0 for none.
+    numbers : range, optional
+        Which of them, in steps of 1; by default all.
 
     Returns
     -------
-    ndarray, shape (count,)
+    ndarray
         [s]; of a run that begins at 0, `numpy.linspace`.
     """
-    if start == 0.0 or count < 2:
-        return np.linspace(0.0, duration, count)
-    first, spacing = first_sample(start, start + duration, count), duration / (count - 1)
-    grid = (first + np.arange(count, dtype=np.float64)) * spacing
-    grid[0], grid[-1] = start, start + duration
-    return grid
+    wanted = range(count) if numbers is None else numbers
+    number = np.arange(wanted.start, wanted.stop, dtype=np.float64)
+    times = (first_sample(start, start + duration, count) + number) * (duration / max(count - 1, 1))
+    times[number == count - 1] = start + duration
+    times[number == 0] = start
+    return times

@@ -12,6 +12,7 @@ __all__ = [
     "QUADRATURE_BOUND",
     "ROLLER_BOUND",
     "ROUNDING_BOUND",
+    "RUN_PARTS",
     "TABLE_BOUND",
     "TORQUE_BOUND",
     "TRAVEL_BOUND",
@@ -19,6 +20,8 @@ __all__ = [
     "Extremes",
 ]
 
+RUN_PARTS = (0.05, 0.5, 0.95)
+"""Where the parts of a run begin over which speeds are judged, as shares of it: start-up, half, last twentieth."""
 GEAR_BOUND = 10.0
 """Largest error of a gear pair's energies because of errors of the motion, in tolerances of the energy exchanged: the
 error of a step is a fraction of the tolerance, and errors and energies add up over the steps alike."""

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.errors import SceneError
-from gearidae.runs.pair_contact import pair_contact
+from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.scene import Drive, Gears, Load, Scene
 
 __all__ = [
+    "Rest",
     "balanced_speed",
     "effective_mass",
     "mean_drive_torque",
+    "rest_of",
     "resting_gap",
     "steady_speed",
 ]
@@ -23,6 +26,39 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """The contact that estimates are made for: a resting pair of teeth, or a roller at its closest approach.
+
+    Attributes
+    ----------
+    contact : PairContact
+        Of the pair at the pitch point, or of the roller.
+    gap : float
+        Where it rests under the mean torque, or the roller has come to [m]; NaN where nothing holds it.
+    load : float
+        Its force there [N].
+    mass : float
+        What oscillates [kg].
+    """
+
+    contact: PairContact
+    gap: float
+    load: float
+    mass: float
+
+
+def rest_of(scene: Scene, error: float = 1e-12) -> Rest:
+    """Find the contact that estimates are made for, its gap to an error in roughnesses; bodies are rigid."""
+    contact = pair_contact(scene)
+    if scene.roller is not None:
+        roller = scene.roller
+        gap = contact.closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
+        return Rest(contact, gap, math.nan if math.isnan(gap) else float(contact.force(gap)), roller.mass)
+    load = mean_drive_torque(scene) / _tables(scene)[0].pinion_base_radius
+    return Rest(contact, contact.resting_gap(load, error), load, effective_mass(scene))
 
 
 def effective_mass(scene: Scene) -> float:
@@ -128,8 +164,8 @@ def resting_gap(scene: Scene) -> float:
     SceneError
         If the scene has no gears.
     """
-    gears, _, _ = _tables(scene)
-    gap = pair_contact(scene).resting_gap(mean_drive_torque(scene) / gears.pinion_base_radius)
+    _tables(scene)
+    gap = rest_of(scene).gap
     return gap if gap >= _INNERMOST * scene.surface.roughness else math.nan
 
 

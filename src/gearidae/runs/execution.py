@@ -19,7 +19,6 @@ from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.running import runs_in_threads
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -61,14 +60,21 @@ class Execution:
     archive: str | os.PathLike[str] | None = None
     overwrite: bool = False
     resume: bool = False
+    method: str = "auto"
+    """Formulas of the solver, as the scenes have them: not every driver has all."""
 
     def __post_init__(self) -> None:
         check_jobs(self.jobs)
         check_executor(self.executor)
 
+    @property
+    def driver(self) -> str:
+        """Driver of the solver that computes the runs."""
+        return choose_backend(self.backend, self.method)
+
     def threads(self) -> int:
         """Return how many threads of this process compute at most; 0 if processes do, or somebody else's executor."""
-        return check_jobs(self.jobs) if self.executor is None and runs_in_threads(self.backend) else 0
+        return check_jobs(self.jobs) if self.executor is None and self.driver == "native" else 0
 
     @contextmanager
     def computing(self, calls: int) -> Iterator[Executor | None]:
@@ -142,7 +148,7 @@ def run_kept(
         store = make_store(target)
         _begin(how, store, scenes)
         if how.resume and not store.count() and target.exists():
-            whole = _whole(target, about, how.backend, read)
+            whole = _whole(target, about, how.driver, read)
             if whole is not None:
                 return whole
 
@@ -182,7 +188,7 @@ def _begin(how: Execution, store: Store, scenes: Sequence[Scene] | None) -> None
 
 
 def _whole(
-    target: Path, about: Mapping[str, Any], backend: str, read: Callable[[Path], xr.Dataset]
+    target: Path, about: Mapping[str, Any], driver: str, read: Callable[[Path], xr.Dataset]
 ) -> xr.Dataset | None:
     """Return the archive of this very study, None if runs of it are missing; refuse any other file."""
     try:
@@ -190,7 +196,7 @@ def _whole(
     except SceneError as error:
         raise SceneError("archive", target, f"exists and cannot be resumed: it {error.allowed}") from None
     differing = [name for name, value in about.items() if ds.attrs.get(name, "") != value]
-    if differing or ds.attrs.get("backend", "") not in ("", choose_backend(backend)):
+    if differing or ds.attrs.get("backend", "") not in ("", driver):
         ds.close()
         raise SceneError(
             "archive",

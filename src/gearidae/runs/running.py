@@ -16,7 +16,7 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "solve_to_end", "unsolved"]
+__all__ = ["early_end", "prepare", "solve", "solve_to_end", "unsolved"]
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
@@ -69,7 +69,7 @@ def solve(
     backend: str,
     on_progress: Callable[[float, int], None] | None = None,
     *,
-    origin: engine.Origin | None = None,
+    start: engine.Start = engine.AT_ONCE,
     on_block: engine.OnBlock | None = None,
 ) -> Solution:
     """Run a scene; a solver that cannot even start leaves an empty solution that says why.
@@ -81,8 +81,8 @@ def solve(
         As for `simulate`.
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
-    origin : Origin, optional
-        The end of another run to go on from.
+    start : Start, optional
+        Where the run begins, if it goes on from another.
     on_block : callable, optional
         Told every block of output; ends the run by returning True.
 
@@ -99,22 +99,17 @@ def solve(
             on_progress(time, events)
 
     try:
-        return engine.solve(scene, backend=backend, on_progress=report, origin=origin, on_block=on_block)
+        return engine.solve(scene, backend=backend, on_progress=report, start=start, on_block=on_block)
     except SolverError as error:
         return unsolved("failed", str(error))
 
 
-def solve_to_end(scene: Scene, backend: str, origin: engine.Origin | None = None) -> Solution:
+def solve_to_end(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
     """Run a scene as `solve` does; a run that Ctrl-C has cut off is no result, and raises `KeyboardInterrupt`."""
-    solution = solve(scene, backend, origin=origin)
+    solution = solve(scene, backend, start=start)
     if solution.status == "interrupted":
         raise KeyboardInterrupt
     return solution
-
-
-def runs_in_threads(backend: str) -> bool:
-    """Whether a backend solves outside Python's lock, so that threads of one process work side by side."""
-    return engine.choose_backend(backend) == "native"
 
 
 def unsolved(status: str, message: str) -> Solution:

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.sample_table import SampleTable
-from gearidae.archive.stack import Axis, held, stack, swept_values, zipped_keys
+from gearidae.archive.stack import Axis, stack, swept_values, zipped_keys
 from gearidae.errors import SceneError
 from gearidae.records import Solution
+from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,7 +116,7 @@ def plan_sweep(
     for group, length in zip(groups, map(len, steps), strict=True):
         stride //= length
         own = [scenes[index * stride] for index in range(length)]
-        axis = {key: [held(scene, key) for scene in own] for key in group}
+        axis = {key: [scene_value(scene, key) for scene in own] for key in group}
         leader = next(iter(axis))
         seen = set()
         for index, value in enumerate(axis[leader]):

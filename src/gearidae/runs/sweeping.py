@@ -9,7 +9,6 @@ from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
 from gearidae.archive.keep import EVERYTHING, Keep, read_keep
-from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.batch import Batch
@@ -113,7 +112,7 @@ def sweep(
     parts = read_keep(keep, base)
     if not parts.columns(base):
         base = base.replace({"run.samples": "off"})
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     return run_study(plan_sweep(base, over, zipped=zipped), how, {}, keep=parts)
 
 
@@ -164,7 +163,7 @@ def run_study(
 
     return run_kept(
         how,
-        lambda target: KeptRuns(target, plan.base, choose_backend(how.backend), keep),
+        lambda target: KeptRuns(target, plan.base, how.driver, keep),
         work,
         expected,
         scenes=plan.scenes,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final, get_args
+from typing import TYPE_CHECKING, Any, Final, get_args
 
 from pydantic.fields import FieldInfo
 
@@ -16,10 +16,16 @@ from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Count, Quantity
 
-__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put"]
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
+
+__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put", "scene_value"]
 
 _LONGEST_KEY = 200
-INSTEAD: Final = {"gears.module": "gears.pinion_base_radius"}
+INSTEAD: Final = {
+    "gears.module": ("gears.pinion_base_radius",),
+    "gears.density": ("gears.pinion_inertia", "gears.gear_inertia"),
+}
 """Keys that are given in the place of others, in which a scene keeps what they say."""
 
 
@@ -129,7 +135,8 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     if isinstance(inside, list) and len(inside) == 1 and not last.isdecimal():
         inside = inside[0]
     if isinstance(inside, dict) and key in INSTEAD and not _is_nothing(value):
-        inside.pop(INSTEAD[key].rpartition(".")[2], None)
+        for other in INSTEAD[key]:
+            inside.pop(other.rpartition(".")[2], None)
     if isinstance(inside, dict) and info.default == () and _is_nothing(value):
         inside.pop(last, None)
     elif isinstance(inside, dict):
@@ -138,6 +145,16 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
         inside[int(last)] = value
     else:
         raise SceneError(key, shorten(value), "this scene has no such table or entry to change")
+
+
+def scene_value(scene: Scene, key: str) -> Any:
+    """Return the value of a dotted key in SI units, as plain data; None where the scene has none."""
+    inside: Any = scene.to_dict()
+    for part in key.split("."):
+        if isinstance(inside, list) and len(inside) == 1 and not part.isdecimal():
+            inside = inside[0]  # a list of one may go without its number
+        inside = _entry(inside, part)
+    return inside
 
 
 def _is_nothing(value: object) -> bool:

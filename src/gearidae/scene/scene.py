@@ -223,11 +223,12 @@ class Scene(Group):
         """
         if not isinstance(changes, Mapping):
             raise SceneError("replace", shorten(changes), "must be a mapping from dotted keys to values")
-        for key, other in INSTEAD.items():
-            if changes.get(key) is not None and other in changes:
-                raise SceneError(
-                    key, shorten(changes[key]), f"cannot be given beside {other}: choose one of the two"
-                )
+        for key, others in INSTEAD.items():
+            for other in others:
+                if changes.get(key) is not None and other in changes:
+                    raise SceneError(
+                        key, shorten(changes[key]), f"cannot be given beside {other}: choose one of the two"
+                    )
         touched = {key.partition(".")[0] for key in changes if isinstance(key, str)}
         # tables that stay are shared: they have been checked, and a scene of an ensemble takes few kilobytes
         data: dict[str, Any] = {

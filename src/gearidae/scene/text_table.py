@@ -98,7 +98,8 @@ class TextTable:
                         cells.pop()
                     if len(cells) != width:
                         raise ValueError(
-                            f"line {line[0]}: row {row} has {len(cells)} cells, but {self._expected(width)}"
+                            f"line {line[0]}: row {row} has {len(cells)} cell{'s' * (len(cells) != 1)}, but "
+                            f"{self._expected(width)}"
                         )
                     yield line[0], row, cells
             except csv.Error as error:

@@ -108,7 +108,7 @@ def calibrate(
     keys = tuple(each.key for each in distributions)
     chosen = _check(method, len(keys), points, steps, seed)
     seen = _checked(observations, base, keys)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     settings = {"method": chosen, "points": points, "steps": steps, "seed": seed}
     about = _attributes(base, distributions, seen, settings)
     predictor = Predictor(base, keys, seen, how)

@@ -20,9 +20,9 @@ from gearidae.analysis.impacts import WIDTH, check_width
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
-from gearidae.archive.stack import held
 from gearidae.errors import SceneError
 from gearidae.scene import describe_key
+from gearidae.scene.keys import scene_value
 from gearidae.studies.products import open_map
 from gearidae.studies.requirements import require_gears
 
@@ -114,7 +114,6 @@ def coating_map(
     >>> chart = gd.analysis.coating_map(scene, [1.0, 0.8, 0.6, 0.5])  # doctest: +SKIP
     """
     # reading and drawing maps must not wait for the solver
-    from gearidae.engine import choose_backend
     from gearidae.runs.execution import Execution, origin_of, run_kept
     from gearidae.runs.kept_runs import KeptRuns
     from gearidae.runs.sweeping import run_plan
@@ -123,7 +122,7 @@ def coating_map(
     fractions = _fractions(sam_fraction)
     width = check_width(width)
     keys = _further_keys(scene, over)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, scene.run.method)
     plans = _plans(scene, fractions, keys, backend)
     numbers = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
 
@@ -135,7 +134,7 @@ def coating_map(
     settings = json.dumps({_FRACTION: fractions, **numbers, "width": width})
     return run_kept(
         how,
-        lambda target: KeptRuns(target, plans[0].base, choose_backend(backend)),
+        lambda target: KeptRuns(target, plans[0].base, how.driver),
         work,
         {**origin_of(scene), "settings": settings},
         read=open_map,
@@ -220,7 +219,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
 
 def _number(scene: Scene, key: str, value: Any) -> Any:
     """A swept value in SI units, as the scene holds it."""
-    return held(scene.replace({key: value}), key)
+    return scene_value(scene.replace({key: value}), key)
 
 
 def _assembled(lines: list[xr.Dataset], keys: Mapping[str, list[Any]]) -> xr.Dataset:

@@ -99,7 +99,7 @@ def ensemble(
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
     distributions = read_distributions(base, vary)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
     texts = names_of(distributions)
     values = {each.key: drawn.values[:, number] for number, each in enumerate(distributions)}

@@ -19,7 +19,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.engine import choose_backend
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.execution import Execution, origin_of, run_kept
@@ -142,7 +141,7 @@ def life(
     coverage = coverage_of(base, resolved, places)
     length = Cycles(settle, count, tolerance)
     window = window_scene(base, length, places)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     found = Life()
     windows = Windows(window, coverage, law, length, starts, backend)
     direct = DirectCycles(windows)
@@ -168,7 +167,7 @@ def life(
     settings = [law.describe(), passages, fraction, resolved, places, cycles, settle, starts]
     return run_kept(
         how,
-        lambda target: KeptRuns(target, window, choose_backend(backend)),
+        lambda target: KeptRuns(target, window, how.driver),
         work,
         {**origin_of(scene), "settings": json.dumps([*settings, tolerance, bracket, frequency])},
         read=open_life,

@@ -215,17 +215,17 @@ class DirectCycles:
         """Bring the gears into steady motion at a coverage."""
         windows = self.windows
         window = steady_window(windows.scene_at(state), windows.cycles, windows.backend)
-        if window.origin is None:
+        if window.start is None:
             raise GearStuck(passages)
         assert window.solution.extremes is not None
         self.run += window.solution.extremes.mesh_exits
-        return _BetweenCycles(passages, state, window.origin, window.solution)
+        return _BetweenCycles(passages, state, window.start, window.solution)
 
     def _next(self, here: _BetweenCycles) -> _BetweenCycles:
         """Simulate a cycle."""
         windows, state = self.windows, here.state
         scene = part_of(windows.scene_at(state), 1, windows.cycles.total, _PATIENCE)
-        found = solved(scene, windows.backend, here.origin)
+        found = solved(scene, windows.backend, here.start)
         if stands(found, scene) or found.checkpoint is None:
             raise GearStuck(here.passages + self.cycle)
         seen = self._see(scene, found, here)
@@ -233,18 +233,19 @@ class DirectCycles:
         self.run += 1
         windows.say()
         after = np.clip(state + seen.rate * self.cycle, 0.0, 1.0)
-        origin = engine.end_of(scene, found.checkpoint, here.origin.time)
-        return _BetweenCycles(here.passages + self.cycle, after, origin, found, here.passages, state)
+        start = engine.end_of(scene, found.checkpoint, here.start.time)
+        return _BetweenCycles(here.passages + self.cycle, after, start, found, here.passages, state)
 
     def _see(self, scene: Scene, found: Solution, here: _BetweenCycles) -> StateResult:
         """What a cycle has shown; where the coverage is that of the run before, its exposures go on."""
         assert found.extremes is not None
         assert scene.gears is not None
-        same = scene.coating == here.origin.scene.coating
+        assert here.start.scene is not None
+        same = scene.coating == here.start.scene.coating
         exposures = gained(found, here.run if same else None, scene)
         exposure = self.windows.coverage.exposure(scene, with_exposures(found, exposures), 1, here.state)
         assert found.reached is not None
-        speed = 2.0 * math.pi / (scene.gears.gear_teeth * (found.reached - here.origin.time))
+        speed = 2.0 * math.pi / (scene.gears.gear_teeth * (found.reached - here.start.time))
         rate = self.windows.law.rate(here.state, exposure)
         return StateResult(False, rate, (exposure,), speed, found.extremes.min_gear_speed)
 
@@ -257,8 +258,8 @@ class _BetweenCycles:
     ----------
     passages, state
         Where the next cycle begins.
-    origin : Origin
-        End of the cycle before.
+    start : Start
+        Of the next cycle, at the end of the one before.
     run : Solution
         That cycle.
     before, turned
@@ -267,7 +268,7 @@ class _BetweenCycles:
 
     passages: float
     state: Floats
-    origin: engine.Origin
+    start: engine.Start
     run: Solution
     before: float = math.nan
     turned: Floats = field(default_factory=lambda: np.empty(0))

@@ -138,7 +138,7 @@ def lives(
     values = {each.key: drawn[:, number] for number, each in enumerate(distributions)}
     laws = drawn_laws(law, values, int(size), texts)
     members = list(zip(_scenes(base, values, int(size), texts), laws, strict=True))
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
 
     def work(kept: _KeptLives | None) -> xr.Dataset:
@@ -203,7 +203,10 @@ class _Common:
         """Where the life of a member is kept: a hash of all that it depends on."""
         if self.folder is None:
             return None
-        about = {**circumstances(scene, choose_backend(self.backend)), "settings": self.settings}
+        about = {
+            **circumstances(scene, choose_backend(self.backend, scene.run.method)),
+            "settings": self.settings,
+        }
         return self.folder / f"{name_of(scene, {**about, 'law': law.describe()})}.nc"
 
 

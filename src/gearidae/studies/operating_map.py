@@ -88,7 +88,7 @@ def operating_map(
         raise SceneError(
             "over", over if not isinstance(over, Mapping) else ", ".join(map(str, over)), allowed
         )
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     plan = plan_sweep(base, over)
 
     def finish(ds: xr.Dataset) -> xr.Dataset:

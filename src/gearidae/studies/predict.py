@@ -69,7 +69,7 @@ def predict(
     """
     check_design(size, "random", seed, indices=False)
     base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     values = posterior_draws(posterior, size, seed)
     source = dict.fromkeys(values, "the posterior")
     plan = member_plan(base, values, source)

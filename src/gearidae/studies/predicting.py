@@ -15,13 +15,12 @@ from gearidae.analysis.ringing import characteristic_frequency
 from gearidae.analysis.verdict_codes import sticking, verdict_codes
 from gearidae.archive.keep import read_keep
 from gearidae.archive.select import runs
-from gearidae.archive.stack import held
-from gearidae.engine import choose_backend
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import run_plan
+from gearidae.scene.keys import scene_value
 from gearidae.studies.observations import RING, STICKS, Observation
 
 if TYPE_CHECKING:
@@ -72,7 +71,7 @@ class Predictor:
 
     def store(self, archive: Path) -> KeptRuns:
         """Make the folder of finished runs beside an archive."""
-        return KeptRuns(archive, self._base, choose_backend(self._how.backend), self._keep)
+        return KeptRuns(archive, self._base, self._how.driver, self._keep)
 
     def figures(self, values: Floats, progress: bool | SweepProgress = False) -> Floats:
         """Predict all observations.
@@ -123,7 +122,7 @@ class Predictor:
         for first in range(0, len(scenes), size):
             part = list(scenes[first : first + size])
             axis: dict[str, list[Any]] = {"name": [f"run {first + number}" for number in range(len(part))]}
-            axis |= {key: [held(scene, key) for scene in part] for key in self._varied}
+            axis |= {key: [scene_value(scene, key) for scene in part] for key in self._varied}
             how = replace(self._how, progress=progress)
             read += self._read(run_plan(SweepPlan(self._base, (axis,), part), how, self.kept, self._keep))
         return read

@@ -23,7 +23,7 @@ import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.execution import interruptible
 from gearidae.runs.executors import check_executor, side_by_side
 from gearidae.runs.simulation import simulate
+from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -215,23 +216,13 @@ def _differentiate(runs: _Runs, middle: float, size: float, rtol: float) -> Sens
 
 def _number(scene: Scene, key: str) -> float:
     """Return the number that a key holds."""
-    scene.replace({key: _held(scene, key)})  # names a key that there is not
-    value = _held(scene, key)
+    value = scene_value(scene, key)
+    scene.replace({key: value})  # names a key that there is not
     if isinstance(value, str):
         value = functools.reduce(getattr, key.split("."), scene)  # a gap in roughnesses is a length here
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise SceneError(key, str(value)[:40], "must hold a number to differentiate by")
     return float(value)
-
-
-def _held(scene: Scene, key: str) -> Any:
-    inside: Any = scene.to_dict()
-    for part in key.split("."):
-        if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
-            inside = inside[int(part)]
-        else:
-            inside = inside.get(part) if isinstance(inside, dict) else None
-    return inside
 
 
 def _figure(of: str | Figure) -> Figure:

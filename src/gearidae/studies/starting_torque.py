@@ -17,7 +17,6 @@ from scipy.optimize import brentq
 
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
-from gearidae.engine import choose_backend
 from gearidae.errors import SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
@@ -151,8 +150,8 @@ def starting_torque(
     _require(scene, impacts)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
     base = prepare(scene, rtol=None, t_end=None, samples=None, backend=backend)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     fractions, scenes = _coatings(base, sam_fraction)
     least = _lowest(scene, lowest)
 
@@ -168,7 +167,7 @@ def starting_torque(
 
     return run_kept(
         how,
-        lambda target: KeptRuns(target, base, choose_backend(backend)),
+        lambda target: KeptRuns(target, base, how.driver),
         work,
         {**origin_of(scene), "settings": json.dumps([fractions, impacts, least, simulated, tolerance])},
         read=lambda path: open_product(path, "starting_torque")[0],

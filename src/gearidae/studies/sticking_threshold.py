@@ -20,7 +20,6 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.provenance import provenance
-from gearidae.engine import choose_backend
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import steady_speed
@@ -113,7 +112,7 @@ def sticking_threshold(
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
     _check(base, exits, width)
     base = base.replace({"run.duration": _window(base, exits)})
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
     most = 2 + (_PARTS - 1) * rounds * len(waits)
@@ -130,7 +129,7 @@ def sticking_threshold(
 
     return run_kept(
         how,
-        lambda target: KeptRuns(target, base, choose_backend(backend)),
+        lambda target: KeptRuns(target, base, how.driver),
         work,
         {**origin_of(scene), "settings": json.dumps([over, *ends, exits, width])},
         read=lambda path: open_product(path, "sticking_threshold")[0],

@@ -18,7 +18,7 @@ from gearidae.scene.table_head import open_table
 from gearidae.scene.text_table import check_regular
 from gearidae.scene.units import from_text
 
-__all__ = ["Scan", "read_scan"]
+__all__ = ["Scan", "read_lines", "read_scan"]
 
 _TEXTS = (".csv", ".txt", ".dat")
 _LARGEST = 2**32  # bytes
@@ -78,8 +78,26 @@ def read_scan(path: str | os.PathLike[str], unit: str | None = None) -> Scan:
     except SceneError:
         raise
     except (ValueError, TypeError, EOFError, OSError) as error:
-        raise SceneError("surface scan", path, f"is no table of heights: {shorten(str(error))}") from None
+        raise SceneError("surface scan", path, f"is no table of heights: {error}") from None
     return _by_surface_topography(path, unit)
+
+
+def read_lines(path: Path, unit: str | None = None) -> Scan:
+    """Read a height map with the lines of the scan as its rows; in SurfaceTopography they are its columns.
+
+    Parameters
+    ----------
+    path, unit
+        As for `read_scan`.
+
+    Returns
+    -------
+    Scan
+    """
+    scan = read_scan(path, unit)
+    if path.suffix.lower() in (".npy", *_TEXTS):
+        return scan
+    return Scan(scan.heights.T, None if scan.size is None else scan.size[::-1])
 
 
 def _factor(unit: str) -> float:

@@ -11,6 +11,7 @@ from scipy import ndimage, sparse
 from scipy.sparse import linalg
 
 from gearidae.errors import SceneError
+from gearidae.surfaces.lines import aligned_rows, line_noise
 
 __all__ = ["FEWEST_POINTS", "HeightMap", "height_map"]
 
@@ -38,6 +39,8 @@ class HeightMap:
         Slope of the plane that was taken out [1].
     curvature : float
         Largest curvature, in magnitude, of the paraboloid that was taken out [1/m].
+    rows_aligned : bool
+        Whether rows have been shifted against each other.
     """
 
     heights: Floats
@@ -45,6 +48,7 @@ class HeightMap:
     size: tuple[float, float]
     tilt: float
     curvature: float
+    rows_aligned: bool = False
 
     @property
     def spacing(self) -> float:
@@ -59,6 +63,11 @@ class HeightMap:
         return float(max(step / spacing for step, spacing in zip(steps, spacings, strict=True)))
 
     @property
+    def line_noise(self) -> tuple[float, float]:
+        """Root mean square offsets of rows and of columns against each other [m]; 0 where there is no line noise."""
+        return (0.0, 0.0) if self.rows_aligned else line_noise(self.heights, self.size)
+
+    @property
     def hole_count(self) -> int:
         """Number of holes; points that touch at an edge belong to one."""
         return int(ndimage.label(self.holes)[1])
@@ -69,7 +78,7 @@ class HeightMap:
         return float(self.holes.mean())
 
 
-def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
+def height_map(heights: Any, size: tuple[float, float], *, align_rows: bool = False) -> HeightMap:
     """Level a measured map and fill its holes.
 
     Parameters
@@ -78,6 +87,8 @@ def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
         Heights [m]; NaN, or masked, where there is none.
     size : tuple of float
         Extent along both indices [m].
+    align_rows : bool, optional
+        Whether to shift the rows so that the medians of their differences vanish.
 
     Returns
     -------
@@ -98,6 +109,7 @@ def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
             f"({100 * holes.mean():.3g} % missing)",
             f"at most {100 * _MOST_HOLES:g} % of the points may be missing",
         )
+    measured = aligned_rows(measured) if align_rows else measured
     shape, coefficients = _paraboloid(measured, holes)
     levelled = measured - shape
     spread = float(np.nanstd(levelled))
@@ -113,7 +125,7 @@ def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
         ]
     )
     largest = float(np.abs(np.linalg.eigvalsh(second)).max())
-    return HeightMap(_filled(levelled, holes), holes, size, float(np.hypot(*slopes)), largest)
+    return HeightMap(_filled(levelled, holes), holes, size, float(np.hypot(*slopes)), largest, align_rows)
 
 
 def _read(heights: Any) -> Floats:

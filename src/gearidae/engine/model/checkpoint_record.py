@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.engine.model.record_types import INT, MATERIALS, REAL, SCHEDULES, SLOTS_HIGH, record_type
+from gearidae.records import RUN_PARTS
 
 __all__ = [
     "ENERGY",
     "EXTREMES",
     "HISTORY",
     "PART",
-    "PARTS",
     "PROGRESS",
     "STATE",
     "STOPS",
@@ -73,9 +73,6 @@ PROGRESS: Final = record_type(  # of a driver
 STOPS: Final = ("time", "sticks", "turns")
 """What ends a run, by number."""
 
-PARTS: Final = (0.05, 0.5, 0.95)
-"""Where the parts of a run begin over which speeds are judged, as shares of it: start-up, half, last twentieth."""
-
 PART: Final = record_type(  # of a run, from where it begins to where the run stands
     ("begun", INT),
     ("lowest", REAL),  # speed of the gear
@@ -92,7 +89,7 @@ EXTREMES: Final = record_type(  # of a run so far, at accepted times and located
     ("bottom", REAL),
     ("fall", REAL),  # and how far it has fallen below the first and risen above the second
     ("rise", REAL),
-    ("part", PART, (len(PARTS),)),
+    ("part", PART, (len(RUN_PARTS),)),
     ("reversals", INT),  # how often the speed has fallen to zero
     ("held", INT),  # 1 while the gear has not turned on by half a pitch since one of them,
     ("held_time", REAL),  # the time and place of the first such, and the mesh exits until then

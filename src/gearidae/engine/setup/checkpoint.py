@@ -3,7 +3,8 @@
 A checkpoint holds state only: a header (layout, scene, contact model, sizes), the record ``STATE``, the state vector,
 of an elastic contact what its nodes remember, and the exposures of the flanks where they are kept. Constants, offsets
 and addresses are made from the scene by the process that resumes, never read, and so is what follows from the state.
-Every number is compared with what the scene allows (`gearidae.engine.setup.checkpoint_checks`) before anything runs.
+What compiled code uses as an index, a count or a flag is bounded (`gearidae.engine.setup.checkpoint_checks`) before
+anything runs.
 """
 
 from __future__ import annotations
@@ -13,16 +14,10 @@ from typing import Final
 
 import numpy as np
 
-from gearidae.engine.elastic.kept_rows import KEPT_ROWS, check_rows, kept_rows, restore_rows
+from gearidae.engine.elastic.kept_rows import KEPT_ROWS, kept_rows, restore_rows
 from gearidae.engine.followers.exposures.follow import exposures_of
 from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, copied, empty_history
-from gearidae.engine.setup.checkpoint_checks import (
-    check_histories,
-    check_state,
-    current_pairs,
-    refused,
-    require,
-)
+from gearidae.engine.setup.checkpoint_checks import check, refused
 
 __all__ = [
     "HEADER",
@@ -94,7 +89,7 @@ def depth_of(checkpoint: Floats, digest: tuple[float, ...]) -> int:
 
 
 def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
-    """Take a checkpoint back, once all its numbers have been checked against the scene.
+    """Take a checkpoint back, once its bounds have been checked.
 
     Parameters
     ----------
@@ -108,7 +103,7 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
     Raises
     ------
     SceneError
-        If a number is none that a run of this scene could have left.
+        If it is of another size, or `check` refuses it.
     """
     nodes = kept_rows(m).size
     count = nodes + int(m.scene.exposures)
@@ -122,13 +117,7 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
     # copies: compiled functions take arrays that may be written only
     vector, rows = checkpoint[ends[1] : ends[2]].copy(), checkpoint[ends[2] :].copy()
     rows, exposures = rows[:nodes], rows[nodes:]
-    require(bool(np.isfinite(vector).all()), "the state vector", "finite numbers")
-    require(bool(np.isfinite(rows).all()), "the nodes", "finite numbers")
-    require(bool((exposures >= 0.0).all() and (exposures < 1e100).all()), "the exposures", "finite sums")
-    check_state(m, state, vector)
-    check_histories(m, state, vector)
-    fault = check_rows(m, state, vector, rows, current_pairs(m, state, vector))
-    require(not fault, "the nodes", fault)
+    check(m, state, vector, rows, exposures)
     assign(m.state, state)
     y[:] = vector
     restore_rows(m, rows)

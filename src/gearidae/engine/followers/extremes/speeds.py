@@ -12,8 +12,9 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
-from gearidae.engine.model.state import PARTS, Floats, Model, Record
+from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.motion.dry_limit import is_pulled_back
+from gearidae.records import RUN_PARTS
 
 __all__ = ["come_to_stand", "follow_speed", "next_part", "note_hold", "note_speed"]
 
@@ -28,7 +29,7 @@ def note_speed(m: Model, w: float) -> None:
     """Note a speed; extremes have to come in the order of time."""
     e = m.state.extremes
     e.lowest_speed, e.highest_speed = min(e.lowest_speed, w), max(e.highest_speed, w)
-    for i in range(len(PARTS)):
+    for i in range(len(RUN_PARTS)):
         if e.part[i].begun != 0:
             e.part[i].lowest, e.part[i].highest = min(e.part[i].lowest, w), max(e.part[i].highest, w)
     if e.part[0].begun != 0:
@@ -39,9 +40,9 @@ def note_speed(m: Model, w: float) -> None:
 @compiled
 def next_part(m: Model) -> float:
     """Time at which the coming part of the run begins."""
-    for i in range(len(PARTS)):
+    for i in range(len(RUN_PARTS)):
         if m.state.extremes.part[i].begun == 0:
-            return float(m.scene.start + PARTS[i] * (m.scene.end - m.scene.start))
+            return float(m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start))
     return math.inf
 
 
@@ -122,8 +123,8 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
     """Begin those parts of the run whose time has come."""
     e, scale = m.state.extremes, m.scene.phase_rate
     h = now.time - last.time
-    for i in range(len(PARTS)):
-        time = m.scene.start + PARTS[i] * (m.scene.end - m.scene.start)
+    for i in range(len(RUN_PARTS)):
+        time = m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start)
         if e.part[i].begun != 0 or now.time < time:
             continue
         share = (time - last.time) / h if h > 0.0 else 1.0
