@@ -15,7 +15,7 @@ from gearidae.analysis.verdict_codes import VerdictCode, sticking, verdict_codes
 from gearidae.archive import to_dataset
 from gearidae.archive.verdict import verdict_of
 from gearidae.cli import main
-from gearidae.cli.studies import Request
+from gearidae.cli.request import Request
 from gearidae.errors import Interrupted
 from gearidae.records import EventKind
 from gearidae.runs import batch
@@ -239,7 +239,7 @@ def test_pictures(found, stuck):
     ],
 )
 def test_the_command_takes_processes_where_each_member_needs_tables_of_its_own(key, members, workers, kind):
-    request = Request("low", jobs=workers)
+    request = Request(jobs=workers)
     with request.executor([key], members) as executor:  # no process is started before the first run
         assert type(executor) is kind
 

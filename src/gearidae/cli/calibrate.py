@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
-from gearidae.cli.studies import Request, conduct
+from gearidae.cli.request import Request
+from gearidae.cli.studies import conduct
 from gearidae.cli.values import default_output, texts
 from gearidae.errors import SceneError
 from gearidae.scene.literal import literal
@@ -24,12 +25,18 @@ _EXAMPLE: Final = "'sticks=true; drive.torque=4.2e-18' or 'ring_frequency=5.2 kH
 
 
 def calibrate_case(
-    request: Request, vary: Sequence[str], seen: Sequence[str], observations: Path | None, **options: Any
+    case: str,
+    request: Request,
+    vary: Sequence[str],
+    seen: Sequence[str],
+    observations: Path | None,
+    **options: Any,
 ) -> int:
     """Calibrate keys of a case by observations.
 
     Parameters
     ----------
+    case : str
     request : Request
     vary : sequence of str
         Keys and their priors, ``key=normal(mean, standard deviation)``.
@@ -56,14 +63,15 @@ def calibrate_case(
     if not listed:
         raise SceneError("--seen", "(missing)", f"give what was observed, {_EXAMPLE}, or --observations FILE")
     options |= {"keys": priors, "members": len(listed) * int(options["points"])}
-    return conduct(request, "posterior", "Posterior", gd.studies.calibrate, priors, listed, **options)
+    return conduct(case, request, "posterior", "Posterior", gd.studies.calibrate, priors, listed, **options)
 
 
-def predict_case(request: Request, posterior: Path, *, size: int, seed: int) -> int:
+def predict_case(case: str, request: Request, posterior: Path, *, size: int, seed: int) -> int:
     """Run a case with the keys that were calibrated drawn from their posterior in a file."""
     known = gd.studies.open_posterior(posterior)
-    target = request.output or default_output(request.case, "_predicted.nc")
+    target = request.output or default_output(case, "_predicted.nc")
     return conduct(
+        case,
         replace(request, output=target),
         "ensemble",
         "Prediction",

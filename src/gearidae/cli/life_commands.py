@@ -6,8 +6,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from gearidae.cli.app import Case, Output, Overwrite, Settings, app
-from gearidae.cli.study_commands import Design, Jobs, Seed, Vary
+from gearidae.cli.app import Case, app
+from gearidae.cli.study_commands import USUAL, Design, Seed, Usual, Vary
 
 __all__ = ["life", "lives"]
 
@@ -43,17 +43,13 @@ def life(
     fraction: Fraction = 0.0,
     resolved: Resolved = "uniform",
     tolerance: Tolerance = 3e-3,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    overwrite: Overwrite = False,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished life in the output file.")] = False,
+    request: Usual = USUAL,
 ) -> int:
     """Follow the coverage over the passages of the teeth until the gear sticks."""
-    from gearidae.cli.studies import Request, follow_life
+    from gearidae.cli.studies import follow_life
 
-    request = Request(str(case), settings or [], output, jobs, None, resume, overwrite)
     return follow_life(
+        str(case),
         request,
         law,
         parameter,
@@ -80,21 +76,17 @@ def lives(
     tolerance: Tolerance = 3e-3,
     design: Design = "sobol",
     seed: Seed = 0,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    overwrite: Overwrite = False,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished lives in the output file.")] = False,
+    request: Usual = USUAL,
 ) -> int:
     """Follow the coatings of gears with keys drawn from distributions: how long they last.
 
     Parameters of the law are drawn as law.NAME, such as --vary "law.energy=lognormal(0.5 mJ/m^2, 3)"; --parameter gives
     those that are not drawn. Lives so far are kept beside the archive, in OUT.nc.lives, until the archive is written.
     """
-    from gearidae.cli.studies import Request, follow_lives
+    from gearidae.cli.studies import follow_lives
 
-    request = Request(str(case), settings or [], output, jobs, None, resume, overwrite)
     return follow_lives(
+        str(case),
         request,
         law,
         parameter or [],

@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
+from gearidae.cli.request import Request
 from gearidae.cli.tables import name_failures, show_rows
 from gearidae.cli.values import assignments, default_output, sweep_values, texts
 from gearidae.errors import SceneError
-from gearidae.runs.executors import check_jobs, dask_executor, own_executor
+from gearidae.runs.executors import check_jobs
 from gearidae.studies.answers import answer
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     import xarray as xr
 
     from gearidae.wear import LossLaw
 
 __all__ = [
-    "Request",
     "conduct",
     "follow_life",
     "follow_lives",
@@ -39,51 +34,10 @@ __all__ = [
 
 _FRACTION: Final = "coating.sam_fraction"
 _TORQUE: Final = "drive.torque"
-_WORTH_PROCESSES: Final = 64
-"""Members from which on it is worth while to start processes, which takes some seconds."""
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """What every study is asked for with.
-
-    Attributes
-    ----------
-    case : str
-        Path of a case file, or name of a preset.
-    settings : sequence of str
-        ``key=value`` of ``--set``.
-    output : Path or None
-        File to write; None to name it after the case.
-    jobs : int or None
-        Number of simultaneous runs.
-    dask : str or None
-        Address of a Dask scheduler.
-    resume : bool
-        Resume the unfinished study in the output file.
-    overwrite : bool
-        Whether the file may be replaced.
-    """
-
-    case: str
-    settings: Sequence[str] = ()
-    output: Path | None = None
-    jobs: int | None = None
-    dask: str | None = None
-    resume: bool = False
-    overwrite: bool = False
-
-    def executor(
-        self, keys: Mapping[str, Any] | Sequence[str] = (), members: int = 0
-    ) -> AbstractContextManager[Executor | None]:
-        """Provide the executor of a cluster, or of processes where many members have tables of their own."""
-        own_tables = any(key.startswith("surface.") or key == "coating.energy" for key in keys)
-        if self.dask is None and own_tables and members >= _WORTH_PROCESSES:
-            return own_executor(check_jobs(self.jobs), members, releases_gil=False)
-        return dask_executor(self.dask)
 
 
 def conduct(
+    case: str,
     request: Request,
     kind: str,
     title: str,
@@ -97,6 +51,8 @@ def conduct(
 
     Parameters
     ----------
+    case : str
+        Path of a case file, or name of a preset.
     request : Request
     kind : str
         What comes of it, as `gearidae.studies.products.open_product` calls it.
@@ -116,10 +72,10 @@ def conduct(
     int
         Exit code.
     """
-    target = request.output or default_output(request.case, f"_{title.lower().replace(' ', '_')}.nc")
+    target = request.output or default_output(case, f"_{title.lower().replace(' ', '_')}.nc")
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
-    scene = read_scene(request.case, request.settings)
+    scene = read_scene(case, request.settings or ())
     with request.executor(keys, members) as executor:
         ds = study(
             scene,
@@ -151,12 +107,13 @@ def _code(ds: xr.Dataset) -> int:
     return UNFINISHED if failed else DONE
 
 
-def search_threshold(request: Request, over: str, exits: int) -> int:
+def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
     """Search the sticking threshold of a case between two values of a key, ``key=value,value``."""
     ((key, ends),) = sweep_values([over]).items()
     if len(ends) != 2:
         raise SceneError("--over", over, f"needs two values, at one of which the gear sticks: {key}=0.4,0.7")
     return conduct(
+        case,
         request,
         "sticking_threshold",
         "Threshold",
@@ -167,7 +124,7 @@ def search_threshold(request: Request, over: str, exits: int) -> int:
     )
 
 
-def search_starting_torque(request: Request, over: str | None, **options: Any) -> int:
+def search_starting_torque(case: str, request: Request, over: str | None, **options: Any) -> int:
     """Search the starting torque of a case at its own coating, or at fractions, ``coating.sam_fraction=1:0.4:-0.1``."""
     fractions: Any = "own"
     if over is not None:
@@ -175,17 +132,23 @@ def search_starting_torque(request: Request, over: str | None, **options: Any) -
         if key != _FRACTION:
             raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
     return conduct(
-        request, "starting_torque", "Starting torque", gd.studies.starting_torque, fractions, **options
+        case,
+        request,
+        "starting_torque",
+        "Starting torque",
+        gd.studies.starting_torque,
+        fractions,
+        **options,
     )
 
 
-def map_outcomes(request: Request, over: Sequence[str]) -> int:
+def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
     """Map what the gears of a case do over two keys."""
     values = sweep_values(over)
-    return conduct(request, "operating_map", "Operating map", gd.studies.operating_map, values)
+    return conduct(case, request, "operating_map", "Operating map", gd.studies.operating_map, values)
 
 
-def map_coating(request: Request, over: Sequence[str]) -> int:
+def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
     """Make a coating map of a case, over fractions, and over other keys for several lines."""
     values = sweep_values([pair for pair in over if pair.strip() != _TORQUE])
     fractions = values.pop(_FRACTION, None)
@@ -193,25 +156,26 @@ def map_coating(request: Request, over: Sequence[str]) -> int:
     if usual_torques and values:
         raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
     further = _TORQUE if usual_torques else values
-    return conduct(request, "coating_map", "Map", gd.studies.coating_map, fractions, over=further)
+    return conduct(case, request, "coating_map", "Map", gd.studies.coating_map, fractions, over=further)
 
 
-def run_ensemble(request: Request, vary: Sequence[str], **drawn: Any) -> int:
+def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any) -> int:
     """Run an ensemble of a case."""
     keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
     drawn |= {"keys": keys, "members": drawn["size"]}
-    return conduct(request, "ensemble", "Ensemble", gd.studies.ensemble, keys, **drawn)
+    return conduct(case, request, "ensemble", "Ensemble", gd.studies.ensemble, keys, **drawn)
 
 
 def follow_life(
-    request: Request, law: str, parameters: Sequence[str], arrhenius: Sequence[str], **options: Any
+    case: str, request: Request, law: str, parameters: Sequence[str], arrhenius: Sequence[str], **options: Any
 ) -> int:
     """Follow the life of a case's coating by a loss law, given its parameters and a factor of Arrhenius."""
     found = _read_law(law, parameters, arrhenius)
-    return conduct(request, "life", "Life", gd.studies.life, found, **options)
+    return conduct(case, request, "life", "Life", gd.studies.life, found, **options)
 
 
 def follow_lives(
+    case: str,
     request: Request,
     law: str,
     parameters: Sequence[str],
@@ -222,7 +186,7 @@ def follow_lives(
     """Follow the coatings of an ensemble of gears."""
     keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
     found = _read_law(law, parameters, arrhenius, keys)
-    return conduct(request, "lives", "Lives", gd.studies.lives, found, keys, **options)
+    return conduct(case, request, "lives", "Lives", gd.studies.lives, found, keys, **options)
 
 
 def _read_law(

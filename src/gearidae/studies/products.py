@@ -220,80 +220,20 @@ def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
 
 
 def open_life(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read the life of a coating that was saved.
-
-    Parameters
-    ----------
-    path : path-like
-        A netCDF file, from `life` or ``gearidae life``.
-
-    Returns
-    -------
-    Dataset
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or is no life.
-    """
+    """Read the life of a coating that was saved; errors are those of `open_product`."""
     return open_product(path, "life")[0]
 
 
 def open_lives(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read the lives of an ensemble that were saved.
-
-    Parameters
-    ----------
-    path : path-like
-        A netCDF file, from `lives` or ``gearidae lives``.
-
-    Returns
-    -------
-    Dataset
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or holds no lives.
-    """
+    """Read the lives of an ensemble that were saved; errors are those of `open_product`."""
     return open_product(path, "lives")[0]
 
 
 def open_map(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read a coating map that was saved.
-
-    Parameters
-    ----------
-    path : path-like
-        A netCDF file, from `coating_map` or ``gearidae coating-map``.
-
-    Returns
-    -------
-    Dataset
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or is no coating map.
-    """
+    """Read a coating map that was saved; errors are those of `open_product`."""
     return open_product(path, "coating_map")[0]
 
 
 def open_posterior(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read a posterior that was saved.
-
-    Parameters
-    ----------
-    path : path-like
-        A netCDF file, from `calibrate` or ``gearidae calibrate``.
-
-    Returns
-    -------
-    Dataset
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or is no posterior.
-    """
+    """Read a posterior that was saved; errors are those of `open_product`."""
     return open_product(path, "posterior")[0]
