@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from gearidae.scene.tables import MOST_KNOTS
 from gearidae.scene.units import from_text
 
-__all__ = ["in_folder", "pack_knots", "read_schedule"]
+__all__ = ["in_folder", "pack_knots", "read_csv", "read_schedule", "split_unit", "unit_factor"]
 
 _KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
 _SOURCES: Final = ("file", "data", "knots", "packed")
@@ -121,7 +121,7 @@ def _columns(table: Mapping[str, Any], source: str) -> tuple[tuple[str, Any], tu
         if "time" not in table or "value" not in table:
             raise ValueError("needs file, data or knots, or arrays as time and value")
         return ("time", table["time"]), ("value", table["value"])
-    frame = _read_file(table["file"]) if source == "file" else table["data"]
+    frame = read_csv(table["file"]) if source == "file" else table["data"]
     if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
         raise ValueError("data must be a DataFrame")
     names = [str(name).strip() for name in frame.columns]
@@ -139,7 +139,7 @@ def _column(frame: Any, names: list[str], wanted: str) -> tuple[str, Any]:
     wanted = wanted.strip()
     if names.count(wanted) == 1:
         return wanted, frame.iloc[:, names.index(wanted)]
-    bare = _split(wanted)[0]
+    bare = split_unit(wanted)[0]
     if bare != wanted and names.count(bare) == 1:
         return wanted, frame.iloc[:, names.index(bare)]
     problem = "stands more than once among" if wanted in names else "is not among"
@@ -150,7 +150,7 @@ def _listed(names: list[str]) -> str:
     return ", ".join(repr(name[:40]) for name in names[:8]) + (", ..." if len(names) > 8 else "")
 
 
-def _read_file(file: object) -> Any:
+def read_csv(file: object) -> Any:
     """Read a CSV file as texts."""
     if not isinstance(file, str | Path):
         raise ValueError("file must be the name of a CSV file")
@@ -172,7 +172,7 @@ def _read_file(file: object) -> Any:
         raise ValueError(f"the file {path.name} is no CSV table ({reason})") from None
 
 
-def _split(name: str) -> tuple[str, str]:
+def split_unit(name: str) -> tuple[str, str]:
     """Split a column's name into the bare name and the unit."""
     match = _UNIT.fullmatch(name)
     return (match[1], match[2]) if match else (name, "")
@@ -180,13 +180,10 @@ def _split(name: str) -> tuple[str, str]:
 
 def _numbers(name: str, column: Any, unit: str) -> NDArray[np.float64]:
     """Read a column in SI units; whatever is no finite number is named with its row, counted from 1."""
-    own_unit = _split(name)[1]
+    own_unit = split_unit(name)[1]
     if hasattr(column, "magnitude") and hasattr(column, "units"):
         own_unit, column = f"{column.units:~}" if str(column.units) else "", column.magnitude
-    try:
-        factor = from_text(f"1 {own_unit}", unit) if own_unit else 1.0
-    except ValueError as error:
-        raise ValueError(f"column {name[:60]!r}: {error}") from None
+    factor = unit_factor(name, own_unit, unit)
     cells = np.asarray(column)
     if cells.ndim != 1:
         raise ValueError(f"column {name[:60]!r} must be one-dimensional")
@@ -196,6 +193,14 @@ def _numbers(name: str, column: Any, unit: str) -> NDArray[np.float64]:
     for row, cell in enumerate(cells.tolist()):
         numbers[row] = _number(cell, name, row + 1)
     return numbers * factor
+
+
+def unit_factor(name: str, own_unit: str, unit: str) -> float:
+    """Return how many `unit` the unit of a column of this name is; 1 without one."""
+    try:
+        return from_text(f"1 {own_unit}", unit) if own_unit else 1.0
+    except ValueError as error:
+        raise ValueError(f"column {name[:60]!r}: {error}") from None
 
 
 def _number(cell: object, name: str, row: int) -> float:
