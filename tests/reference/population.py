@@ -4,7 +4,6 @@
 """
 
 import json
-import math
 from pathlib import Path
 
 import numpy as np
@@ -39,7 +38,11 @@ class Contact:
 
     def __init__(self, scene):
         g = scene.geometry
-        self.base, self.total, self.length = g.base_radius_pinion, g.tangent_pinion + g.tangent_gear, g.path_length
+        self.base, self.total, self.length = (
+            g.base_radius_pinion,
+            g.tangent_pinion + g.tangent_gear,
+            g.path_length,
+        )
         self.first, self.relief = g.tangent_pinion - g.approach, scene.mesh.tip_relief_radius
 
     def at(self, xi):
@@ -76,22 +79,15 @@ def drop(tips, places, heights, radius, mass, speed, height):
     radius, mass, speed, height : float
         Of the roller.
     """
-    level = np.asarray(heights) - np.asarray(places) ** 2 / (2.0 * radius)  # height at which each overlap is zero
+    level = np.asarray(heights) - np.asarray(places) ** 2 / (
+        2.0 * radius
+    )  # height at which each overlap is zero
     joined, t, state, events, loss = set(), 0.0, np.array([height, -speed]), [], 0.0
     while True:
+        held = frozenset(joined)
 
-        def motion(_, y, joined=frozenset(joined)):
-            return [y[1], sum(float(tips[a].load(level[a] - y[0])) for a in joined) / mass]
-
-        def guard(a):
-            tip, held = tips[a], a in joined
-            bound = level[a] + (tip.detach * (1.0 - 1e-12) if held else tip.join)
-
-            def distance(_, y):
-                return (y[0] - bound) / 1e-9
-
-            distance.terminal, distance.direction = True, 1.0 if held else -1.0
-            return distance
+        def motion(_, y, held=held):
+            return [y[1], sum(float(tips[a].load(level[a] - y[0])) for a in held) / mass]
 
         solved = solve_ivp(
             motion,
@@ -100,7 +96,7 @@ def drop(tips, places, heights, radius, mass, speed, height):
             "DOP853",
             rtol=1e-12,
             atol=[1e-20, 1e-15],
-            events=[*(guard(a) for a in range(len(tips))), _far(height)],
+            events=[*(_reaches(tip, level[a], a in held) for a, tip in enumerate(tips)), _far(height)],
         )
         t, state = solved.t[-1], solved.y[:, -1]
         fallen = [a for a, times in enumerate(solved.t_events[:-1]) if len(times)]
@@ -111,6 +107,17 @@ def drop(tips, places, heights, radius, mass, speed, height):
             joined ^= {a}
             loss += tips[a].letting_go if kind == "off" else tips[a].joining
             events.append((t, kind, a, state[1]))
+
+
+def _reaches(tip, level, held):
+    """Root function of an asperity that joins, or lets go just before its fold."""
+    bound = level + (tip.detach * (1.0 - 1e-12) if held else tip.join)
+
+    def distance(_, y):
+        return (y[0] - bound) / 1e-9
+
+    distance.terminal, distance.direction = True, 1.0 if held else -1.0
+    return distance
 
 
 def _far(height):
@@ -129,18 +136,3 @@ def stored(scene, tips, pairs):
         for xi, gap, asperities in pairs
         for arc, height, tip in asperities
     )
-
-
-def kappa(law, gap):
-    """Scatter of the force over its mean, times the root of the number of expected contacts; gap in roughnesses."""
-    from gearidae.contact.psi import psi
-
-    delta = np.concatenate([[-law.detach], np.linspace(-law.detach, 12.0, 200_001)[1:]])
-    stretched = law.detach * np.linspace(0.0, 1.0, 20_001) ** 2 - law.detach if law.detach else delta[:1]
-    delta = np.unique(np.concatenate([stretched, delta]))
-    load, density = law.load(delta), psi(gap + delta)
-
-    def integral(values):
-        return float(np.trapezoid(values, delta))
-
-    return math.sqrt(integral(load**2 * density) * integral(density)) / abs(integral(load * density))

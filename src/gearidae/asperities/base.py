@@ -156,7 +156,7 @@ class AsperityLaw(ABC):
     def detachment_energy(self) -> float:
         """Energy that an asperity stores just before it lets go, counted from free surfaces, and loses there.
 
-        It is the integral of the load along the unstable branch, from free surfaces to detachment; joining loses so much
-        less. By default 0: a law without such a branch.
+        It is the integral of the load along the unstable branch, from free surfaces to detachment; joining loses so
+        much less. By default 0: a law without such a branch.
         """
         return 0.0

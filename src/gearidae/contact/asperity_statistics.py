@@ -17,10 +17,14 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gearidae.asperities import law_of
 from gearidae.asperities.tip import Surface, asperity_of
-from gearidae.contact.psi import psi_derivatives
+from gearidae.contact.psi import psi, psi_derivatives
 
-__all__ = ["density_product", "expected_asperities", "half_spacing", "zero_load_radius"]
+__all__ = ["density_product", "expected_asperities", "force_scatter", "half_spacing", "zero_load_radius"]
+
+_X, _W = np.polynomial.legendre.leggauss(200)
+_REACH = 12.0  # roughnesses above the gap beyond which no asperity stands
 
 
 def expected_asperities(gap: ArrayLike, radius: float, width: float, surface: Surface) -> NDArray[np.float64]:
@@ -49,6 +53,35 @@ def expected_asperities(gap: ArrayLike, radius: float, width: float, surface: Su
     density, slope = psi_derivatives(at, 1)
     above = np.maximum(-2.0 * (slope + at * density), 0.0)
     return surface.asperity_density * width * math.sqrt(2.0 * radius * surface.roughness) * above
+
+
+def force_scatter(gap: float, surface: Surface, asperity: str = "jkr") -> float:
+    r"""How much the force of one pair of teeth scatters about the mean of many, approaching.
+
+    Parameters
+    ----------
+    gap : float
+        Smallest mean gap g between the rigid shapes [m].
+    surface : Surface
+        Elastic constants, energy, tip radius and roughness (SI).
+    asperity : str, optional
+        Name of the asperity law.
+
+    Returns
+    -------
+    float
+        :math:`\kappa = \sqrt{\int P^2 \psi \int \psi} \,/\, |\int P \psi|`, integrals over the displacement from 0
+        on [1]: with n asperities in contact the standard deviation over the mean is :math:`\kappa / \sqrt n`, as places
+        and heights are independent and n is Poisson's.
+    """
+    law = law_of(asperity, surface)
+    root = (
+        0.5 * math.sqrt(_REACH) * (_X + 1.0)
+    )  # in the root of the displacement the load of a tip that touches is smooth
+    displacement = root**2
+    load = law.load(displacement)
+    weight = _W * root * psi(gap / surface.roughness + displacement)
+    return math.sqrt(float(weight @ load**2) * float(weight.sum())) / abs(float(weight @ load))
 
 
 def density_product(surface: Surface) -> float:

@@ -28,10 +28,10 @@ def population(scene: Scene) -> xr.Dataset:
     -------
     xarray.Dataset
         Along ``asperity``, flank by flank and in the order of places: ``tooth`` and ``flank`` (0 drive, 1 coast) of the
-        pinion, ``arc`` from the base circle (of a roller ``x`` from its middle), ``height`` and ``radius`` [m], coverage
-        number ``q`` (with independent sides ``q2`` of the gear's), and ``coated`` (``gear_coated``): whether the
-        monolayer covers it. Where the gear's coverage goes by its teeth, ``gear_coated`` is that of the first tooth met.
-        The attribute ``asperities_sha256`` is that of a run.
+        pinion, ``arc`` from the base circle (of a roller ``x`` from its middle), ``height`` and ``radius`` [m],
+        coverage number ``q`` (with independent sides ``q2`` of the gear's), and ``coated`` (``gear_coated``): whether
+        the monolayer covers it. Where the gear's coverage goes by its teeth, ``gear_coated`` is that of the first tooth
+        met. The attribute ``asperities_sha256`` is that of a run.
 
     Raises
     ------
@@ -40,20 +40,26 @@ def population(scene: Scene) -> xr.Dataset:
 
     Notes
     -----
-    Heights are Gaussian with the surface's roughness and places uniform, ``asperity_density`` in the mean. Numbers follow
-    from ``contact.seed``, tooth and flank: coverage and torques may be varied on one surface.
+    Heights are Gaussian with the surface's roughness and places uniform, ``asperity_density`` in the mean. Numbers
+    follow from ``contact.seed``, tooth and flank: coverage and torques may be varied on one surface.
     """
     import xarray as xr
 
     if scene.contact.model != "population":
-        raise SceneError("contact.model", scene.contact.model, "must be population: others have no asperities of their own")
+        raise SceneError(
+            "contact.model", scene.contact.model, "must be population: others have no asperities of their own"
+        )
     flanks = flanks_of(scene)
     counts = [one.arc.size for one in flanks]
     along = "arc" if scene.gears is not None else "x"
     sides = [covered_sides(scene, one, one.tooth + one.flank) for one in flanks]
     columns = {
         "tooth": (np.repeat([one.tooth for one in flanks], counts), "1", "tooth of the pinion"),
-        "flank": (np.repeat([one.flank for one in flanks], counts), "1", "0 for the drive flank, 1 for the coast flank"),
+        "flank": (
+            np.repeat([one.flank for one in flanks], counts),
+            "1",
+            "0 for the drive flank, 1 for the coast flank",
+        ),
         along: (_joined([one.arc for one in flanks]), "m", "place along the flank"),
         "height": (_joined([one.height for one in flanks]), "m", "height above the mean plane"),
         "radius": (_joined([one.radius for one in flanks]), "m", "radius of the tip"),

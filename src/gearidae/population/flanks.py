@@ -1,7 +1,7 @@
 """The asperities of every flank of the pinion (the gear's flanks are smooth), or of a roller.
 
-Every flank is drawn from a generator of its own, and always in the same order: number, places, heights, coverage numbers
-of the pinion's side, of the gear's, radii. So coverage and torques may be varied on one surface.
+Every flank is drawn from a generator of its own, and always in the same order: number, places, heights, coverage
+numbers of the pinion's side, of the gear's, radii. So coverage and torques may be varied on one surface.
 """
 
 from __future__ import annotations
@@ -75,7 +75,9 @@ def flanks_of(scene: Scene) -> tuple[FlankAsperities, ...]:
     strip = flank_strip(scene)
     surface, contact = scene.surface, scene.contact
     if contact.asperities:
-        return _listed(contact.asperities, surface.asperity_radius, contact.seed, teeth, scene.gears is not None)
+        return _listed(
+            contact.asperities, surface.asperity_radius, contact.seed, teeth, scene.gears is not None
+        )
     return _drawn(
         teeth,
         2 if scene.gears is not None else 1,

@@ -1,10 +1,10 @@
 """Lists of asperities: what stands on the flanks, asperity by asperity, in place of drawn ones.
 
-``{file = "list.csv"}`` in a case file, in Python also ``{"data": DataFrame}``: a row for each asperity, the columns ``arc``
-(along the pinion's flank from the base circle; of a roller ``x``, from its middle) and ``height``, and where they are wanted
-``radius``, ``q`` and ``q2`` (coverage numbers of both sides), ``tooth`` and ``flank``. Lengths have their unit in the
-heading: ``height [nm]``. A cell that is left empty says nothing: the surface's own radius, a drawn coverage number, every
-tooth, both flanks. Columns by their bare names are lists of SI numbers; so a scene keeps them.
+``{file = "list.csv"}`` in a case file, in Python also ``{"data": DataFrame}``: a row for each asperity, the columns
+``arc`` (along the pinion's flank from the base circle; of a roller ``x``, from its middle) and ``height``, and where
+they are wanted ``radius``, ``q`` and ``q2`` (coverage numbers of both sides), ``tooth`` and ``flank``. Lengths have
+their unit in the heading: ``height [nm]``. A cell that is left empty says nothing: the surface's own radius, a drawn
+coverage number, every tooth, both flanks. Columns by their bare names are lists of SI numbers; so a scene keeps them.
 """
 
 from __future__ import annotations
@@ -104,8 +104,7 @@ class AsperityList:
         self, core: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """Describe what may stand here."""
-        columns = {name: {"type": "array"} for name in _COLUMNS}
-        return {"type": "object", "properties": {"file": {"type": "string"}, **columns}}
+        return {"type": "object", "description": f"a file, or lists {', '.join(_COLUMNS)}"}
 
     def read(self, value: object) -> ListedAsperities:
         """Read a list from a file, a DataFrame or columns in SI units.
@@ -132,13 +131,19 @@ class AsperityList:
             return ListedAsperities()
         source = next((key for key in ("file", "data") if key in value), None)
         if source is None:
-            return _rows({str(name): (list(cells), 1.0) for name, cells in value.items() if _is_column(cells, name)})
+            return _rows(
+                {str(name): (list(cells), 1.0) for name, cells in value.items() if _is_column(cells, name)}
+            )
         if len(value) > 1:
-            raise ValueError(f"has {source} and {next(key for key in value if key != source)}; {source} is enough")
+            raise ValueError(
+                f"has {source} and {next(key for key in value if key != source)}; {source} is enough"
+            )
         frame = read_csv(value["file"]) if source == "file" else value["data"]
         if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
             raise ValueError("data must be a DataFrame")
-        return _rows(dict(_headed(str(name), frame.iloc[:, k].tolist()) for k, name in enumerate(frame.columns)))
+        return _rows(
+            dict(_headed(str(name), frame.iloc[:, k].tolist()) for k, name in enumerate(frame.columns))
+        )
 
 
 if TYPE_CHECKING:
@@ -166,12 +171,16 @@ def check_asperities(scene: Scene) -> None:
         raise SceneError(key, told, f"must have the column {along} in place of {listed.along}")
     if contact.radius_spread != 0.0:
         raise SceneError(
-            "contact.radius_spread", contact.radius_spread, "must be 0 beside contact.asperities, which has radii"
+            "contact.radius_spread",
+            contact.radius_spread,
+            "must be 0 beside contact.asperities, which has radii",
         )
     teeth = 1 if scene.gears is None else scene.gears.pinion_teeth
     for row, one in enumerate(listed, 1):
         if one.tooth is not None and one.tooth >= teeth:
-            raise SceneError(key, f"(row {row}, tooth {one.tooth})", f"must be below {teeth}: teeth count from 0")
+            raise SceneError(
+                key, f"(row {row}, tooth {one.tooth})", f"must be below {teeth}: teeth count from 0"
+            )
         if one.flank == "coast" and scene.roller is not None:
             raise SceneError(key, f"(row {row}, flank coast)", "a roller has no coast flank")
 
@@ -220,7 +229,11 @@ def _rows(columns: dict[str, tuple[list[Any], float]]) -> ListedAsperities:
 def _cell(cell: Any, name: str, row: int, unit: float) -> Any:
     """Read one cell: a number within its limits, the name of a flank, or None where it is empty."""
     where = f"column {name!r}, row {row}"
-    if cell is None or (isinstance(cell, str) and not cell.strip()) or (isinstance(cell, float) and math.isnan(cell)):
+    if (
+        cell is None
+        or (isinstance(cell, str) and not cell.strip())
+        or (isinstance(cell, float) and math.isnan(cell))
+    ):
         return None
     if name == "flank":
         word = str(cell).strip().lower()

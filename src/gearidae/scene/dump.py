@@ -120,7 +120,9 @@ def _knots(knots: tuple[tuple[float, float], ...]) -> str:
 def _columns(listed: ListedAsperities) -> str:
     """Write a list of asperities by its columns, one in a line; a cell without a number is an empty text."""
     lists = {
-        name: ", ".join('""' if cell is None else _text(cell) if isinstance(cell, str) else repr(cell) for cell in cells)
+        name: ", ".join(
+            '""' if cell is None else _text(cell) if isinstance(cell, str) else repr(cell) for cell in cells
+        )
         for name, cells in listed.columns.items()
     }
     return "{ " + ", ".join(f"{name} = [\n    {cells}\n]" for name, cells in lists.items()) + " }"

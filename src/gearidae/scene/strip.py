@@ -61,7 +61,9 @@ def check_population(scene: Scene) -> None:
         return
     if scene.run.exposures != 0:
         raise SceneError(
-            "run.exposures", scene.run.exposures, "must be 0 with contact.model = population, which keeps none yet"
+            "run.exposures",
+            scene.run.exposures,
+            "must be 0 with contact.model = population, which keeps none yet",
         )
     if scene.contact.asperities:
         return

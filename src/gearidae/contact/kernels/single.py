@@ -1,10 +1,10 @@
 r"""One asperity's load, its slope and its energy, tabulated from any asperity law and compiled.
 
-In ``w = sqrt(displacement - start)`` a load is smooth from the displacement on at which its stable branch starts, in a fold
-or a touch; where there is a kink on the way it starts anew. Over :math:`(1 + w)^3`, the energy over :math:`(1 + w)^5`, it
-is a polynomial of degree seven in each of the pieces into which :math:`\log(1 + w/b)` is divided, or w itself below a
-kink. The first pieces are short, as a touch may lie just beyond the fold.
-Tests bound the error by 1e-10 of the larger of load and pull-off, whatever the law.
+In ``w = sqrt(displacement - start)`` a load is smooth from the displacement on at which its stable branch starts, in a
+fold or a touch; where there is a kink on the way it starts anew. Over :math:`(1 + w)^3`, the energy over
+:math:`(1 + w)^5`, it is a polynomial of degree seven in each of the pieces into which :math:`\log(1 + w/b)` is divided,
+or w itself below a kink. The first pieces are short, as a touch may lie just beyond the fold. Tests bound the error by
+1e-10 of the larger of load and pull-off, whatever the law.
 """
 
 from __future__ import annotations

@@ -39,6 +39,7 @@ from gearidae.engine.model.torques.law import law_address
 from gearidae.engine.model.torques.schedule import (
     segment_ends,
 )
+from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
 from gearidae.records import sampled_columns
 from gearidae.scene import MATERIAL_NAMES, Scene
@@ -88,6 +89,8 @@ def make_problem(
     SceneError
         If the scene is beyond what the engine can do.
     """
+    if scene.contact.model == "population":
+        raise SceneError("contact.model", "population", "has no solver yet: gearidae.population draws it")
     make_part_ready(SOLVER)
     build = _gear_problem if scene.roller is None else _roller_problem
     problem = build(scene, nodes, begin)
