@@ -19,9 +19,10 @@ from gearidae.engine.integrate.driver import BLOCK_EVENTS
 from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.native import restart, state_for_sample
 from gearidae.engine.integrate.root_finding import Stepper, state_at
-from gearidae.engine.model.observe import observe
+from gearidae.engine.model.located import POINTERS, model_at
+from gearidae.engine.motion.observe import observe
 from gearidae.engine.sundials.ida_memory import HANDLES
-from gearidae.engine.sundials.memory import POINTERS, model_at, words
+from gearidae.engine.sundials.memory import words
 from gearidae_bench.compiling import compiled_callback
 
 __all__ = ["VECTORS", "WORDS", "addresses"]

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.integrate.driver import BLOCK_EVENTS
+from gearidae.engine.integrate.driver import BLOCK_EVENTS, CONVERGENCE_FAILURES_HIGH
 from gearidae.engine.integrate.root_finding import SHARPNESS
-from gearidae.engine.model.observe import observe
-from gearidae.engine.model.problem import Problem
-from gearidae.engine.sundials.memory import POINTERS, note_addresses
+from gearidae.engine.model.located import POINTERS, note_addresses
+from gearidae.engine.motion.observe import observe
+from gearidae.engine.setup.problem import Problem
 from gearidae.engine.sundials.names import newton_places, places
 from gearidae_bench.contender import BROKEN, Contender, Outcome
 from gearidae_bench.reference import end_of
@@ -81,8 +81,8 @@ def _pointer(array: NDArray[Any]) -> ctypes.c_void_p:
 
 
 def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
+    from gearidae.engine.integrate.callbacks import callbacks
     from gearidae.engine.sundials import ida_memory as opened
-    from gearidae.engine.sundials.callbacks import callbacks
     from gearidae_bench.c_calls import VECTORS, WORDS, addresses
 
     m, n = problem.prepare(tolerance, times.size), problem.start.size
@@ -97,7 +97,8 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     observe(m, 0.0, y, rows[0])
     where = opened.Places(places(), newton_places())
     try:
-        if opened.open_solver(handles, problem.located.place, callbacks(n, False), where, (y, yp, dky)) != 0:
+        of_ours = problem.located.place, callbacks(n, False), where, (y, yp, dky)
+        if opened.open_solver(handles, *of_ours, CONVERGENCE_FAILURES_HIGH) != 0:
             return BROKEN
         flag = _library().gearidae_loop(
             *(_pointer(a) for a in (calls, words, numbers, numbers[VECTORS * n :])),

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.integrate.driver import Ending
-from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import Model
+from gearidae.engine.setup.problem import Problem
 from gearidae.records import Statistics
 from gearidae_bench.loop import run_dop853, run_rk4
 from gearidae_bench.reference import end_of, physical

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from gearidae.engine.backend import choose_backend, run_blocks
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics as Statistics
 from gearidae.scene import Scene
 from gearidae_bench.scenes import SCENES

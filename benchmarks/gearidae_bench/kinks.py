@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.model.state import MATERIALS, Model
-from gearidae.engine.model.tooth_pairs import gap_and_rate, history_of, pair_at, pairs_near
+from gearidae.engine.pairs.tooth_pairs import gap_and_rate, history_of, pair_at, pairs_near
 from gearidae_bench.compiling import compiled
 
 __all__ = ["arm", "watch"]

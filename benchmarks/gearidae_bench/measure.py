@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.problem import Problem
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.problem import Problem
 from gearidae_bench.contender import Contender, Outcome, unused
 from gearidae_bench.error import run_error
 from gearidae_bench.reference import Reference, end_of, find_reference

@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 from gearidae.scene import Scene, preset
 

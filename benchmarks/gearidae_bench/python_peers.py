@@ -20,10 +20,10 @@ from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate.by_address import guard_at, jacobian_at, residual_at
 from gearidae.engine.integrate.start import set_rates
-from gearidae.engine.model.problem import Problem
-from gearidae.engine.model.residual import jacobian
+from gearidae.engine.model.located import Located, model_at
 from gearidae.engine.model.state import GEARS, V, W
-from gearidae.engine.sundials.memory import Located, model_at
+from gearidae.engine.motion.residual import jacobian
+from gearidae.engine.setup.problem import Problem
 from gearidae_bench.compiling import compiled
 from gearidae_bench.contender import BROKEN, Contender, Outcome
 from gearidae_bench.reference import end_of, physical

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 

@@ -22,9 +22,9 @@ from platformdirs import user_cache_path
 
 import gearidae
 from gearidae.engine.integrate.start import set_rates
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import ROLLER, U, V, W
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.problem import Problem
 from gearidae.errors import SolverError
 from gearidae_bench.error import run_error
 from gearidae_bench.loop import run_dop853, run_gauss

@@ -23,7 +23,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Block, Statistics
 from gearidae.scene import preset
 
@@ -52,7 +52,7 @@ class Part(NamedTuple):
 _STEP, _NEWTON, _EVENTS = "IDA: attempts, tests, vectors, calls", "Newton's iteration", "epilogue of a step"
 PARTS: Final = (
     Part(_STEP, "integrate.root_finding", "_step", ""),
-    Part(_NEWTON, "sundials.callbacks", "iterate", _STEP),
+    Part(_NEWTON, "integrate.callbacks", "iterate", _STEP),
     Part("formula: prediction", "integrate.newton.adams", "rates_at_end", _NEWTON),
     Part("residual and slopes", "integrate.correction", "motion", _NEWTON),
     Part("formula: error, order, next step", "integrate.newton", "control_step", _NEWTON),

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import DOP853 as _SCIPY
 
-from gearidae.engine.model.residual import residual
 from gearidae.engine.model.state import GEARS, Model, V, W
+from gearidae.engine.motion.residual import residual
 from gearidae_bench.compiling import compiled
 
 __all__ = [

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.problem import Problem
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.problem import Problem
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_BOUND, TORQUE_BOUND, EnergyBalance, EventKind, Statistics
 from gearidae.runs.executors import own_executor, stop

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae_bench import SCENES
 from gearidae_bench.benchmark import all_contenders
 from gearidae_bench.c_loop import c_contenders

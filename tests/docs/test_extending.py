@@ -181,7 +181,7 @@ from gearidae.records import GEAR_COLUMNS
 assert columns(False)[9] == GEAR_COLUMNS[9] == "drive_torque"
 assert SAMPLES["drive_torque"].units == "N m"
 import inspect
-from gearidae.engine.model import observe
+from gearidae.engine.motion import observe
 assert "row[9] = drive" in inspect.getsource(observe.observe)
 """
 
@@ -190,7 +190,7 @@ assert "row[9] = drive" in inspect.getsource(observe.observe)
     ("is_event", "files", "script"),
     [
         (True, {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
-        (False, {"records/columns.py", "engine/model/observe.py"}, DRIVE_TORQUE),
+        (False, {"records/columns.py", "engine/motion/observe.py"}, DRIVE_TORQUE),
     ],
     ids=["event", "variable"],
 )

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine.integrate import adams, native
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import ADAMS, MOST_ORDERS
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 from gearidae_bench.error import run_error
 from gearidae_bench.reference import load_reference

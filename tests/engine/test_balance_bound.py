@@ -8,8 +8,8 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.energy.quadrature import error_of_square, integral, integral_of_cube
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.followers.quadrature import error_of_square, integral, integral_of_cube
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import (
     GEAR_BOUND,
     QUADRATURE_BOUND,

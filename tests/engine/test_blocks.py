@@ -8,8 +8,8 @@ from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate import driver, epilogue, native, portable, start
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import PHASE
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace(

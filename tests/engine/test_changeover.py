@@ -6,8 +6,8 @@ import pytest
 import gearidae as gd
 from gearidae.engine.changeover import change_over
 from gearidae.engine.events.dry_resistance import dry_guard
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import STATE, W
+from gearidae.engine.setup.build import make_problem
 
 SCENE = gd.preset("teodorescu2009").replace(
     {"load.torque": 1e-11, "coating.sam_fraction": 0.5, "initial.gap": 1.5e-8, "run.samples": "off"}

@@ -15,9 +15,9 @@ from gearidae.engine.backend import run_blocks
 from gearidae.engine.elastic.rows import JOINED, row_of
 from gearidae.engine.integrate import portable
 from gearidae.engine.integrate.driver import Ending
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.checkpoint import HEADER, pack
 from gearidae.engine.model.state import EMPTY, MATERIALS, STATE, U, V
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.checkpoint import HEADER, pack
 from gearidae.records import Statistics
 from reference.damaged import BUDGET, SCENES
 

@@ -10,9 +10,9 @@ import gearidae as gd
 from balances import assert_closes
 from gearidae.engine import solve
 from gearidae.engine.energy.coverage import losses_by_material
-from gearidae.engine.energy.lengths import material_lengths
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.coverage import share_changes, shares_of
+from gearidae.engine.pairs.coverage import share_changes, shares_of
+from gearidae.engine.pairs.lengths import material_lengths
+from gearidae.engine.setup.build import make_problem
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at, met_teeth
 from reference.gears import SlowGears

@@ -6,11 +6,11 @@ import pytest
 import gearidae as gd
 from balances import assert_closes
 from gearidae.engine import solve
-from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.radius import radius_power
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import PHASE, V, W
+from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.setup.build import make_problem
 
 SHORT = gd.preset("teodorescu2009_low_speed").replace(
     {

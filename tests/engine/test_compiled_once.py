@@ -216,7 +216,7 @@ def test_kept_callers_find_what_they_call_in_another_process(tmp_path):
 
 PROBLEM_FIRST = """
 import gearidae as gd
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 problem = make_problem(gd.preset("teodorescu2009"))
 from gearidae.engine.drivers import ready_driver
 ready_driver("{}", problem)

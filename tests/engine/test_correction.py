@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine.integrate.correction import correct
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.residual import jacobian, residual
 from gearidae.engine.model.state import U, V, W
+from gearidae.engine.motion.residual import jacobian, residual
+from gearidae.engine.setup.build import make_problem
 
 SMALL = st.floats(-1.0, 1.0)
 

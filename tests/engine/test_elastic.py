@@ -12,22 +12,22 @@ from gearidae.engine import backend, solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.changeover import change_over
 from gearidae.engine.elastic import layout as elastic
-from gearidae.engine.elastic.block_jacobian import (
+from gearidae.engine.elastic.rows import JOINED, row_of
+from gearidae.engine.integrate import native, portable
+from gearidae.engine.integrate.driver import Ending
+from gearidae.engine.model.state import PHASE, V
+from gearidae.engine.motion.block_jacobian import (
     assemble,
     dense_jacobian,
     factorise,
     solve_blocks,
     store_size,
 )
-from gearidae.engine.elastic.rows import JOINED, row_of
-from gearidae.engine.elastic.static_solve import settle_nodes
-from gearidae.engine.integrate import native, portable
-from gearidae.engine.integrate.driver import Ending
-from gearidae.engine.model import build_contact
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.residual import mesh_forces, residual
-from gearidae.engine.model.state import PHASE, V
-from gearidae.engine.model.tooth_pairs import history_of
+from gearidae.engine.motion.residual import mesh_forces, residual
+from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.pairs.tooth_pairs import history_of
+from gearidae.engine.setup import build_contact
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Statistics
 from gearidae_bench.random_scenes import random_scene
 

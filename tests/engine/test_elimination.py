@@ -10,11 +10,11 @@ from gearidae.engine.elastic.elimination import begin_deflections, predict, sett
 from gearidae.engine.elastic.newton_step import FOLLOW, STEP, equation_space, influence_space, newton_step
 from gearidae.engine.elastic.nodes import influence, node_force, stiffness_matrix
 from gearidae.engine.elastic.rows import JOINED, PRESSURE, first_unknown, row_of
-from gearidae.engine.elastic.static_solve import settle_nodes
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.residual import finish_deflections, mesh_forces, set_deflections
 from gearidae.engine.model.state import U, V
-from gearidae.engine.model.tooth_pairs import history_of
+from gearidae.engine.motion.residual import finish_deflections, mesh_forces, set_deflections
+from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.pairs.tooth_pairs import history_of
+from gearidae.engine.setup.build import make_problem
 
 RTOL = 1e-6
 

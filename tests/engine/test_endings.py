@@ -6,7 +6,7 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.integrate.driver import ending_of_flag
-from gearidae.engine.model import build_torques
+from gearidae.engine.setup import build_torques
 from gearidae.records import Ending
 
 

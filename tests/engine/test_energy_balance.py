@@ -15,9 +15,9 @@ from gearidae.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact import asperity_of
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
-from gearidae.engine.energy.quadrature import Ends, integral_of_cube, torque_work
+from gearidae.engine.followers.quadrature import Ends, integral_of_cube, torque_work
 from gearidae.engine.integrate import native as native_driver
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.mesh import curvature_radii
 from gearidae.records import Statistics
 
@@ -371,7 +371,7 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
     }
     scene = HIGH.replace(changes)
     sure = check(scene, solve(scene))
-    monkeypatch.setattr("gearidae.engine.model.problem.ERRORS", math.inf)
+    monkeypatch.setattr("gearidae.engine.setup.problem.ERRORS", math.inf)
     # over six steps at once, whatever comes of it, it would be out by 30 and 80 tolerances
     assert abs(sure.residual) < 0.1 * abs(solve(scene).balance.residual)
 
@@ -412,7 +412,7 @@ def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_a_change_of_the_contact_model_is_named(backend, monkeypatch):
-    monkeypatch.setattr("gearidae.engine.model.build_contact.rigid_limit", lambda *_: (2.0, True))
+    monkeypatch.setattr("gearidae.engine.setup.build_contact.rigid_limit", lambda *_: (2.0, True))
     scene = gd.preset("roller_slow")
     run = solve(scene, backend=backend)
     assert run.statistics.skipped["elastic_deflection"] == 0

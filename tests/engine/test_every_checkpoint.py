@@ -6,7 +6,7 @@ import pytest
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.integrate import portable
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5, "run.duration": 5e-3})

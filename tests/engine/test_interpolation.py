@@ -7,10 +7,10 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine.integrate import native
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.integrate.callbacks import callbacks
+from gearidae.engine.setup.build import make_problem
 from gearidae.engine.sundials import interpolation
 from gearidae.engine.sundials import names as sun
-from gearidae.engine.sundials.callbacks import callbacks
 from gearidae.engine.sundials.ida_memory import IDA, YP, Places, Y, close_solver, open_solver
 
 SHARES = (0.0, 0.1, 0.5, 0.9, 1.0)

@@ -8,8 +8,8 @@ from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENTS_AT_ONCE, record
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, Ending, Output
 from gearidae.engine.integrate.epilogue import has_room
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Statistics
 
 KNOTS = 20_500

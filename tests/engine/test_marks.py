@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, set_marks
 from gearidae.engine.integrate.start import rebase
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import PHASE
+from gearidae.engine.setup.build import make_problem
 from gearidae_bench.scenes import SCENES
 
 PROBLEM = make_problem(SCENES["high_sam"].scene)

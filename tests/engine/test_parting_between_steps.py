@@ -7,9 +7,9 @@ import gearidae as gd
 from balances import assert_balanced
 from gearidae.engine import solve
 from gearidae.engine.events.mesh_marks import RELIEF_PER_STEP, outruns_relief, relief_step
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import PHASE, W
-from gearidae.engine.model.tooth_pairs import pair_gap
+from gearidae.engine.pairs.tooth_pairs import pair_gap
+from gearidae.engine.setup.build import make_problem
 
 # A drive that holds its speed damps the motion within tens of milliseconds; at a mesh exit the worn gear then sticks.
 HELD = gd.preset("teodorescu2009_low_speed").replace(

@@ -10,7 +10,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from gearidae.engine.sundials import names, self_test
+from gearidae.engine import self_test
+from gearidae.engine.sundials import names
 
 
 def test_the_extension_module_leads_to_all_functions_where_names_are_looked_for_in_its_libraries(monkeypatch):

@@ -6,10 +6,10 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.energy.contacts import stored_energy
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.residual import jacobian, mesh_forces, residual
 from gearidae.engine.model.state import PHASE, U, V, W
-from gearidae.engine.model.tooth_pairs import history_of, set_joined
+from gearidae.engine.motion.residual import jacobian, mesh_forces, residual
+from gearidae.engine.pairs.tooth_pairs import history_of, set_joined
+from gearidae.engine.setup.build import make_problem
 
 LOW, HIGH = gd.preset("teodorescu2009_low_speed"), gd.preset("teodorescu2009")
 ON = {"mesh.radius_force": True}

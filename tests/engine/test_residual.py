@@ -5,11 +5,11 @@ import pytest
 
 import gearidae as gd
 from gearidae.contact import line_force
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.coverage import WHOLE
-from gearidae.engine.model.residual import jacobian, residual
 from gearidae.engine.model.state import U, V
-from gearidae.engine.model.tooth_pairs import history_of, pair_force, set_joined
+from gearidae.engine.motion.residual import jacobian, residual
+from gearidae.engine.pairs.coverage import WHOLE
+from gearidae.engine.pairs.tooth_pairs import history_of, pair_force, set_joined
+from gearidae.engine.setup.build import make_problem
 
 
 @pytest.mark.parametrize("roughness", [0.9e-9, 1.2e-9, 6e-9, 30e-9])

@@ -8,10 +8,10 @@ from gearidae.engine import backend, outlook, solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.changeover import lighten
 from gearidae.engine.elastic.rows import first_unknown
-from gearidae.engine.model import build
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import EMPTY, STATE, V
-from gearidae.engine.model.tooth_pairs import nearest_gap
+from gearidae.engine.pairs.tooth_pairs import nearest_gap
+from gearidae.engine.setup import build
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Ending, EventKind, Flank, Statistics
 
 HIGH = gd.preset("teodorescu2009")

@@ -8,11 +8,11 @@ import pytest
 
 import gearidae as gd
 from gearidae.compiled import compiled_callback
-from gearidae.engine import choose_backend, drivers
+from gearidae.engine import choose_backend, drivers, self_test
+from gearidae.engine.integrate import callbacks as real
 from gearidae.engine.integrate.newton import Attempt, iterate
-from gearidae.engine.sundials import callbacks as real
+from gearidae.engine.model.located import model_at
 from gearidae.engine.sundials import memory as ptr
-from gearidae.engine.sundials import self_test
 from gearidae.errors import SceneError
 
 STATES = 4  # of a gear pair
@@ -73,12 +73,12 @@ def deaf_solve(newton, start, correction, weights, tolerance, renew, solver):
         ptr.numbers(rr, STATES),
         own,
     )
-    return iterate(STATES, ptr.model_at(data), attempt)
+    return iterate(STATES, model_at(data), attempt)
 
 
 def careless_weights(yy, weights, data):
     """Call every error small."""
-    m = ptr.model_at(data)
+    m = model_at(data)
     out = ptr.numbers(weights, m.scene.states)
     for i in range(m.scene.states):
         out[i] = 1e-6

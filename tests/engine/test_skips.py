@@ -10,7 +10,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.model import build_contact
+from gearidae.engine.setup import build_contact
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
     {"run.duration": 0.02, "run.samples": 201, "run.rtol": 1e-8}

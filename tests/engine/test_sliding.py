@@ -3,8 +3,8 @@
 import pytest
 
 import gearidae as gd
-from gearidae.engine.energy.sliding import SLIDING, add_sliding
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.followers.exposures.sliding import SLIDING, add_sliding
+from gearidae.engine.setup.build import make_problem
 
 PLACES = 8
 LENGTH = 0.5

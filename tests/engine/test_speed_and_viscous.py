@@ -11,8 +11,8 @@ import gearidae as gd
 from balances import assert_balanced
 from gearidae.engine import solve
 from gearidae.engine.integrate.correction import correct
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.residual import jacobian, residual
+from gearidae.engine.motion.residual import jacobian, residual
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind
 
 R1, R2 = 34.715e-6, 4 * 34.715e-6

@@ -6,8 +6,8 @@ import pytest
 import gearidae as gd
 from balances import assert_balanced
 from gearidae.engine import solve
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.tooth_pairs import static_error
+from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.engine.setup.build import make_problem
 
 LOW = gd.preset("teodorescu2009_low_speed")
 SMOOTH = [{"order": 19, "amplitude": 2e-9, "phase": 0.3}]

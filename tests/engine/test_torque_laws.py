@@ -8,7 +8,7 @@ import pytest
 import gearidae as gd
 from balances import assert_balanced
 from gearidae.engine import solve
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.errors import SceneError
 from gearidae.records import EventKind
 

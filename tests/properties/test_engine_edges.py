@@ -13,8 +13,8 @@ from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.histories import begin
 from gearidae.engine.integrate.driver import Ending
-from gearidae.engine.model.build import make_problem
 from gearidae.engine.model.state import PHASE
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Statistics
 
 BASE = gd.preset("teodorescu2009").replace(

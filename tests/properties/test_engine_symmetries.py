@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind
 
 BASE = gd.preset("teodorescu2009").replace(

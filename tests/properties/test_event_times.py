@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind
 from reference.bouncing import BouncingTooth
 

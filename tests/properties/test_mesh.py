@@ -7,10 +7,9 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine.events.histories import begin
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.coverage import WHOLE
-from gearidae.engine.model.residual import jacobian, mesh_forces, residual
-from gearidae.engine.model.tooth_pairs import (
+from gearidae.engine.motion.residual import jacobian, mesh_forces, residual
+from gearidae.engine.pairs.coverage import WHOLE
+from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
     history_of,
     pair_at,
@@ -18,6 +17,7 @@ from gearidae.engine.model.tooth_pairs import (
     pair_gap,
     set_joined,
 )
+from gearidae.engine.setup.build import make_problem
 
 # backlash below the range of adhesion: both flanks carry force at once
 PROBLEM = make_problem(

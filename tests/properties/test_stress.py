@@ -8,8 +8,8 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.model.build import make_problem
-from gearidae.engine.model.build_torques import ROOT_LIMIT
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.build_torques import ROOT_LIMIT
 from gearidae.records import Ending, EventKind
 from gearidae_bench import stress, stress_checks
 from gearidae_bench.__main__ import main

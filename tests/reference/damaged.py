@@ -10,7 +10,7 @@ import numpy as np
 
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
 __all__ = ["BUDGET", "SCENES"]

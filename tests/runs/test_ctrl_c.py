@@ -44,7 +44,7 @@ def marked(*arguments, **options):
 setattr(module, name, marked)
 sys.exit(main(sys.argv[2:]))
 """
-BUILD, CONTACT = "gearidae.engine.model.build", "gearidae.engine.model.build_contact"
+BUILD, CONTACT = "gearidae.engine.setup.build", "gearidae.engine.setup.build_contact"
 
 
 def cpu_of(pid):

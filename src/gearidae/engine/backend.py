@@ -14,8 +14,8 @@ from gearidae.engine.changeover import change_over, deepen, lighten
 from gearidae.engine.continuing import Origin, checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.integrate.driver import Block, Ending
-from gearidae.engine.model.problem import Problem
 from gearidae.engine.run_ends import Ended, OnBlock, Start
+from gearidae.engine.setup.problem import Problem
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import (

@@ -8,12 +8,12 @@ import numpy as np
 
 from gearidae.engine.elastic.histories import book_points, init_nodes
 from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
-from gearidae.engine.elastic.static_solve import SETTLED, settle_nodes
-from gearidae.engine.energy.balance import carry_balance
-from gearidae.engine.model.checkpoint import exposures_of
-from gearidae.engine.model.problem import Problem
+from gearidae.engine.followers.balance import carry_balance
+from gearidae.engine.followers.exposures.follow import exposures_of
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
-from gearidae.engine.model.tooth_pairs import set_joined
+from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
+from gearidae.engine.pairs.tooth_pairs import set_joined
+from gearidae.engine.setup.problem import Problem
 
 __all__ = [
     "carry_nodes",

@@ -25,15 +25,11 @@ from gearidae.engine.changeover import (
     remember,
     take_over,
 )
-from gearidae.engine.elastic.static_solve import settle_nodes
 from gearidae.engine.energy.contacts import stored_energy
-from gearidae.engine.energy.exposures import QUANTITIES
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.followers.exposures.follow import QUANTITIES, exposures_of
 from gearidae.engine.integrate.start import rebase
-from gearidae.engine.model.build import Begin, make_problem
-from gearidae.engine.model.checkpoint import exposures_of
-from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import (
     EMPTY,
     EXTREMES,
@@ -47,7 +43,10 @@ from gearidae.engine.model.state import (
     V,
     W,
 )
-from gearidae.engine.model.torques.schedule import segment_ends
+from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.setup.build import Begin, make_problem
+from gearidae.engine.setup.problem import Problem
+from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
@@ -80,7 +79,7 @@ class Origin:
     scene : Scene
         Of the other run.
     words : ndarray of 8-byte words
-        Its checkpoint, see `gearidae.engine.model.checkpoint`.
+        Its checkpoint, see `gearidae.engine.setup.checkpoint`.
     start : float
         When the other run itself began [s].
     time : float

@@ -10,8 +10,8 @@ from types import ModuleType
 
 from gearidae.engine.compiling import HOW_LONG, SOLVER, compiling, make_part_ready
 from gearidae.engine.integrate.driver import Block
-from gearidae.engine.model.problem import Problem
 from gearidae.engine.model.state import GEARS
+from gearidae.engine.setup.problem import Problem
 from gearidae.records import Statistics
 
 __all__ = ["ADAMS", "BDF", "formulas", "load_driver", "native_formulas", "ready_driver"]
@@ -47,7 +47,7 @@ def native_formulas(method: str) -> str:
     method : {"auto", "bdf"}
         ``run.method`` of the scene.
     """
-    from gearidae.engine.sundials.self_test import (
+    from gearidae.engine.self_test import (
         failure,
     )  # which runs the driver, and so cannot be loaded before it
 

@@ -1,6 +1,6 @@
 """What the solver samples: name, unit and meaning of each column, in the order in which the engine writes them.
 
-The engine fills a row of these (`gearidae.engine.model.observe`); dataset, files and their documentation follow from
+The engine fills a row of these (`gearidae.engine.motion.observe`); dataset, files and their documentation follow from
 here.
 """
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae import engine
-from gearidae.engine.energy.exposures import PRESSURE, QUANTITIES
+from gearidae.engine.followers.exposures.follow import PRESSURE, QUANTITIES
 from gearidae.engine.model.state import MATERIALS
 from gearidae.errors import SolverError
 from gearidae.runs.estimates import steady_speed

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearidae.archive.pieces import pieces
 from gearidae.archive.select import is_roller, motion_samples, run_scene, runs, swept_dims
 from gearidae.contact.kernels.law import H_STRETCH, law_value
-from gearidae.engine.model.build import make_problem
+from gearidae.engine.setup.build import make_problem
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import Flank

@@ -41,8 +41,8 @@ from gearidae.engine.elastic.rows import (
     row,
     to_points,
 )
-from gearidae.engine.model.coverage import noted_shares, potential_of, potentials_of
 from gearidae.engine.model.state import MATERIALS, Floats, Model
+from gearidae.engine.pairs.coverage import noted_shares, potential_of, potentials_of
 
 __all__ = [
     "nodes_joining_loss",

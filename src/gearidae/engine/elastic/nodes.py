@@ -66,8 +66,8 @@ from gearidae.engine.elastic.rows import (
     shares_of_nodes,
     to_points,
 )
-from gearidae.engine.model.coverage import loading_of, noted_shares
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
+from gearidae.engine.pairs.coverage import loading_of, noted_shares
 
 __all__ = [
     "farthest_joined",

@@ -1,4 +1,1 @@
-"""The energy balance of a run, kept at accepted steps.
-
-It reads the state of the motion and the histories, and changes only its own sums.
-"""
+"""Energies at a state: what contacts store and have lost, energy of motion, power and force of the changing radius."""

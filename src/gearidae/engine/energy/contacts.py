@@ -10,9 +10,9 @@ from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_stored
-from gearidae.engine.model.coverage import Shares, note_shares, potential_of, shares_of
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.model.tooth_pairs import (
+from gearidae.engine.pairs.coverage import Shares, note_shares, potential_of, shares_of
+from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
     contact_length,
     energy_branch,

@@ -1,7 +1,7 @@
 r"""Power, force and losses of pairs whose materials' shares change along the path of contact.
 
 As the contact length does, shares change the energy of a pair without a force that pays for it: the work of this
-change is counted with that of the changing radius (`gearidae.engine.energy.balance`), and what joining loses is the
+change is counted with that of the changing radius (`gearidae.engine.followers.balance`), and what joining loses is the
 integral of each material's length times share, as there. A pair with the energy U per length of each material, its
 length times share :math:`\ell s`, and with :math:`\ell B` of its bodies, changes it by
 :math:`\sum U\,d(\ell s) + B\,d\ell`.
@@ -13,10 +13,10 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import three_values
 from gearidae.engine.elastic.energy import nodes_length_force, nodes_material_energy, nodes_material_loss
 from gearidae.engine.energy.contacts import free_material_energy, material_energy, turning_point
-from gearidae.engine.energy.lengths import length_and_rates, material_lengths
-from gearidae.engine.model.coverage import Shares, note_shares, place_inside, potentials_of, shares_of
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.model.tooth_pairs import history_of
+from gearidae.engine.pairs.coverage import Shares, note_shares, place_inside, potentials_of, shares_of
+from gearidae.engine.pairs.lengths import length_and_rates, material_lengths
+from gearidae.engine.pairs.tooth_pairs import history_of
 
 __all__ = ["coverage_force", "coverage_power", "losses_by_material"]
 
@@ -31,7 +31,7 @@ def coverage_power(
     ----------
     m : Model
     potentials : tuple
-        Of the materials at the pair's gap, from `gearidae.engine.model.coverage.potentials_of`.
+        Of the materials at the pair's gap, from `gearidae.engine.pairs.coverage.potentials_of`.
     coast, pair : int
         Flank and number of the pair, which is on the path of contact.
     t : float

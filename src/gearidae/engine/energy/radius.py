@@ -1,7 +1,7 @@
 r"""The changing radius of curvature along the path of contact, and the power or the force that goes with it.
 
 The length of a contact, and with it the number of asperities in touch, changes along the path. In the paper's model no
-force pays for that; see `gearidae.engine.energy.balance`, which books the power. With ``mesh.radius_force`` a force
+force pays for that; see `gearidae.engine.followers.balance`, which books the power. With ``mesh.radius_force`` a force
 does: a pair of length :math:`\ell` with the energy U per length pushes the gear along its motion :math:`x_2` with
 
 .. math:: -U \frac{d\ell}{dx_2} \quad \left( = -\ell U \frac{R'}{2R} \right)
@@ -19,10 +19,10 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_length_force
 from gearidae.engine.energy.contacts import free_energy, joined_energy
 from gearidae.engine.energy.coverage import coverage_force, coverage_power
-from gearidae.engine.energy.lengths import length_and_rates
-from gearidae.engine.model.coverage import WHOLE, potentials_of
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
-from gearidae.engine.model.tooth_pairs import history_of
+from gearidae.engine.pairs.coverage import WHOLE, potentials_of
+from gearidae.engine.pairs.lengths import length_and_rates
+from gearidae.engine.pairs.tooth_pairs import history_of
 
 __all__ = ["pairs_on_path", "radius_force", "radius_power", "sample_radius_power"]
 

@@ -6,11 +6,11 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.motion import kinetic_energy
+from gearidae.engine.energy.kinetic import kinetic_energy
 from gearidae.engine.events.record import record
-from gearidae.engine.model.residual import mesh_forces
 from gearidae.engine.model.state import LOAD, Floats, Model, V, W
-from gearidae.engine.model.torque import torque_force
+from gearidae.engine.motion.residual import mesh_forces
+from gearidae.engine.torques.torque import torque_force
 from gearidae.records import EventKind, Flank
 
 __all__ = ["dry_guard", "note_slip", "stick_or_slip"]

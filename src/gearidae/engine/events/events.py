@@ -13,14 +13,14 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import middle_gap
-from gearidae.engine.energy.adhesion import sample_joining
-from gearidae.engine.energy.balance import sample_radius_power
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import handle_pair, newly_stretched, pair_guard
 from gearidae.engine.events.run_stop import stop_guard
+from gearidae.engine.followers.balance import sample_radius_power
+from gearidae.engine.followers.joining import sample_joining
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, MATERIALS, ROLLER, Floats, Model
-from gearidae.engine.model.tooth_pairs import (
+from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
     history_of,
     in_flight,

@@ -12,7 +12,7 @@ from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import arm_stop
 from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
-from gearidae.engine.model.tooth_pairs import (
+from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
     history_of,
     nearest_gap,

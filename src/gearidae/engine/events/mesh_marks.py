@@ -8,7 +8,7 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model, W
-from gearidae.engine.model.tooth_pairs import gap_and_rate
+from gearidae.engine.pairs.tooth_pairs import gap_and_rate
 from gearidae.records import EventKind
 
 __all__ = [

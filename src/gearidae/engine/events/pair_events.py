@@ -11,11 +11,11 @@ from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.engine.elastic.histories import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
-from gearidae.engine.energy.adhesion import book_joining
-from gearidae.engine.energy.exposures import expose_touch, expose_turning
 from gearidae.engine.events.record import record
+from gearidae.engine.followers.exposures.follow import expose_touch, expose_turning
+from gearidae.engine.followers.joining import book_joining
 from gearidae.engine.model.state import MATERIALS, Floats, Model
-from gearidae.engine.model.tooth_pairs import gap_and_rate, set_joined
+from gearidae.engine.pairs.tooth_pairs import gap_and_rate, set_joined
 from gearidae.records import EventKind
 
 __all__ = ["handle_pair", "newly_stretched", "pair_guard"]

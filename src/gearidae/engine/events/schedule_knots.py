@@ -5,7 +5,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import SCHEDULES, Floats, Model
-from gearidae.engine.model.torques.schedule import enter_segment
+from gearidae.engine.torques.schedule import enter_segment
 from gearidae.records import EventKind, Flank
 
 __all__ = ["keeps_checkpoint", "next_stop", "pass_knot"]

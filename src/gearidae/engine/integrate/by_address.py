@@ -9,10 +9,10 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.events.events import guard
 from gearidae.engine.integrate.epilogue import finish_step
-from gearidae.engine.model.observe import observe
-from gearidae.engine.model.residual import jacobian, residual
+from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats
-from gearidae.engine.sundials.memory import model_at
+from gearidae.engine.motion.observe import observe
+from gearidae.engine.motion.residual import jacobian, residual
 
 __all__ = [
     "finish_step_at",
@@ -25,13 +25,13 @@ __all__ = [
 
 @compiled
 def residual_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:
-    """`gearidae.engine.model.residual.residual`."""
+    """`gearidae.engine.motion.residual.residual`."""
     residual(model_at(place), t, y, yp, out)
 
 
 @compiled
 def jacobian_at(place: int, t: float, cj: float, y: Floats, out: Floats) -> None:
-    """`gearidae.engine.model.residual.jacobian`."""
+    """`gearidae.engine.motion.residual.jacobian`."""
     jacobian(model_at(place), t, cj, y, out)
 
 
@@ -43,7 +43,7 @@ def guard_at(place: int, t: float, y: Floats) -> float:
 
 @compiled
 def observe_at(place: int, t: float, y: Floats, row: Floats) -> None:
-    """`gearidae.engine.model.observe.observe`."""
+    """`gearidae.engine.motion.observe.observe`."""
     observe(model_at(place), t, y, row)
 
 

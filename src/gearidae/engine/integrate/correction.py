@@ -7,8 +7,8 @@ two, which leaves two equations for the corrections of v and w; a roller keeps o
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.residual import held, motion
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.motion.residual import held, motion
 
 __all__ = ["correct"]
 

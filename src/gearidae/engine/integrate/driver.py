@@ -110,7 +110,7 @@ class Output(NamedTuple):
         checkpoint
             See `Block`.
         kept : tuple
-            EnergyBalance and extremes, likewise; see `gearidae.engine.model.problem.Problem.kept`.
+            EnergyBalance and extremes, likewise; see `gearidae.engine.setup.problem.Problem.kept`.
         """
         driver = m.work.driver
         rows, events = int(driver.rows), int(driver.events)

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.adhesion import follow_joining
-from gearidae.engine.energy.balance import accumulate_energy, close_balance, restart_quadrature
-from gearidae.engine.energy.exposures import expose_step, follow_exposures
 from gearidae.engine.events.events import CROWDED, RESTART, balance_can_wait, handle
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
-from gearidae.engine.extremes.follow import follow_extremes, note_rest, restart_extremes
+from gearidae.engine.followers.balance import accumulate_energy, close_balance, restart_quadrature
+from gearidae.engine.followers.exposures.follow import expose_step, follow_exposures
+from gearidae.engine.followers.extremes.follow import follow_extremes, note_rest, restart_extremes
+from gearidae.engine.followers.joining import follow_joining
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, W
-from gearidae.engine.model.tooth_pairs import in_flight
+from gearidae.engine.pairs.tooth_pairs import in_flight
 
 __all__ = ["ROOT", "STOP", "finish_step", "has_room", "prepare_restart", "prepare_start"]
 

@@ -14,14 +14,15 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.elimination import begin_deflections
-from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate import adams
 from gearidae.engine.integrate.by_address import observe_at
+from gearidae.engine.integrate.callbacks import callbacks
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
     BLOCK_STEPS,
     CHECKPOINT_STEPS,
+    CONVERGENCE_FAILURES_HIGH,
     MODEL_CHANGES,
     Block,
     Ending,
@@ -34,12 +35,13 @@ from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_re
 from gearidae.engine.integrate.root_finding import SHARPNESS, Arrays, Stepper, next_time, start_search
 from gearidae.engine.integrate.start import first_step
 from gearidae.engine.integrate.step_control import configure_ida
-from gearidae.engine.model.observe import observe
-from gearidae.engine.model.problem import Problem
-from gearidae.engine.model.residual import is_eliminated, set_deflections
+from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.motion.observe import observe
+from gearidae.engine.motion.residual import is_eliminated, set_deflections
+from gearidae.engine.motion.static_solve import fold_gap
+from gearidae.engine.setup.problem import Problem
 from gearidae.engine.sundials import names as sun
-from gearidae.engine.sundials.callbacks import callbacks
 from gearidae.engine.sundials.ida_memory import (
     DKY,
     HANDLES,
@@ -51,7 +53,6 @@ from gearidae.engine.sundials.ida_memory import (
     close_solver,
     open_solver,
 )
-from gearidae.engine.sundials.memory import model_at
 from gearidae.records import Statistics
 
 FIRST_STEPS = 1_000
@@ -253,7 +254,8 @@ def run(
     functions = callbacks(unknowns, bool(m.scene.nodes > 0), as_ida)
     places = Places(sun.places(), sun.newton_places())
     try:
-        if open_solver(s.handles, place, functions, places, (s.y, s.yp, s.dky)) != 0:
+        vectors = (s.y, s.yp, s.dky)
+        if open_solver(s.handles, place, functions, places, vectors, CONVERGENCE_FAILURES_HIGH) != 0:
             statistics.ending = Ending.SOLVER_FAILURE
             return
         yield from _blocks(problem, s, out, statistics)

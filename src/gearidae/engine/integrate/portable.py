@@ -16,8 +16,6 @@ import numpy as np
 from sksundae.ida import IDA
 
 from gearidae.compiled import compiled
-from gearidae.engine.elastic.block_jacobian import dense_jacobian, store_size
-from gearidae.engine.elastic.static_solve import fold_gap
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate.by_address import (
     finish_step_at,
@@ -40,9 +38,11 @@ from gearidae.engine.integrate.driver import (
 )
 from gearidae.engine.integrate.epilogue import ROOT, STOP, has_room, prepare_restart, prepare_start
 from gearidae.engine.integrate.start import first_step
-from gearidae.engine.model.problem import Problem
+from gearidae.engine.model.located import Located
 from gearidae.engine.model.state import Floats, Model, Record
-from gearidae.engine.sundials.memory import Located
+from gearidae.engine.motion.block_jacobian import dense_jacobian, store_size
+from gearidae.engine.motion.static_solve import fold_gap
+from gearidae.engine.setup.problem import Problem
 from gearidae.errors import SceneError
 from gearidae.records import Statistics
 

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine.events.events import guard
 from gearidae.engine.integrate import adams
-from gearidae.engine.model.residual import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.motion.residual import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import IDA, YP, Y

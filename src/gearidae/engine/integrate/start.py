@@ -9,9 +9,9 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import node_rates
 from gearidae.engine.events.mesh_marks import relief_step
-from gearidae.engine.model.residual import residual
 from gearidae.engine.model.state import EMPTY, GEARS, PHASE, ROLLER, Floats, Model, V, W
-from gearidae.engine.model.tooth_pairs import in_flight, nearest_gap
+from gearidae.engine.motion.residual import residual
+from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 
 __all__ = ["first_step", "rebase", "set_rates"]
 

@@ -32,7 +32,7 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.integrate import adams
 from gearidae.engine.model.state import COAST, DRIVE, MOST_ORDERS, Floats, Model, Record, V, W
-from gearidae.engine.model.tooth_pairs import in_flight, nearest_gap
+from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 from gearidae.engine.sundials import names as sun
 
 __all__ = ["below_gap_bound", "change_wanted", "configure_ida", "control_step", "max_stable_order"]

@@ -1,4 +1,4 @@
-"""From a scene to numbers: what the engine knows of a scene, its tooth pairs, torques, residual and observed columns.
+"""Records of a run: constants, what a checkpoint carries, work space, and the `Model` that holds them.
 
-The state of a run lives here; integrators and events change it and nothing else does.
+Every other room of the engine reads and writes these records; none of them is imported here.
 """

@@ -1,4 +1,1 @@
-"""The boundary with SUNDIALS: names, memory, callbacks.
-
-No other room knows an address.
-"""
+"""The boundary with SUNDIALS: its functions by name, its memory, a solver opened and closed, its interpolation."""

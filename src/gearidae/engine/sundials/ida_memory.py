@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
-from gearidae.engine.elastic.block_jacobian import store_size
-from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
+from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.motion.block_jacobian import store_size
 from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 
@@ -53,7 +53,12 @@ class Places(NamedTuple):
 
 @compiled(makes_arrays=True)
 def open_solver(
-    handles: Ints, place: int, functions: Functions, places: Places, vectors: tuple[Floats, ...]
+    handles: Ints,
+    place: int,
+    functions: Functions,
+    places: Places,
+    vectors: tuple[Floats, ...],
+    most_failures: int,
 ) -> int:
     """Create IDA with solvers of our own over the caller's arrays; 0 if all went well.
 
@@ -67,8 +72,10 @@ def open_solver(
     places : Places
     vectors : tuple of three ndarrays, shape (n,)
         State, rates and work space.
+    most_failures : int
+        Of Newton's iteration in one step.
     """
-    m, (y, yp, dky) = memory.model_at(place), vectors
+    m, (y, yp, dky) = model_at(place), vectors
     m.work.adams.own = 1 if functions.newton.size > 0 else 0
     n = y.size
     if m.work.adams.own != 0:  # nodes are eliminated
@@ -96,7 +103,7 @@ def open_solver(
         flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
         flag |= sun.IDASetJacFn(solver, functions.model[1])
     flag |= sun.IDASetMaxNumSteps(solver, -1)
-    flag |= sun.IDASetMaxConvFails(solver, CONVERGENCE_FAILURES_HIGH)
+    flag |= sun.IDASetMaxConvFails(solver, most_failures)
     return flag
 
 

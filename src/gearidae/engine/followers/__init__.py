@@ -1,0 +1,1 @@
+"""What follows a run from one accepted time to the next without changing it: balance, extremes, exposures."""

@@ -1,0 +1,311 @@
+r"""The energy balance of a run, kept at every accepted step without evaluating a force.
+
+The works of drive, drag, dry resistance and mesh damping need torques and speeds only. The work of a constant torque is
+exactly torque times angle, and so is that of the drag at a mean speed; the rest is integrated with the powers and their
+rates at both ends (corrected trapezoidal rule, an error of fifth order in the length). Drag and damping vary most and
+cost least to evaluate, so they are integrated over every step. The others are integrated over several steps at once; a
+turning point in between is no kink of their powers.
+
+What the contacts store is a function of the gaps and of the joined heights (`gearidae.contact.kernels.energy`). A
+pair on a
+contact of length :math:`\ell = \sqrt{R/p_b}` stores :math:`\ell\,(A(g) + \sum e_m)` and pushes with W. Its rate is
+
+.. math::
+
+    \frac{d}{dt}(\ell U) = -W \dot g + U \dot\ell - \dot Q,
+
+with Q the energy that asperities lose by joining. The middle term is there because the radius of curvature R changes
+along the path of contact, and with it the number of asperities in touch, while the force along the line of action
+does no work for that: the model has no force for it (Teodorescu et al. 2009, Eqs. 4-6 and 13). It is named here, the
+work of the changing radius, and integrated like the others. So
+
+    drive + radius = drag + dry + damping + adhesion + stored + kinetic
+
+but for the errors of integration, which is what the balance's residual measures.
+
+In a closing contact, asperities come into contact until its turning point. Their loss is added there, in closed form,
+:math:`\ell\,|E(0)|\,(\Psi(g) - \Psi(\zeta))` for each material; until then it counts as stored.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.energy.contacts import stored_energy
+from gearidae.engine.energy.kinetic import kinetic_energy
+from gearidae.engine.energy.radius import radius_power, sample_radius_power
+from gearidae.engine.followers.exposures.follow import begin_exposures
+from gearidae.engine.followers.joining import follow_joining_by_place, joining_lag
+from gearidae.engine.followers.quadrature import (
+    Ends,
+    error_estimate,
+    error_of_square,
+    integral,
+    integral_of_cube,
+    integral_of_square,
+    torque_work,
+)
+from gearidae.engine.model.located import model_at
+from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
+from gearidae.engine.torques.torque import is_constant, torque_force, torque_rate
+
+__all__ = [
+    "BALANCE",
+    "accumulate_energy",
+    "balance_at",
+    "carry_balance",
+    "close_balance",
+    "open_balance",
+    "restart_quadrature",
+    "sample_radius_power",
+]
+
+
+@compiled
+def open_balance(m: Model, y: Floats) -> None:
+    """Note the energies at the start; the kinetic energy counts as exchanged, as speeds have absolute tolerances."""
+    e = m.state.energy
+    e.start_stored = stored_energy(m, y)[0]
+    e.start_kinetic = e.throughput = e.peak_kinetic = kinetic_energy(m, y)
+
+
+@compiled
+def carry_balance(old: Model, old_y: Floats, m: Model, y: Floats) -> None:
+    """Add the stored energy of another model of the same scene minus that of the old one to ``model_change``."""
+    m.state.energy.model_change += stored_energy(m, y)[0] - stored_energy(old, old_y)[0]
+
+
+@compiled_once(SOLVER)
+def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Begin a quadrature at a start, where speeds and torques may jump."""
+    q = m.work.quadrature
+    q.steps = 0
+    q.length_work = 0.0
+    q.time = m.work.lag_time = t
+    q.kinetic = kinetic_energy(m, y)
+    if m.scene.kind == ROLLER:
+        return
+    q.gear_travel, q.gear_speed, q.gear_acceleration = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
+    _note_resistance(m, t, q.gear_travel, y, yp)
+    q.pinion_travel, q.pinion_speed, q.pinion_acceleration = _pinion(m, y, yp)
+    q.drive, q.drive_rate = _torque(m, DRIVE, t, q.pinion_speed, q.pinion_acceleration)
+    q.load, q.load_rate = _torque(m, LOAD, t, y[W], yp[W])
+    sample_radius_power(m, t, y)
+    if m.scene.places > 0:
+        begin_exposures(m, t, y, yp)
+
+
+@compiled(inline=True)
+def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
+    """Add all works and losses up to an accepted time; histories and mesh marks must still be those before it.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau that has been accepted.
+    y, yp : ndarray
+        State there and its rate.
+    now : bool
+        Whether to close the quadrature interval now, instead of after ``balance_steps`` steps.
+    """
+    q = m.work.quadrature
+    if m.scene.kind == GEARS:
+        _accumulate_losses(m, t, y, yp)
+    q.steps += 1
+    h = t - q.time
+    if h == 0.0 or not (now or in_flight(m) or _closes_interval(m, h)):
+        return
+    q.steps = 0
+    q.time = t
+    if m.scene.kind == ROLLER:
+        _book_kinetic(m, kinetic_energy(m, y), 0.0)
+        return
+    w, w_rate = y[W], yp[W]
+    if m.scene.by_place != 0:
+        follow_joining_by_place(m, t, y, w_rate)
+    gear = y[PHASE] / m.scene.phase_rate
+    speed, exchange, error = _book_drive(m, h, t, y, yp)
+    if m.scene.dry != 0:
+        dry, more = _book_dry(m, h, t, gear - q.gear_travel, w, w_rate)
+        error += more
+        exchange += dry
+    q.gear_travel, q.gear_speed, q.gear_acceleration = gear, w, w_rate
+    power, rate = radius_power(m, t, y, w_rate)
+    radius = integral(h, q.radius_power, power, q.radius_power_rate, rate) + q.length_work
+    e = m.state.energy
+    e.quadrature_error += error + error_estimate(h, q.radius_power, power, q.radius_power_rate, rate)
+    q.length_work = 0.0
+    q.radius_power, q.radius_power_rate = power, rate
+    e.radius_work += radius
+    kinetic = 0.5 * speed * speed / m.scene.pinion_inverse_mass + 0.5 * w * w / m.scene.gear_inverse_mass
+    _book_kinetic(m, kinetic, exchange + abs(radius))
+
+
+@compiled(inline=True)
+def _book_kinetic(m: Model, kinetic: float, exchanged: float) -> None:
+    """Note the kinetic energy at the end of an interval, and what has been exchanged in it besides its change."""
+    e, q = m.state.energy, m.work.quadrature
+    e.throughput += exchanged + abs(kinetic - q.kinetic)
+    e.peak_kinetic = max(e.peak_kinetic, kinetic)
+    q.kinetic = kinetic
+
+
+@compiled(inline=True)
+def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[float, float, float]:
+    """Add the work of the drive; return the pinion's speed, the work's magnitude and its error estimate."""
+    q = m.work.quadrature
+    pinion, speed, acceleration = _pinion(m, y, yp)
+    force, rate = _torque(m, DRIVE, t, speed, acceleration)
+    work, error = torque_work(
+        h,
+        pinion - q.pinion_travel,
+        Ends(q.drive, q.drive_rate, force, rate),
+        Ends(q.pinion_speed, q.pinion_acceleration, speed, acceleration),
+    )
+    q.drive, q.drive_rate = force, rate
+    q.pinion_travel, q.pinion_speed, q.pinion_acceleration = pinion, speed, acceleration
+    m.state.energy.drive_work += work
+    return speed, abs(work), error
+
+
+@compiled(inline=True)
+def _book_dry(m: Model, h: float, t: float, travel: float, w: float, w_rate: float) -> tuple[float, float]:
+    """Add the loss by dry resistance; return its magnitude and its error estimate."""
+    q = m.work.quadrature
+    force, rate = _torque(m, LOAD, t, w, w_rate)
+    if min(force, q.load) < 0.0:  # a dry resistance never pushes: what is left of a straight line
+        most = max(force, q.load, 0.0)
+        dry = 0.5 * most * most / abs(force - q.load) * travel if most > 0.0 else 0.0
+        error = abs(dry)
+    else:
+        dry, error = torque_work(
+            h,
+            travel,
+            Ends(q.load, q.load_rate, force, rate),
+            Ends(q.gear_speed, q.gear_acceleration, w, w_rate),
+        )
+    q.load, q.load_rate = force, rate
+    m.state.energy.dry_loss += m.state.slip * dry
+    return abs(m.state.slip * dry), error
+
+
+@compiled(inline=True)
+def _closes_interval(m: Model, h: float) -> bool:
+    """Whether to close the quadrature interval: after fewer steps, the larger the error is estimated."""
+    steps, most = m.work.quadrature.steps, m.scene.balance_error * m.state.energy.throughput
+    error = m.state.energy.quadrature_error
+    if steps >= m.scene.balance_steps or h > m.scene.balance_span or error > most:
+        return True
+    return bool(3.0 * error > most and 2 * steps >= m.scene.balance_steps)
+
+
+@compiled(inline=True)
+def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Add the losses by drag and mesh damping; both are cheap to evaluate and are integrated over every step."""
+    r = m.work.resistance
+    h = t - r.time
+    if h == 0.0:
+        return
+    gear, w, w_rate = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
+    taken = 0.0
+    e = m.state.energy
+    if m.scene.drag != 0.0:
+        cube, error = integral_of_cube(h, gear - r.gear_travel, r.gear_speed, r.gear_acceleration, w, w_rate)
+        taken = m.scene.drag * cube
+        e.drag_loss += taken
+        e.loss_error += m.scene.drag * error
+    if m.scene.viscous != 0.0:
+        square, error = integral_of_square(
+            h, gear - r.gear_travel, r.gear_speed, r.gear_acceleration, w, w_rate
+        )
+        e.drag_loss += m.scene.viscous * square
+        e.loss_error += m.scene.viscous * error
+        taken += m.scene.viscous * square
+    if m.scene.damping != 0.0:
+        v, was = y[V], r.mesh_speed
+        rub = m.scene.damping * integral(
+            h, was * was, v * v, 2.0 * was * r.mesh_acceleration, 2.0 * v * yp[V]
+        )
+        e.damping_loss += rub
+        e.loss_error += m.scene.damping * error_of_square(h, r.mesh_acceleration, yp[V])
+        taken += rub
+    _note_resistance(m, t, gear, y, yp)
+    e.throughput += taken
+
+
+@compiled(inline=True)
+def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> None:
+    """Note what the powers of drag and damping are made of, with the gear's travel."""
+    r = m.work.resistance
+    r.time, r.gear_travel = t, gear
+    r.gear_speed, r.gear_acceleration = y[W], yp[W]
+    r.mesh_speed, r.mesh_acceleration = y[V], yp[V]
+
+
+@compiled_once(SOLVER)
+def close_balance(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Bring all sums up to an accepted time, after its event."""
+    accumulate_energy(m, t, y, yp, True)
+
+
+BALANCE: Final = 5
+"""Numbers that `balance_at` leaves besides the sums: stored and pending energy, energy of motion, lag of joining."""
+
+
+@compiled
+def balance_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:
+    """Keep the sums up to an accepted time, and say what contacts store and what moves there.
+
+    Parameters
+    ----------
+    place : int
+        Of the model, from `gearidae.engine.model.located.Located`.
+    t : float
+        Time over tau.
+    y, yp : ndarray, shape (n,)
+        State there, and its rate.
+    out : ndarray, shape (BALANCE,)
+        Filled in.
+    """
+    m = model_at(place)
+    close_balance(m, t, y, yp)
+    out[0], out[1] = stored_energy(m, y)
+    out[2], out[3] = kinetic_energy(m, y), joining_lag(m)
+    out[4] = _torque_slopes(m, t, y)
+
+
+@compiled
+def _torque_slopes(m: Model, t: float, y: Floats) -> float:
+    """By how much the torques differ, over their base radii, at speeds that differ by one; 0 of a roller."""
+    total = 0.0
+    if m.scene.kind != ROLLER:
+        for shaft in range(2):
+            if not is_constant(m, shaft):
+                speed = y[W] if shaft == LOAD else y[V] + y[W]
+                total += abs(torque_force(m, shaft, t, speed + 1.0) - torque_force(m, shaft, t, speed))
+    return total
+
+
+@compiled
+def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
+    """Travel of the pinion's base circle, its rate and the rate of that."""
+    travel = y[U] + y[PHASE] / m.scene.phase_rate
+    speed, acceleration = y[V] + y[W], yp[V] + yp[W]
+    if m.scene.error_count != 0:
+        _, e, e1, e2 = static_error(m, y[U], y[PHASE])
+        travel += e
+        speed /= 1.0 - e1
+        acceleration = (acceleration + e2 * speed * speed) / (1.0 - e1)
+    return travel, speed, acceleration
+
+
+@compiled
+def _torque(m: Model, shaft: int, t: float, speed: float, acceleration: float) -> tuple[float, float]:
+    """A torque over its base radius, and its rate along the motion of its shaft."""
+    if is_constant(m, shaft):
+        return m.scene.torque[shaft].constant, 0.0
+    return torque_force(m, shaft, t, speed), torque_rate(m, shaft, t, speed, acceleration)

@@ -1,0 +1,271 @@
+r"""What the flanks are exposed to, tooth by tooth and place by place, kept at the solver's own steps.
+
+For both flanks of every tooth of the pinion and every place along the path of contact four sums are kept, in `rows`:
+
+- asperities that have come into contact, :math:`\int \ell\, d\Psi` for each material. What a contact has joined at an
+  accepted time is :math:`\Psi(\zeta)`, with the play operator's joined height :math:`\zeta` there; all turning points
+  are accepted times, so that nothing is missed between them;
+- the energy that they have lost by it, in the proportion of the energy balance (where shares change with tooth and
+  place, as if the material covered everything);
+- sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
+  times the distance from the pitch point. It is integrated over one to six steps at once
+  (`gearidae.engine.followers.exposures.intervals`), and to every onset and separation; the forces are those of
+  Newton's iteration (`gearidae.engine.motion.noted_force`);
+- the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times, at turning points, and where a contact
+  passes from one place to the next.
+
+An elastic contact is looked at as often as the energy balance closes an interval. Where a contact passes from one place
+to the next in such an interval, what it has joined is divided by its gap there, on the cubic of the gap; of elastic
+contacts, and of sliding work, in proportion to the way. Contacts on the tip relief count at the end of the path.
+"""
+
+from __future__ import annotations
+
+import math
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import EXPOSURES
+from gearidae.engine.elastic.nodes import node_force
+from gearidae.engine.followers.exposures.contacts import (
+    adds_often,
+    begin_contacts,
+    join,
+    joins,
+    joins_here,
+    turn_to_closing,
+)
+from gearidae.engine.followers.exposures.intervals import (
+    begin_intervals,
+    next_interval,
+    next_look,
+    start_with_one_step,
+    time_to_zero,
+)
+from gearidae.engine.followers.exposures.places import place_at, way_to_edge
+from gearidae.engine.followers.exposures.pressure import PRESSURE, note_pressure, see_pressure
+from gearidae.engine.followers.exposures.sliding import add_sliding, sliding_speeds, speeds_here
+from gearidae.engine.model.located import model_at
+from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.motion.noted_force import begin_notes, note_force
+from gearidae.engine.pairs.coverage import note_shares, place_inside, shares_of
+from gearidae.engine.pairs.tooth_pairs import (
+    contact_length,
+    history_of,
+    pair_at,
+    pair_force,
+    pair_gap,
+    pairs_near,
+)
+
+__all__ = [
+    "PRESSURE",
+    "QUANTITIES",
+    "begin_exposures",
+    "close_exposures_at",
+    "expose_step",
+    "expose_touch",
+    "expose_turning",
+    "exposures_of",
+    "follow_exposures",
+]
+
+QUANTITIES = 2 * MATERIALS + 2
+"""Sums of a place: contacts and adhesion work of each material, sliding work, largest pressure."""
+
+
+def exposures_of(m: Model) -> Floats:
+    """Return the exposures of the flanks among a model's rows; writable."""
+    return m.rows[m.scene.exposures_at : m.scene.exposures_at + m.scene.exposures]
+
+
+@compiled_once(EXPOSURES)
+def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Note what is in contact at a start; nothing is exposed yet."""
+    m.work.exposing.time, m.work.exposing.begun = t, 1
+    m.work.exposing.often = 1 if adds_often(m) else 0
+    begin_intervals(m)
+    for k in range(m.scene.histories):
+        m.work.exposing.pair[k].known = 0
+    _note_forces(m, t, y)
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        k = noted.history
+        _begin_pair(m, t, k, noted.pair, noted.place)
+        begin_contacts(m, y, k, noted.place, noted.gap)
+        sliding = sliding_speeds(m, y, yp[V], yp[W])
+        push = noted.force, noted.slope * noted.gap_rate
+        add_sliding(m, t, k, sliding, noted.place, (noted.gap, noted.gap_rate), push)
+        see_pressure(m, t, k, noted.place, push)
+
+
+@compiled_once(EXPOSURES)
+def follow_exposures(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
+    """Add what the flanks have been exposed to since the last call, up to an accepted time.
+
+    Parameters
+    ----------
+    m : Model
+        With the histories before the event at this time, if there is one.
+    t : float
+        Time over tau.
+    y, yp : ndarray
+        State there and its rate.
+    whole : bool
+        Whether the contacts of pairs that are closing are added, too, for somebody who looks or a restart.
+    """
+    exposing = m.work.exposing
+    if exposing.begun == 0 or (t <= exposing.time and not whole):
+        return
+    if whole or m.work.notes.time != t or m.scene.nodes > 0:
+        _note_forces(m, t, y)
+    sliding = sliding_speeds(m, y, yp[V], yp[W])
+    moved, to_zero, way = y[U] - m.work.notes.travel, math.inf, math.inf
+    ends = whole or m.scene.nodes > 0 or exposing.steps >= exposing.at_once
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        k = noted.history
+        if m.state.history[k].pair != noted.pair:
+            continue
+        _begin_new(m, k, noted.pair, noted.place)
+        widened = -moved if k < m.scene.slots else moved
+        gap = noted.gap + widened
+        push, rate = noted.force + noted.slope * widened, noted.slope * noted.gap_rate
+        if ends:
+            if joins_here(m, k, noted.place, gap) or (whole and m.state.history[k].direction <= 0.0):
+                join(m, t, y, k, noted.place, (gap, noted.gap_rate))
+            add_sliding(m, t, k, sliding, noted.place, (gap, noted.gap_rate), (push, rate))
+            to_zero = min(to_zero, time_to_zero(m, k, push, rate))
+        see_pressure(m, t, k, noted.place, (push, rate))
+        if push > 0.0:
+            way = min(way, way_to_edge(m, k, noted.place, sliding[2]))
+    if ends:
+        exposing.time = t
+        next_interval(m, to_zero, sliding[2])
+    next_look(m, way, sliding[2])
+
+
+@compiled(inline=True)
+def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Count an accepted step of rigid bodies, and follow the exposures where that is wanted after it."""
+    m.work.exposing.steps += 1
+    if m.work.exposing.steps >= m.work.exposing.wanted:
+        follow_exposures(m, t, y, yp, False)
+
+
+@compiled(inline=True)
+def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Add what a contact has been exposed to up to its turning point, before the history takes that.
+
+    Most turning points add nothing. That is found out in the caller's code.
+    """
+    own = m.work.exposing.pair[k]
+    if m.state.history[k].direction < 0.0:
+        inside = place_inside(m, coast, pair, y[PHASE])
+        if gap < own.lowest or place_at(m, inside) != own.seen_at or m.scene.nodes > 0 or joins(m, k, gap):
+            _expose_closed(m, t, y, coast, pair, k, gap)
+    elif m.work.exposing.often == 0:
+        own.turned = 1
+    else:
+        _expose_opened(m, y, coast, pair, k, gap)
+
+
+@compiled_once(EXPOSURES)
+def _expose_opened(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Do so where a contact begins to close."""
+    if m.work.exposing.begun != 0:
+        _begin_new(m, k, pair, place_inside(m, coast, pair, y[PHASE]))
+        turn_to_closing(m, y, k, gap)
+
+
+@compiled_once(EXPOSURES)
+def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Do so where a contact ceases to close: the pressure is largest where the gap is least."""
+    if m.work.exposing.begun == 0:
+        return
+    own, inside = m.work.exposing.pair[k], place_inside(m, coast, pair, y[PHASE])
+    _begin_new(m, k, pair, inside)
+    if joins(m, k, gap):
+        join(m, t, y, k, inside, (gap, 0.0))
+    at, elastic = place_at(m, inside), m.scene.nodes > 0
+    if elastic or gap < own.lowest or at != own.seen_at:
+        own.lowest = min(own.lowest, gap)
+        force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
+        if elastic:  # the slope of the force has a jump here
+            add_sliding(m, t, k, speeds_here(m, y), inside, (gap, 0.0), (force, 0.0))
+            see_pressure(m, t, k, inside, (force, 0.0))
+        elif force > 0.0:
+            note_pressure(m, k, at, inside, force)
+
+
+@compiled_once(EXPOSURES)
+def expose_touch(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> None:
+    """Add what a contact has been exposed to up to its onset or separation, and take single steps from there."""
+    if m.work.exposing.begun == 0:
+        return
+    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    _begin_new(m, k, pair, inside)
+    if joins_here(m, k, inside, gap):
+        join(m, t, y, k, inside, (gap, rate))
+    force, slope = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
+    add_sliding(m, t, k, speeds_here(m, y), inside, (gap, rate), (force, slope * rate))
+    see_pressure(m, t, k, inside, (force, slope * rate))
+    start_with_one_step(m)
+
+
+@compiled
+def close_exposures_at(place: int, t: float, y: Floats, yp: Floats) -> None:
+    """`follow_exposures` of the model at a place, from `gearidae.engine.model.located.Located`."""
+    m = model_at(place)
+    follow_exposures(m, t, y, yp, True)
+
+
+@compiled(inline=True)
+def _begin_new(m: Model, k: int, pair: int, inside: float) -> None:
+    """Begin with a pair that has come near since the exposures of all pairs were last added up."""
+    own, before = m.work.exposing.pair[k], m.work.exposing.time
+    if own.known == 0 or own.pair != pair or own.time < before:
+        _begin_pair(m, before, k, pair, inside)
+
+
+@compiled
+def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
+    """Begin with a pair in which nothing is in contact."""
+    own = m.work.exposing.pair[k]
+    own.known, own.pair, own.time = 1, pair, t
+    own.place, own.at = inside, place_at(m, inside)
+    own.seen_time, own.seen_place, own.seen_at = t, own.place, own.at
+    own.turned, own.pulls, own.lowest = 0, 0, m.scene.cutoff
+    own.power = own.power_rate = own.force = own.force_rate = own.gap_rate = 0.0
+    own.gap, own.side = m.scene.cutoff, 1
+    for material in range(MATERIALS):
+        own.front[material] = own.added[material] = 0.0
+    coast = 0 if k < m.scene.slots else 1
+    teeth = int(m.scene.pinion_teeth)
+    tooth = (pair + int(m.state.turns)) % teeth
+    own.row = m.scene.exposures_at + (coast * teeth + tooth) * QUANTITIES * m.scene.places
+
+
+@compiled
+def _note_forces(m: Model, t: float, y: Floats) -> None:
+    """Evaluate the forces of all pairs that are near, where the last step did not end."""
+    begin_notes(m, t, y[U])
+    reach = pairs_near(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        k = history_of(m, coast, pair)
+        gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+        if gap < m.scene.cutoff and m.state.history[k].pair == pair:
+            force = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
+            note_force(m, k, pair, inside, (gap, rate), force)
+
+
+@compiled
+def _force(
+    m: Model, t: float, y: Floats, which: tuple[int, int, int], at: tuple[float, float, float]
+) -> tuple[float, float]:
+    """Force of a pair, given by flank, number and history, with a gap, a gap rate and a place; slope in the gap."""
+    (coast, pair, k), (gap, rate, inside) = which, at
+    if m.scene.nodes > 0:
+        note_shares(m, k, coast, pair, inside)
+        return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
+    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))

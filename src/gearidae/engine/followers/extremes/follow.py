@@ -1,0 +1,95 @@
+"""What both drivers call: at every accepted time, and at every start."""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled
+from gearidae.engine.followers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
+from gearidae.engine.followers.extremes.separations import follow_separation, note_separation
+from gearidae.engine.followers.extremes.speeds import follow_speed, next_part, note_speed, stand
+from gearidae.engine.model.located import model_at
+from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.motion.separation import separation
+
+__all__ = ["follow_extremes", "note_present_at", "note_rest", "restart_extremes"]
+
+
+@compiled(inline=True)
+def follow_extremes(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) -> None:
+    """Follow the extremes to an accepted time, before its events are handled.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    y, yp : ndarray, shape (n,)
+        State and rates there.
+    event : bool
+        Whether something happens there: the force may have a corner, over which no polynomial is laid.
+    spare : ndarray, shape (n,)
+        Work space.
+    """
+    k = m.work.track
+    if t > k.time:
+        here = k.last + 1 if k.last < 2 else 0
+        _set_point(m, here, t, y, yp)
+        last, now = k.point[k.last], k.point[here]
+        if m.scene.kind == GEARS:
+            follow_speed(m, last, now)
+        follow_separation(m, last, now, y)
+        if k.smooth > 1:
+            follow_force(m, k.point[k.last - 1 if k.last > 0 else 2], last, now, spare)
+        k.time, k.last = t, here
+        k.smooth += 1
+    if event:
+        k.smooth = 1
+        note_corner(m, k.point[k.last], y)
+        _note_present(m, y)
+
+
+@compiled(inline=True)
+def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats) -> None:
+    p = m.work.track.point[i]
+    p.time, p.force = t, force_of_motion(m, t, y, yp)
+    p.travel, p.travel_rate, p.travel_bend = y[U], y[V], yp[V]
+    if m.scene.kind == GEARS:
+        p.speed, p.speed_rate, p.place = y[W], yp[W], y[PHASE] + m.state.turns
+
+
+@compiled
+def note_present_at(place: int, y: Floats) -> None:
+    """Note a state of the model at a place, from `gearidae.engine.model.located.Located`, as it is."""
+    _note_present(model_at(place), y)
+
+
+@compiled
+def _note_present(m: Model, y: Floats) -> None:
+    """Note a state as it is: until an extremum is passed it may be one."""
+    if m.scene.kind == GEARS:
+        note_speed(m, y[W])
+    else:
+        note_speed(m, y[V])
+    note_separation(m, separation(m, y))
+
+
+@compiled
+def note_rest(m: Model, t: float, y: Floats) -> None:
+    """Note that an event has brought the gear to rest."""
+    p = m.work.track.point[m.work.track.last]
+    if m.scene.kind == GEARS and y[W] <= 0.0 < p.speed:
+        stand(m, t, y[PHASE] + m.state.turns)
+        p.speed = y[W]
+
+
+@compiled
+def restart_extremes(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Go on from a start, where forces and accelerations may have jumped."""
+    e, k = m.state.extremes, m.work.track
+    if e.begun == 0:
+        e.lowest_speed = e.highest_speed = y[V] if m.scene.kind == ROLLER else y[W]
+        e.separation = separation(m, y)
+    k.time, k.last, k.smooth, k.next_part = t, 0, 1, next_part(m)
+    _set_point(m, 0, t, y, yp)
+    first_force(m, t, k.point[0].force)
+    e.begun = 1
+    _note_present(m, y)

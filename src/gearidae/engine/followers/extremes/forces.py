@@ -1,0 +1,151 @@
+"""Largest and smallest force: of accepted steps from the equations of motion, between them from the contact law.
+
+Most extremes of the force lie where a pair turns round, which is an event and hence an accepted time. What is left are
+maxima of adhesion, passed within a few steps. A parabola through three accepted forces tells whether one was passed
+that may be a record. Only then the contact law is asked for the force between these times.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.followers.interpolation import cubic, quintic, vertex
+from gearidae.engine.model.state import DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
+from gearidae.engine.motion.residual import mesh_forces, roller_force
+from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
+from gearidae.engine.torques.torque import torque_force
+
+__all__ = ["first_force", "follow_force", "force_of_motion", "note_corner"]
+
+NEAR_RECORD: Final = 0.1
+"""Share of a record by which the parabola may miss it: it has been seen to be out by 3 % at loose tolerances."""
+EVALUATIONS: Final = 3
+"""Forces that are asked for between accepted times, at a maximum of adhesion that may be a record."""
+_CLOSE: Final = 1e-3
+"""Share of the span over which two evaluations are alike: the force changes by a millionth of its own."""
+
+
+@compiled(inline=True)
+def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
+    """Force along the line of action, mesh damping included, that the pinion's acceleration tells; of a roller, on it.
+
+    See `gearidae.engine.motion.residual`, whose first equation is solved for the force.
+    """
+    if m.scene.kind == ROLLER:
+        return 0.0 if in_flight(m) else yp[V] / m.scene.gear_inverse_mass
+    if in_flight(m):
+        return m.scene.damping * y[V]
+    acceleration, turn = yp[V] + yp[W], y[V] + y[W]
+    if m.scene.error_count == 0:
+        return torque_force(m, DRIVE, t, turn) - acceleration / m.scene.pinion_inverse_mass
+    _, _, e1, e2 = static_error(m, y[U], y[PHASE])
+    turn /= 1.0 - e1
+    drive = torque_force(m, DRIVE, t, turn)
+    pinion = (acceleration + e2 * turn * turn) / ((1.0 - e1) * m.scene.pinion_inverse_mass)
+    return (drive - pinion) / (1.0 - e1)
+
+
+@compiled
+def first_force(m: Model, t: float, force: float) -> None:
+    """Note the force at a start."""
+    e = m.state.extremes
+    if e.begun == 0:
+        e.largest_force = e.smallest_force = force
+        e.largest_force_time = e.smallest_force_time = t
+    _note_force(m, t, force)
+
+
+@compiled
+def note_corner(m: Model, point: Record, y: Floats) -> None:
+    """Note the force at an event.
+
+    The state at an event within a step is that of the step's polynomial, whose rates go over the corner that the force
+    may have there: where it may be a record the contact law is asked.
+    """
+    e, force = m.state.extremes, point.force
+    margin = NEAR_RECORD * abs(force)
+    if force + margin > e.largest_force or force - margin < e.smallest_force:
+        force = _force_of_law(m, point.time, y)
+    _note_force(m, point.time, force)
+
+
+@compiled(inline=True)
+def follow_force(m: Model, before: Record, last: Record, now: Record, spare: Floats) -> None:
+    """Follow the force over three successive accepted times, between which it has no corner.
+
+    Parameters
+    ----------
+    m : Model
+    before, last, now : record
+        ``POINT`` of these times.
+    spare : ndarray, shape (n,)
+        Work space.
+    """
+    # times a b (a + b), the slopes at both ends of the parabola through the three forces
+    a, b = last.time - before.time, now.time - last.time
+    rise, next_rise = b * (last.force - before.force), a * (now.force - last.force)
+    bend = next_rise - rise
+    if (rise * (a + b) - bend * a) * (next_rise * (a + b) + bend * b) < 0.0:
+        _look_between(m, before, last, now, spare)
+
+
+@compiled
+def _look_between(m: Model, before: Record, last: Record, now: Record, spare: Floats) -> None:
+    """Look for a record of the force near the vertex of the parabola through three accepted ones.
+
+    Each force that is found takes the place of the outer point that is further away.
+    """
+    t0, f0, t1, f1, t2, f2 = before.time, before.force, last.time, last.force, now.time, now.force
+    t, force, bend = vertex(t0, f0, t1, f1, t2, f2)
+    record = m.state.extremes.largest_force if bend < 0.0 else m.state.extremes.smallest_force
+    if (force - record) * bend > NEAR_RECORD * abs(record * bend):
+        return
+    if m.scene.nodes > 0:  # their deflections between accepted times are not known
+        _note_force(m, t, force)
+        return
+    for _ in range(EVALUATIONS):
+        force = _force_between(m, before, last, now, t, spare)
+        _note_force(m, t, force)
+        if t - t0 > t2 - t:
+            t0, f0 = t, force
+        else:
+            t2, f2 = t, force
+        if min(abs(t1 - t0), abs(t1 - t2)) < _CLOSE * (now.time - before.time):
+            return
+        t, force, _ = vertex(t0, f0, t1, f1, t2, f2)
+        if not before.time < t < now.time:
+            return
+
+
+@compiled
+def _force_between(m: Model, before: Record, last: Record, now: Record, t: float, y: Floats) -> float:
+    """Force at a time between accepted ones, by the contact law; `y` is overwritten."""
+    p, q = (before, last) if t < last.time else (last, now)
+    h = q.time - p.time
+    s = (t - p.time) / h
+    y[U] = quintic(s, h, (p.travel, p.travel_rate, p.travel_bend), (q.travel, q.travel_rate, q.travel_bend))
+    y[V] = cubic(s, h, p.travel_rate, p.travel_bend, q.travel_rate, q.travel_bend)
+    scale = m.scene.phase_rate
+    if m.scene.kind == GEARS:
+        y[PHASE] = cubic(s, h, p.place, scale * p.speed, q.place, scale * q.speed) - m.state.turns
+        y[W] = cubic(s, h, p.speed, p.speed_rate, q.speed, q.speed_rate)
+    return float(_force_of_law(m, t, y))
+
+
+@compiled_once(SOLVER)
+def _force_of_law(m: Model, t: float, y: Floats) -> float:
+    """Force at a state, by the contact law, mesh damping included."""
+    if m.scene.kind == ROLLER:
+        return roller_force(m, t, y, False)[0]
+    return mesh_forces(m, t, y, False)[0] + m.scene.damping * y[V]
+
+
+@compiled
+def _note_force(m: Model, t: float, force: float) -> None:
+    e = m.state.extremes
+    if force > e.largest_force:
+        e.largest_force, e.largest_force_time = force, t
+    if force < e.smallest_force:
+        e.smallest_force, e.smallest_force_time = force, t

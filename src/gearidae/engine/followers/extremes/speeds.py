@@ -1,0 +1,134 @@
+"""Extremes of the gear's speed over a run and its parts, and where the gear has come to stand.
+
+Between two accepted times a speed is the cubic that meets speeds and accelerations at both. As long as the
+acceleration keeps its sign nothing has to be noted.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled
+from gearidae.contact.history import extreme_gap
+from gearidae.engine.followers.interpolation import cubic, cubic_slope
+from gearidae.engine.model.state import PARTS, Model, Record
+
+__all__ = ["follow_speed", "next_part", "note_speed", "stand"]
+
+HELD_WITHIN: Final = 0.5
+"""Pitches that a gear must turn on by before it counts as free again."""
+
+_BISECTIONS: Final = 40
+
+
+@compiled
+def note_speed(m: Model, w: float) -> None:
+    """Note a speed; extremes have to come in the order of time."""
+    e = m.state.extremes
+    e.lowest_speed, e.highest_speed = min(e.lowest_speed, w), max(e.highest_speed, w)
+    for i in range(len(PARTS)):
+        if e.part[i].begun != 0:
+            e.part[i].lowest, e.part[i].highest = min(e.part[i].lowest, w), max(e.part[i].highest, w)
+    if e.part[0].begun != 0:
+        e.top, e.bottom = max(e.top, w), min(e.bottom, w)
+        e.fall, e.rise = max(e.fall, e.top - w), max(e.rise, w - e.bottom)
+
+
+@compiled
+def next_part(m: Model) -> float:
+    """Time at which the coming part of the run begins."""
+    for i in range(len(PARTS)):
+        if m.state.extremes.part[i].begun == 0:
+            return float(m.scene.start + PARTS[i] * (m.scene.end - m.scene.start))
+    return math.inf
+
+
+@compiled(inline=True)
+def follow_speed(m: Model, last: Record, now: Record) -> None:
+    """Follow the gear's speed from the last accepted time to this one, given as ``POINT``."""
+    if now.time >= m.work.track.next_part:
+        _begin_parts(m, last, now)
+    turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
+    if turned or (now.speed <= 0.0 < last.speed):
+        _look_inside(m, last, now, turned)
+    if m.state.extremes.held != 0 and now.place - m.state.extremes.held_place > HELD_WITHIN:
+        m.state.extremes.held = 0  # it has turned on
+
+
+@compiled
+def _look_inside(m: Model, last: Record, now: Record, turned: bool) -> None:
+    """Locate an extremum of the speed within a step, and where it falls to zero."""
+    h, extreme = now.time - last.time, now.speed
+    if turned:
+        extreme = extreme_gap(h, last.speed, last.speed_rate, now.speed, now.speed_rate)
+    if last.speed > 0.0 and min(now.speed, extreme) <= 0.0:
+        share = _falls_to_zero(h, last.speed, last.speed_rate, now.speed, now.speed_rate)
+        time = last.time + share * h
+        stand(m, time, last.place + share * h * 0.5 * last.speed * m.scene.phase_rate)
+        if last.travel > 0.0:  # the drive flank is the nearer
+            _turn_back(m, time)
+    if turned:
+        note_speed(m, extreme)
+
+
+@compiled
+def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -> float:
+    """Share of a step after which a speed that is positive at its beginning falls to zero."""
+    low, high = 0.0, 1.0
+    if w1 > 0.0:  # it rises again within the step: look before its minimum
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            if cubic_slope(middle, h, w0, rate0, w1, rate1) < 0.0:
+                low = middle
+            else:
+                high = middle
+        low = 0.0
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        if cubic(middle, h, w0, rate0, w1, rate1) > 0.0:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@compiled
+def stand(m: Model, t: float, place: float) -> None:
+    """Note that the speed has fallen to zero."""
+    e = m.state.extremes
+    e.reversals += 1
+    note_speed(m, 0.0)
+    if e.held == 0:
+        e.held, e.held_time, e.held_place, e.held_exits = 1, t, place, e.mesh_exits
+        e.turn_backs = 0
+
+
+@compiled
+def _turn_back(m: Model, t: float) -> None:
+    """Note that teeth which cling to each other have turned the gear back, where it has just come to stand."""
+    e = m.state.extremes
+    if e.turn_backs > 0:
+        e.adhering += t - e.turn_back_time
+    e.turn_backs, e.turn_back_time = e.turn_backs + 1, t
+
+
+@compiled
+def _begin_parts(m: Model, last: Record, now: Record) -> None:
+    """Begin those parts of the run whose time has come."""
+    e, scale = m.state.extremes, m.scene.phase_rate
+    h = now.time - last.time
+    for i in range(len(PARTS)):
+        time = m.scene.start + PARTS[i] * (m.scene.end - m.scene.start)
+        if e.part[i].begun != 0 or now.time < time:
+            continue
+        share = (time - last.time) / h if h > 0.0 else 1.0
+        share = min(max(share, 0.0), 1.0)
+        w = cubic(share, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
+        note_speed(m, w)
+        e.part[i].begun, e.part[i].time = 1, time
+        e.part[i].place = cubic(share, h, last.place, scale * last.speed, now.place, scale * now.speed)
+        e.part[i].lowest = e.part[i].highest = w
+        if i == 0:
+            e.top = e.bottom = w
+    m.work.track.next_part = next_part(m)

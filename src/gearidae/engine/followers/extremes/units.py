@@ -1,0 +1,101 @@
+"""The record of a run's extremes in SI units."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from types import SimpleNamespace
+from typing import Any
+
+from gearidae.engine.followers.exposures.follow import PRESSURE, QUANTITIES, exposures_of
+from gearidae.engine.model.state import MATERIALS, PHASE, ROLLER, Floats, Model, V, W, plain
+from gearidae.records import Extremes
+
+__all__ = ["extremes_in_si"]
+
+
+def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
+    """Take the extremes out of a model.
+
+    Parameters
+    ----------
+    m : Model
+        Its extremes include the state at `time`.
+    time : float
+        Reached, over tau.
+    y : ndarray, shape (n,)
+        Scaled state there.
+    """
+    s, e = m.scene, plain(m.state.extremes)
+    force, tau = float(s.force_unit), float(s.time_unit)
+    forces: dict[str, Any] = {
+        "largest_mesh_force": force * e.largest_force,
+        "largest_mesh_force_time": tau * e.largest_force_time,
+        "smallest_mesh_force": force * e.smallest_force,
+        "smallest_mesh_force_time": tau * e.smallest_force_time,
+        "smallest_separation": float(s.length_unit) * e.separation,
+    }
+    if s.kind == ROLLER:
+        return Extremes(**forces, final_speed=float(y[V] * s.length_unit / s.time_unit))
+    speed = float(s.length_unit / (s.time_unit * s.gear_radius))
+    place = float(y[PHASE] + m.state.turns)
+    rate, part = float(s.phase_rate), [plain(one) for one in e.part]
+    means = [_mean(one, rate, time, place) for one in part]
+    spreads = [speed * (one.highest - one.lowest) if one.begun else math.nan for one in part]
+    settled = bool(part[0].begun)
+    return Extremes(
+        **forces,
+        min_gear_speed=speed * e.lowest_speed,
+        max_gear_speed=speed * e.highest_speed,
+        settled_gear_speed=speed * means[0],
+        settled_spread=spreads[0],
+        speed_fall=speed * e.fall if settled else math.nan,
+        speed_rise=speed * e.rise if settled else math.nan,
+        late_gear_speed=speed * means[1],
+        late_spread=spreads[1],
+        last_min_gear_speed=speed * part[2].lowest if part[2].begun else math.nan,
+        final_speed=speed * float(y[W]),
+        **_standstill(e, tau, time, place),
+        mesh_exits=e.mesh_exits,
+        reversals=e.reversals,
+        exposures=_exposures(m),
+    )
+
+
+def _exposures(m: Model) -> array[float]:
+    """What the flanks have been exposed to; see `gearidae.records.Extremes`."""
+    if m.scene.places == 0:
+        return array("d")
+    force, length = float(m.scene.force_unit), float(m.scene.length_unit)
+    table = exposures_of(m).reshape(-1, QUANTITIES, int(m.scene.places)).copy()
+    table[:, MATERIALS:PRESSURE] *= force * length
+    table[:, PRESSURE] *= force
+    return array("d", table.tobytes())
+
+
+def _standstill(e: SimpleNamespace, tau: float, time: float, place: float) -> dict[str, Any]:
+    """Where and when the gear came to stand, and how long adhesion has held it."""
+    if e.held:
+        return {
+            "stick_time": tau * e.held_time,
+            "stick_exits": e.held_exits,
+            "turned_back": max(e.held_place - place, 0.0),
+            "turn_backs": e.turn_backs,
+            "time_adhering": tau * (e.adhering + (time - e.turn_back_time if e.turn_backs > 1 else 0.0)),
+        }
+    never_moved = e.highest_speed <= 0.0
+    return {
+        "stick_time": 0.0 if never_moved else math.nan,
+        "stick_exits": e.mesh_exits,
+        "turned_back": max(-place, 0.0) if never_moved else 0.0,
+        "turn_backs": 0,
+        "time_adhering": tau * e.adhering,
+    }
+
+
+def _mean(part: SimpleNamespace, rate: float, time: float, place: float) -> float:
+    """Mean speed over a part of the run, scaled; `rate` is that of the phase at the speed 1."""
+    span = time - part.time
+    if not part.begun:
+        return math.nan
+    return float((place - part.place) / (span * rate) if span > 0.0 else part.lowest)

@@ -1,0 +1,91 @@
+"""Where a model of this process lies: compiled functions that are called from Python or from C take its place."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+from numba.np.arrayobj import populate_array
+from numba.np.numpy_support import from_dtype
+from numpy.typing import NDArray
+
+from gearidae.compiled import compiled
+from gearidae.engine.model.state import SCENE, STATE, WORK, Model
+
+__all__ = ["POINTERS", "Located", "model_at", "note_addresses"]
+
+_WORD: Final = ir.IntType(64)
+_ARRAY: Any = types.Array(types.float64, 1, "C")
+_RECORDS: Final = tuple(from_dtype(dtype) for dtype in (SCENE, STATE, WORK))
+
+
+def _model(typing: Any, address: Any) -> Any:
+    """Type and code of a model, from where `note_addresses` has written.
+
+    Written down here because compiled functions can be given records but cannot return them.
+    """
+    kind: Any = types.NamedTuple((*_RECORDS, _ARRAY, _ARRAY), Model)  # type: ignore[no-untyped-call]
+
+    def look(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        base = builder.inttoptr(values[0], _WORD.as_pointer())
+
+        def load(place: int) -> Any:
+            return builder.load(builder.gep(base, [ir.Constant(_WORD, place)]))
+
+        def array(place: int) -> Any:
+            made = context.make_array(_ARRAY)(context, builder)
+            data = builder.inttoptr(load(place), ir.DoubleType().as_pointer())
+            size, stride = load(place + 1), ir.Constant(_WORD, 8)
+            populate_array(made, data, [size], [stride], stride, None)  # type: ignore[no-untyped-call]
+            return made._getvalue()
+
+        records = [
+            builder.inttoptr(load(k), context.get_value_type(record)) for k, record in enumerate(_RECORDS)
+        ]
+        return context.make_tuple(builder, signature.return_type, [*records, array(3), array(5)])
+
+    return kind(types.int64), look
+
+
+def _address(typing: Any, record: Any) -> Any:
+    """Type and code of a record's address."""
+
+    def ask(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.ptrtoint(values[0], ir.IntType(64))
+
+    return types.int64(record), ask
+
+
+_address_of: Any = intrinsic(_address)
+model_at: Any = intrinsic(_model)
+"""A model of this process, from where `note_addresses` has written."""
+
+POINTERS: Final = 7
+"""Words that tell where a model lies: addresses of its records, address and length of its arrays."""
+
+
+@compiled
+def note_addresses(m: Model, out: NDArray[np.int64]) -> None:
+    """Write down where a model of this process lies; it must outlive whoever reads that."""
+    out[0], out[1], out[2] = _address_of(m.scene), _address_of(m.state), _address_of(m.work)
+    out[3], out[4] = m.tables.ctypes.data, m.tables.size
+    out[5], out[6] = m.rows.ctypes.data, m.rows.size
+
+
+class Located:
+    """Where a model of this process lies; keeps it alive.
+
+    Attributes
+    ----------
+    place : int
+        What `model_at` takes.
+    """
+
+    def __init__(self, m: Model) -> None:
+        self._model = m
+        self._pointers: NDArray[np.int64] = np.zeros(POINTERS, np.int64)
+        note_addresses(m, self._pointers)
+        self.place = int(self._pointers.ctypes.data)

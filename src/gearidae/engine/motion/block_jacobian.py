@@ -1,0 +1,291 @@
+"""The Jacobian of an elastic contact and its solution by blocks.
+
+The nodes of one pair couple to the motion only through its gap and its force. With m states of motion x, deflections
+z of each pair, g its gap and W its force, Newton's equations read
+
+    A x + sum over pairs of beta (rho . z) = b,        D z - c (gamma . x) = b_z        (for each pair)
+
+with beta what the motion's equations take of the force, rho its slopes in the deflections, gamma the slopes of the gap
+in the motion, ``D = 1 - kappa dp/dh`` and ``c = kappa dp/dh 1``, dp/dh a matrix. Each
+pair's z is eliminated by its own inverse of D, and what is left is the small system of the motion. A pair out of reach
+costs nothing.
+
+All of it lies in one flat array, which SUNDIALS keeps as the data of a matrix: sizes, A (or its inverse), and a
+block for each pair's history.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gearidae.compiled import compiled
+from gearidae.engine.elastic.nodes import influence, stiffness_matrix
+from gearidae.engine.elastic.rows import node_weights
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.motion.residual import held, jacobian
+from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pair_gap, pairs_touching
+
+__all__ = [
+    "assemble",
+    "dense_jacobian",
+    "factorise",
+    "solve_blocks",
+    "store_size",
+    "unknowns",
+]
+
+_MOTION: Final = 0  # sizes: states of motion, nodes, blocks
+_NODES: Final = 1
+_BLOCKS: Final = 2
+_SMALL: Final = 3  # A, up to 4 x 4, row by row
+_FIRST: Final = 19
+# a block: whether it is loaded, beta and gamma, then rho, c and D (rho and c times the inverse once factorised)
+_BETA: Final = 1
+_GAMMA: Final = 5
+_RHO: Final = 9
+
+
+@compiled
+def store_size(m: Model) -> int:
+    """Numbers that `assemble` wants."""
+    n = m.scene.nodes
+    return _FIRST + m.scene.histories * (_RHO + 2 * n + n * n)
+
+
+@compiled
+def unknowns(store: Floats) -> int:
+    """Unknowns of the equations in a store."""
+    return int(store[_MOTION]) + int(store[_NODES]) * int(store[_BLOCKS])
+
+
+@compiled(makes_arrays=True)
+def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
+    """Work out the Jacobian ``dF/dy + cj dF/dy'`` by blocks.
+
+    Parameters
+    ----------
+    m : Model
+    t, cj : float
+        Time over tau, and IDA's leading coefficient.
+    y : ndarray
+        State.
+    store : ndarray, shape (store_size(m),)
+        Filled in.
+    """
+    roller = m.scene.kind == ROLLER
+    motion = 2 if roller else 4
+    n = m.scene.nodes
+    store[_MOTION], store[_NODES], store[_BLOCKS] = motion, n, m.scene.histories
+    small = np.empty(motion * motion)
+    jacobian(m, t, cj, y, small)
+    for i in range(motion):
+        for j in range(motion):
+            store[_SMALL + motion * i + j] = small[i + motion * j]
+    size = _RHO + 2 * n + n * n
+    for block in range(m.scene.histories):
+        store[_FIRST + size * block] = 0.0
+    if roller:
+        if m.state.history[0].loaded != 0:
+            _assemble_pair(m, 0, store)
+            store[_FIRST + _BETA + V] = -m.scene.gear_inverse_mass
+            store[_FIRST + _GAMMA + U] = 1.0
+        return
+    reach = pairs_touching(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        sign = 1.0 - 2.0 * coast
+        gap, _, slope, _ = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+        if gap >= m.scene.cutoff:
+            continue
+        start = _assemble_pair(m, history_of(m, coast, pair), store)
+        store[start + _BETA + V] = sign * m.scene.pinion_inverse_mass
+        if not held(m):
+            store[start + _BETA + W] = -sign * m.scene.gear_inverse_mass * (1.0 + slope)
+        store[start + _GAMMA + U] = -sign
+        store[start + _GAMMA + PHASE] = sign * slope / m.scene.phase_rate
+
+
+@compiled(makes_arrays=True)
+def _assemble_pair(m: Model, history: int, store: Floats) -> int:
+    """Fill a pair's block but for beta and gamma, which are set to zero; its offset."""
+    n = m.scene.nodes
+    size = _RHO + 2 * n + n * n
+    start = _FIRST + size * history
+    store[start : start + _RHO] = 0.0
+    store[start] = 1.0
+    weights, length = node_weights(m), m.state.history[history].length
+    rho = store[start + _RHO : start + _RHO + n]
+    c = store[start + _RHO + n : start + _RHO + 2 * n]
+    block = store[start + _RHO + 2 * n : start + size].reshape(n, n)  # column by column
+    slopes, kappa = np.empty((n, n)), np.empty((n, n))
+    stiffness_matrix(m, history, slopes)
+    influence(m, length, kappa)
+    rho[:] = c[:] = block[:] = 0.0
+    for j in range(n):
+        for k in range(n):
+            slope = slopes[k, j]
+            if slope != 0.0:
+                rho[j] += length * weights[k] * slope
+                for i in range(n):
+                    block[j, i] -= kappa[k, i] * slope
+        for i in range(n):
+            c[i] -= block[j, i]
+        block[j, j] += 1.0
+    return start
+
+
+@compiled(makes_arrays=True)
+def _invert(a: Floats) -> float:
+    """Invert a matrix in place by Gauss-Jordan elimination with pivots; the sign of its determinant, 0 if singular."""
+    n = a.shape[0]
+    swaps = np.empty(n, np.int64)
+    sign = 1.0
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(a[i, k]) > abs(a[pivot, k]):
+                pivot = i
+        swaps[k] = pivot
+        if pivot != k:
+            sign = -sign
+            for j in range(n):
+                a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
+        value = a[k, k]
+        if value == 0.0 or not np.isfinite(value):
+            return 0.0
+        if value < 0.0:
+            sign = -sign
+        a[k, k] = 1.0
+        inverse = 1.0 / value
+        for j in range(n):
+            a[k, j] *= inverse
+        for i in range(n):
+            if i != k:
+                factor = a[i, k]
+                if factor != 0.0:
+                    a[i, k] = 0.0
+                    for j in range(n):
+                        a[i, j] -= factor * a[k, j]
+    for k in range(n - 1, -1, -1):
+        if swaps[k] != k:
+            for i in range(n):
+                a[i, k], a[i, swaps[k]] = a[i, swaps[k]], a[i, k]
+    return sign
+
+
+@compiled(makes_arrays=True)
+def factorise(store: Floats) -> int:
+    """Turn an assembled Jacobian into what `solve_blocks` wants, in place.
+
+    Returns
+    -------
+    int
+        0 if all went well; 1 where a pair's D has a determinant that is not positive: the contact lies beyond a fold
+        of its static curve.
+    """
+    motion, n = int(store[_MOTION]), int(store[_NODES])
+    size = _RHO + 2 * n + n * n
+    small = store[_SMALL : _SMALL + motion * motion].reshape(motion, motion)
+    work = np.empty(n)
+    for number in range(int(store[_BLOCKS])):
+        start = _FIRST + size * number
+        if store[start] == 0.0:
+            continue
+        rho = store[start + _RHO : start + _RHO + n]
+        c = store[start + _RHO + n : start + _RHO + 2 * n]
+        block = store[start + _RHO + 2 * n : start + size].reshape(n, n)
+        if _invert(block) <= 0.0:
+            return 1
+        moved = 0.0
+        for k in range(n):  # rho times the inverse; the block's rows are columns
+            total = 0.0
+            for i in range(n):
+                total += rho[i] * block[k, i]
+            work[k] = total
+            moved += total * c[k]
+        rho[:] = work
+        work[:] = 0.0
+        for k in range(n):
+            for i in range(n):
+                work[i] += block[k, i] * c[k]
+        c[:] = work
+        for i in range(motion):
+            for j in range(motion):
+                small[i, j] += store[start + _BETA + i] * moved * store[start + _GAMMA + j]
+    return 0 if _invert(small) != 0.0 else 1
+
+
+@compiled(makes_arrays=True)
+def solve_blocks(store: Floats, b: Floats, x: Floats) -> None:
+    """Solve Newton's equations.
+
+    Parameters
+    ----------
+    store : ndarray
+        From `factorise`.
+    b, x : ndarray
+        Right-hand side and solution; may be the same array.
+    """
+    motion, n = int(store[_MOTION]), int(store[_NODES])
+    size = _RHO + 2 * n + n * n
+    blocks = int(store[_BLOCKS])
+    right = np.zeros(4)
+    for i in range(motion):
+        right[i] = b[i]
+    for number in range(blocks):
+        start = _FIRST + size * number
+        if store[start] != 0.0:
+            force = 0.0
+            for i in range(n):
+                force += store[start + _RHO + i] * b[motion + n * number + i]
+            for i in range(motion):
+                right[i] -= store[start + _BETA + i] * force
+    for i in range(motion):
+        total = 0.0
+        for j in range(motion):
+            total += store[_SMALL + motion * i + j] * right[j]
+        x[i] = total
+    work = np.empty(n)
+    for number in range(blocks):
+        start, first = _FIRST + size * number, motion + n * number
+        if store[start] == 0.0:
+            for i in range(n):
+                x[first + i] = b[first + i]
+            continue
+        gap = 0.0
+        for i in range(motion):
+            gap += store[start + _GAMMA + i] * x[i]
+        block = store[start + _RHO + 2 * n : start + size].reshape(n, n)
+        for i in range(n):
+            work[i] = store[start + _RHO + n + i] * gap
+        for k in range(n):
+            value = b[first + k]
+            for i in range(n):
+                work[i] += block[k, i] * value
+        for i in range(n):
+            x[first + i] = work[i]
+
+
+@compiled
+def dense_jacobian(m: Model, t: float, cj: float, y: Floats, store: Floats, out: Floats) -> None:
+    """The same Jacobian as a full matrix, row by row, for solvers that know no blocks; `store` is overwritten."""
+    assemble(m, t, cj, y, store)
+    motion, n = int(store[_MOTION]), int(store[_NODES])
+    size = _RHO + 2 * n + n * n
+    out[:] = 0.0
+    for i in range(motion):
+        for j in range(motion):
+            out[i, j] = store[_SMALL + motion * i + j]
+    for number in range(int(store[_BLOCKS])):
+        start, first = _FIRST + size * number, motion + n * number
+        for i in range(n):
+            out[first + i, first + i] = 1.0
+            if store[start] == 0.0:
+                continue
+            for j in range(motion):
+                out[j, first + i] = store[start + _BETA + j] * store[start + _RHO + i]
+                out[first + i, j] = -store[start + _RHO + n + i] * store[start + _GAMMA + j]
+            for k in range(n):
+                out[first + i, first + k] = store[start + _RHO + 2 * n + n * k + i]

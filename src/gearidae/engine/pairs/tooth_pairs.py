@@ -1,0 +1,309 @@
+"""Tooth pairs in mesh: gap, rate and force of each, from the scaled state (Teodorescu et al. 2009, Eqs. 4-6).
+
+A pair is known by its number i. On the drive flank it stands ``phase - i`` pitches along the path of contact, on the
+coast flank, mirrored about the pitch point and half a pitch later, ``coast_phase + i - phase``. A roller is pair 0 of
+the drive flank. All functions take the records of `gearidae.engine.model.state` and the state's numbers, and are
+compiled.
+
+Gaps and joined heights are those of the pair. A material whose gap is wider by an offset has both wider by it where its
+tables are read, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.contact.history import extreme_gap, joined_height
+from gearidae.contact.kernels.law import (
+    B_PIECES,
+    branch_length,
+    branch_value,
+    loading_value,
+    set_branch,
+    stretched_value,
+)
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.model.state import (
+    COAST,
+    DRIVE,
+    MATERIALS,
+    PHASE,
+    ROLLER,
+    Floats,
+    Model,
+    U,
+    V,
+    W,
+)
+from gearidae.engine.pairs.coverage import Shares, loading_of
+
+__all__ = [
+    "Reach",
+    "all_pairs",
+    "contact_length",
+    "energy_branch",
+    "gap_and_rate",
+    "history_of",
+    "in_flight",
+    "nearest_gap",
+    "pair_at",
+    "pair_force",
+    "pair_gap",
+    "pairs_near",
+    "pairs_touching",
+    "set_joined",
+    "static_error",
+]
+
+ANGLE_PHASE = 1e-9
+"""Error of the pinion's angle, as a phase of the static error's highest harmonic [rad], below which it is settled; far
+above what rounding leaves of an order of 1e5."""
+ANGLE_STEPS = 60
+"""Steps of Newton's method for it, at most."""
+
+
+# -- the walk over the pairs -----------------------------------------------------------------------------------------
+
+
+class Reach(NamedTuple):
+    """Pairs to look at, of both flanks: the first number and how many.
+
+    ``for k in range(reach.total): coast, pair = pair_at(reach, k)`` is the walk over them.
+    """
+
+    drive_first: int
+    drive_count: int
+    coast_first: int
+    total: int
+
+
+@compiled(inline=True)
+def _reach(m: Model, phase: float, drive: bool, coast: bool) -> Reach:
+    """Pairs within reach of the flanks asked for."""
+    s = m.scene
+    if s.kind == ROLLER:
+        count = 1 if drive else 0
+        return Reach(0, count, 0, count)
+    drive_first = coast_first = drive_count = coast_count = 0
+    if drive:
+        drive_first = math.ceil(phase - s.contact_ratio - s.reach)
+        drive_count = math.floor(phase + s.reach) - drive_first + 1
+    if coast:
+        coast_first = math.ceil(phase - s.coast_phase - s.reach)
+        coast_count = math.floor(phase - s.coast_phase + s.contact_ratio + s.reach) - coast_first + 1
+    return Reach(drive_first, drive_count, coast_first, drive_count + coast_count)
+
+
+@compiled(inline=True)
+def _phase(m: Model, y: Floats) -> float:
+    return 0.0 if m.scene.kind == ROLLER else y[PHASE]
+
+
+@compiled(inline=True)
+def all_pairs(m: Model, y: Floats) -> Reach:
+    """Pairs within reach along the path of contact, however wide their gaps."""
+    return _reach(m, _phase(m, y), True, True)
+
+
+@compiled(inline=True)
+def pairs_touching(m: Model, y: Floats) -> Reach:
+    """Pairs of the flanks whose nearest gap is within the cut-off: tip relief only opens a gap."""
+    cutoff = m.scene.cutoff
+    drive, coast = nearest_gap(m, DRIVE, y) < cutoff, nearest_gap(m, COAST, y) < cutoff
+    return _reach(m, _phase(m, y), drive, coast)
+
+
+@compiled(inline=True)
+def pairs_near(m: Model, y: Floats) -> Reach:
+    """Pairs of the flanks that were near at the last accepted time."""
+    return _reach(m, _phase(m, y), m.state.near[DRIVE] != 0, m.state.near[COAST] != 0)
+
+
+@compiled(inline=True)
+def pair_at(reach: Reach, k: int) -> tuple[int, int]:
+    """Flank and number of the k-th pair of a walk."""
+    if k < reach.drive_count:
+        return DRIVE, reach.drive_first + k
+    return COAST, reach.coast_first + (k - reach.drive_count)
+
+
+@compiled(inline=True)
+def history_of(m: Model, coast: int, pair: int) -> int:
+    """Index of a pair's history; they go round, with at least as many of them as pairs can be within reach."""
+    slots = m.scene.slots
+    return coast * slots + (pair & (slots - 1))
+
+
+# -- kinematics ------------------------------------------------------------------------------------------------------
+
+
+@compiled
+def pair_gap(
+    m: Model, coast: int, pair: int, u: float, v: float, phase: float, w: float
+) -> tuple[float, float, float, float]:
+    """Gap, its rate, slope of the separation ds/dxi, and the place along the path clipped to it (in pitches)."""
+    s = m.scene
+    along = s.coast_phase + pair - phase if coast else phase - pair
+    inside = min(max(along, 0.0), s.contact_ratio)
+    outside = along - inside
+    toward = -v if not coast else v
+    gap = s.half_backlash + (u if coast else -u)
+    if outside == 0.0:
+        return gap, toward, 0.0, inside
+    slope = s.relief_slope * outside
+    gap += 0.5 * s.relief_curvature * outside * outside
+    turn = -w if coast else w
+    return gap, toward + slope * turn, slope, inside
+
+
+@compiled
+def gap_and_rate(m: Model, coast: int, pair: int, y: Floats) -> tuple[float, float]:
+    """Gap and gap rate of a pair, or of the roller."""
+    if m.scene.kind == ROLLER:
+        return y[U], y[V]
+    gap, rate, _, _ = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    return gap, rate
+
+
+@compiled
+def contact_length(m: Model, inside: float) -> float:
+    """Length of a contact of given gap, ``sqrt(R / pb)``: R is the reduced radius of the two involutes."""
+    pinion = m.scene.start_radius + inside
+    return math.sqrt(pinion - pinion * pinion * m.scene.sum_curvature)
+
+
+@compiled
+def nearest_gap(m: Model, coast: int, y: Floats) -> float:
+    """Gap of a pair on the path of contact, which no pair of this flank undercuts; a roller's height."""
+    if m.scene.kind == ROLLER:
+        return y[U]
+    return m.scene.half_backlash + (y[U] if coast else -y[U])
+
+
+@compiled
+def in_flight(m: Model) -> bool:
+    """Whether both flanks are too far away for any pair to touch."""
+    return bool(m.state.near[DRIVE] == 0 and m.state.near[COAST] == 0)
+
+
+# -- forces ----------------------------------------------------------------------------------------------------------
+
+
+@compiled(inline=True)
+def pair_force(
+    m: Model, k: int, known: bool, t: float, gap: float, rate: float, inside: float, shares: Shares
+) -> tuple[float, float]:
+    """Force of one pair and its slope in the gap, scaled, with the pair's own history, the k-th.
+
+    `shares` are those of the materials there, from `gearidae.engine.pairs.coverage.shares_of`. Within a step that has
+    turned the pair round, the history first goes through the turning point.
+    """
+    force, slope = loading_of(m, gap, shares)
+    if known:
+        h = m.state.history[k]
+        turned = h.direction * rate < 0.0
+        turning_gap = gap
+        if turned:
+            turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate)
+        for material in range(MATERIALS):
+            own = m.scene.material[material]
+            limit = own.stretch_limit
+            if limit == 0.0:
+                continue
+            joined = h.joined[material]
+            if turned:
+                joined = joined_height(joined, turning_gap, limit)
+            stretch = gap - joined
+            if stretch <= 0.0:
+                continue
+            first = force_branch(m, k, material)
+            kept = m.scene.branch_length > 0 and m.rows[first + B_PIECES] > 0.0
+            if stretch < limit and not turned and kept:
+                q, dq = branch_value(m.rows[first:], stretch)
+            else:
+                offset = own.gap_offset
+                q, dq = stretched_value(m.tables[own.table_at :], gap + offset, joined + offset)
+            scale = own.force_scale * shares[material]
+            force += scale * q
+            slope += scale * dq
+    if m.scene.kind == ROLLER:
+        return force, slope
+    length = contact_length(m, inside)
+    return force * length, slope * length
+
+
+@compiled
+def set_joined(m: Model, k: int, material: int, joined: float) -> None:
+    """Store the joined height of a turning point, and work out the branch that starts from it."""
+    h, own = m.state.history[k], m.scene.material[material]
+    h.joined[material] = joined
+    number = loading_value(m.tables, own.number_at, joined + own.gap_offset)[0]
+    h.adhered_energy[material] = -own.joining_energy * number
+    set_branches(m, k, material)
+
+
+@compiled
+def set_branches(m: Model, k: int, material: int) -> None:
+    """Work out the branch of a history's joined height.
+
+    A law that is integrated when asked for keeps no branches, nor does an elastic contact. That of the stored energy
+    waits until the energy balance asks for it.
+    """
+    own = m.scene.material[material]
+    table = m.tables[own.table_at :]
+    if m.scene.branch_length > 0 and branch_length(table) > 0:
+        joined = m.state.history[k].joined[material] + own.gap_offset
+        set_branch(table, joined, m.rows[force_branch(m, k, material) :])
+        m.rows[energy_branch(m, k, material) + B_PIECES] = 0.0
+
+
+@compiled
+def force_branch(m: Model, k: int, material: int) -> int:
+    """Place of a material's branch of the force law at a history's joined height, among the rows."""
+    return m.scene.branches_at + (2 * MATERIALS * k + material) * m.scene.branch_length
+
+
+@compiled
+def energy_branch(m: Model, k: int, material: int) -> int:
+    """Place of a material's branch of the stored energy there."""
+    return m.scene.branches_at + (2 * MATERIALS * k + MATERIALS + material) * m.scene.branch_length
+
+
+@compiled_once(SOLVER)
+def static_error(m: Model, u: float, phase: float) -> tuple[float, float, float, float]:
+    """Pinion's angle, static transmission error e, and its first two derivatives over R1 and R1^2, scaled.
+
+    ``R1 phi1 - e(phi1) = u + R2 phi2`` is solved by Newton's method: e is small against R1. Four steps are enough where
+    e is smooth over its own size; a ripple of high order may take more.
+
+    Returns
+    -------
+    angle, e, e1, e2 : float
+        phi1 [rad], ``e / sigma``, ``e' / R1`` and ``e'' sigma / R1^2``.
+    """
+    s = m.scene
+    radius = s.pinion_radius / s.length_unit
+    turns = (m.state.turns % s.pinion_teeth + phase) / s.pinion_teeth
+    rigid = 2.0 * math.pi * turns + u / radius
+    angle = rigid
+    e = e1 = e2 = 0.0
+    count, first = s.error_count, s.error_at
+    steps, phase_step = 0, math.inf
+    while count and (steps < 4 or (phase_step > ANGLE_PHASE and steps < ANGLE_STEPS)):
+        steps += 1
+        e = e1 = e2 = highest = 0.0
+        for k in range(count):
+            order, amplitude = m.tables[first + 3 * k], m.tables[first + 3 * k + 1]
+            highest = max(highest, order)
+            shift = m.tables[first + 3 * k + 2]
+            c = amplitude * math.cos(order * angle + shift)
+            sine = amplitude * math.sin(order * angle + shift)
+            e += c
+            e1 -= order * sine / radius
+            e2 -= order * order * c / (radius * radius)
+        step = (angle - rigid - e / radius) / (1.0 - e1)
+        angle -= step
+        phase_step = highest * abs(step)  # e and its derivatives are those before the step
+    return angle, e, e1, e2

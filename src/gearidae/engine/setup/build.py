@@ -1,0 +1,326 @@
+"""From a scene to the numbers that the compiled residual reads."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from gearidae.contact.kernels.law import GAP_LOW
+from gearidae.engine.compiling import ELASTIC, EXPOSURES, SOLVER, make_part_ready
+from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
+from gearidae.engine.elastic.rows import scratch_size
+from gearidae.engine.events.histories import begin
+from gearidae.engine.followers.balance import open_balance
+from gearidae.engine.followers.exposures.follow import QUANTITIES
+from gearidae.engine.model.state import (
+    DRIVE,
+    GEARS,
+    LOAD,
+    MATERIALS,
+    ROLLER,
+    SCENE,
+    SCHEDULES,
+    Floats,
+    Model,
+    Record,
+    blank_model,
+)
+from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.pairs.tooth_pairs import contact_length
+from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
+from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop
+from gearidae.engine.setup.checkpoint import scene_digest
+from gearidae.engine.setup.problem import Problem
+from gearidae.engine.setup.tables import Tables
+from gearidae.engine.torques.law import law_address
+from gearidae.engine.torques.schedule import (
+    segment_ends,
+)
+from gearidae.errors import SceneError
+from gearidae.mesh.involute import Geometry
+from gearidae.records import sampled_columns
+from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene.limits import check_reach, pairs_within_reach
+
+__all__ = ["Begin", "make_problem"]
+
+
+class Begin(NamedTuple):
+    """When a run begins [s], and how far the gear has turned by then in pitches, if it is not where the scene says."""
+
+    time: float = 0.0
+    place: float | None = None
+
+
+AT_ONCE = Begin()
+LIGHTER = 0.25
+"""Roughnesses above the bound of the asperity model; below, contacts count as deep while bodies are elastic."""
+
+
+def make_problem(
+    scene: Scene,
+    nodes: Nodes | None = None,
+    digest: tuple[float, ...] | None = None,
+    columns: tuple[str, ...] | None = None,
+    begin: Begin = AT_ONCE,
+    light_gap: float = math.inf,
+) -> Problem:
+    """Scale a scene and tabulate its force laws.
+
+    Parameters
+    ----------
+    scene : Scene
+    nodes : Nodes, optional
+        Layout of an elastic contact's nodes, in place of the one that is estimated.
+    digest : tuple of four floats, optional
+        Of the scene whose checkpoints these are, if it is not this one.
+    columns : tuple of str, optional
+        What that scene samples.
+    begin : Begin, optional
+        Of a run that goes on from another; the problem's own start is then of no use.
+    light_gap : float, optional
+        Gap in the middle of elastic contacts, in roughnesses, above which the asperity model would do.
+
+    Raises
+    ------
+    SceneError
+        If the scene is beyond what the engine can do.
+    """
+    if scene.contact.model == "population":
+        raise SceneError("contact.model", "population", "has no solver yet: gearidae.population draws it")
+    make_part_ready(SOLVER)
+    build = _gear_problem if scene.roller is None else _roller_problem
+    problem = build(scene, nodes, begin)
+    problem.columns = columns or problem.columns
+    problem.method = scene.run.method
+    problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
+    # handed on by value: a problem that referred to itself would wait for the garbage collector with all its tables
+    told = (problem.digest, problem.columns, begin)
+    problem.model.scene.light_gap = light_gap
+    count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
+    if count > 0:
+        problem.depth = 1 if nodes is None else nodes.depth
+        if lowest > -DEPTH_HIGH:
+            deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
+            problem.deeper = lambda: make_problem(scene, deeper, *told, light_gap)
+    elif scene.contact.model == "auto":
+        bodies, light = scene.replace({"contact.model": "elastic"}), lowest + LIGHTER
+        problem.elastic = lambda: make_problem(bodies, None, *told, light)
+    return problem
+
+
+def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
+    gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
+    assert gears
+    assert mesh
+    assert start
+    assert drive
+    assert load
+    geometry, sigma = scene.geometry, scene.surface.roughness
+    s, tables = np.zeros(1, SCENE)[0], Tables()
+    _set_units(s, scene)
+    speed = sigma / float(s.time_unit)
+    _set_geometry(s, geometry, mesh.tip_relief_radius)
+    s.half_backlash = 0.5 * mesh.backlash / sigma
+    s.places = scene.run.exposures
+    s.places_per_pitch = scene.run.exposures / float(s.contact_ratio)
+    s.pitch_point = 0.5 * (float(s.coast_phase) - 0.5)
+    s.sliding_pinion, s.sliding_gear = (
+        geometry.base_pitch / float(s.pinion_radius),
+        geometry.base_pitch / float(s.gear_radius),
+    )
+    s.radius_force = int(mesh.radius_force)
+    s.damping = mesh.damping * speed / float(s.force_unit)
+    s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)
+    s.viscous = load.viscous / geometry.base_radius_gear**2 * speed / float(s.force_unit)
+    s.speed_gain = drive.speed_gain / geometry.base_radius_pinion**2 * speed / float(s.force_unit)
+    grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
+    s.dry = int(load.is_dry)
+    s.rest_speed = 10.0 * scene.run.rtol
+    widest = math.sqrt(0.25 / float(s.sum_curvature))
+    unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
+    add_contact(s, tables, scene, gears.face_width, unit_length, widest)
+    s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
+    _set_slots(s, scene)
+    add_torques(s, tables, scene, begin.time)
+    set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
+    _add_static_error(s, tables, scene)
+    add_nodes(s, tables, grid)
+    # an error in the phase matters by the gap it opens where tip relief is steepest
+    steepest = float(s.relief_curvature * s.reach)
+    model = _model(s, tables, [1.0, 1.0, 1.0 / steepest if steepest > 0.0 else 1.0, 1.0])
+    model.state.slip = np.sign(start.gear_speed) if s.dry else 1.0
+    for which in range(SCHEDULES):
+        ends = segment_ends(s.schedule[which], model.tables)
+        model.state.segment[which] = int((ends <= s.start).sum())
+    for shaft, law in ((DRIVE, drive), (LOAD, load)):
+        if law.law is not None:
+            model.work.torque_law[shaft] = law_address(law.law.name)
+    outside = start.mesh_phase - min(max(start.mesh_phase, 0.0), float(s.contact_ratio))
+    relief = float(0.5 * s.relief_curvature * outside**2)
+    u = float(s.half_backlash) + relief - start.gap / sigma
+    w = start.gear_speed * geometry.base_radius_gear / speed
+    skipped = {
+        "static_error": int(not mesh.static_error),
+        "harmonics": int(not drive.harmonic and not load.harmonic),
+        "dry_resistance": int(s.dry == 0),
+    }
+    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], skipped)
+
+
+def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
+    roller = scene.roller
+    assert roller is not None
+    sigma = scene.surface.roughness
+    speed = roller.speed if roller.speed != 0.0 else 1e3 * sigma / scene.run.duration
+    s, tables = np.zeros(1, SCENE)[0], Tables()
+    s.kind, s.length_unit = ROLLER, sigma
+    s.time_unit, s.force_unit = sigma / abs(speed), roller.mass * speed**2 / sigma
+    s.gear_inverse_mass = 1.0
+    energy = 0.5 * roller.mass * roller.speed**2
+    bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
+    grid = choose_model(s, scene, bounds, nodes)
+    add_contact(s, tables, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
+    s.slots = s.histories = 1
+    set_run(s, tables, scene, set(), begin.time)
+    add_nodes(s, tables, grid)
+    model = _model(s, tables, [1.0, 1.0])
+    model.state.slip = 1.0
+    start = [roller.height / sigma, -roller.speed * float(s.time_unit) / sigma]
+    return _begun(model, scene, start, {})
+
+
+# -- constants -------------------------------------------------------------------------------------------------------
+
+
+def _set_units(s: Record, scene: Scene) -> None:
+    """Set the units of a gear pair and its inverse masses."""
+    gears, geometry = scene.gears, scene.geometry
+    assert gears
+    pinion_mass = gears.pinion_inertia / geometry.base_radius_pinion**2
+    gear_mass = gears.gear_inertia / geometry.base_radius_gear**2
+    mass = 1.0 / (1.0 / pinion_mass + 1.0 / gear_mass)
+    force = reference_force(scene, mass)
+    s.kind, s.length_unit = GEARS, scene.surface.roughness
+    s.time_unit, s.force_unit = math.sqrt(mass * scene.surface.roughness / force), force
+    s.pinion_inverse_mass, s.gear_inverse_mass = mass / pinion_mass, mass / gear_mass
+
+
+def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> None:
+    """Set the constants of a gear pair that geometry alone decides."""
+    pitch, sigma = geometry.base_pitch, float(s.length_unit)
+    s.base_pitch = pitch
+    s.pinion_radius, s.gear_radius = geometry.base_radius_pinion, geometry.base_radius_gear
+    s.pinion_teeth = geometry.pinion_teeth
+    s.phase_rate = sigma / pitch
+    s.contact_ratio = geometry.contact_ratio
+    s.coast_phase = 2.0 * geometry.approach / pitch + 0.5
+    s.relief_curvature = pitch**2 / (tip_relief_radius * sigma)
+    s.relief_slope = pitch / tip_relief_radius
+    s.start_radius = (geometry.tangent_pinion - geometry.approach) / pitch
+    s.sum_curvature = pitch / (geometry.tangent_pinion + geometry.tangent_gear)
+
+
+def _gear_bounds(s: Record, scene: Scene) -> ContactBounds:
+    """Where the contacts of a gear pair take place."""
+    gears, mesh, start = scene.gears, scene.mesh, scene.initial
+    assert gears
+    assert mesh
+    assert start
+    # the radius is largest where both radii of curvature are the same, if that is on the path
+    ratio = float(s.contact_ratio)
+    equal = 0.5 / float(s.sum_curvature) - float(s.start_radius)
+    blank = blank_model(s, np.zeros(0), 0)
+    lengths = [float(contact_length(blank, x)) for x in (0.0, ratio, min(max(equal, 0.0), ratio))]
+    # the load pushing through the whole backlash, twice for good measure
+    force = float(s.force_unit)
+    energy = 2.0 * force * mesh.backlash
+    nearest = min(start.gap, mesh.backlash - start.gap) / float(s.length_unit)
+    pitch = float(s.base_pitch)
+    return ContactBounds(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force, nearest)
+
+
+def _set_slots(s: Record, scene: Scene) -> None:
+    """Set how many histories each flank keeps: at least as many as pairs can be within reach."""
+    check_reach(scene, float(s.cutoff))
+    slots = 2 ** math.ceil(math.log2(pairs_within_reach(scene, float(s.cutoff))))
+    s.slots, s.histories = slots, 2 * slots
+
+
+# -- tables ----------------------------------------------------------------------------------------------------------
+
+
+def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
+    """Lay out the harmonics of the static transmission error."""
+    assert scene.mesh
+    errors = scene.mesh.static_error
+    numbers = [x for h in errors for x in (h.order, h.amplitude / float(s.length_unit), h.phase)]
+    s.error_count, s.error_at = len(errors), tables.add(numbers)
+    order: float = max((h.order for h in errors), default=0)
+    # two places of a table are half a period
+    places = max(len(table[0]) for table in scene.coating.tables)
+    if places > 1:
+        order = max(order, 0.5 * places / float(s.contact_ratio) * float(s.pinion_teeth))
+    s.mesh_omega = 2.0 * math.pi * max(1.0, order / float(s.pinion_teeth))
+
+
+# -- the start -------------------------------------------------------------------------------------------------------
+
+
+def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
+    """Put the model together, and note where its changing rows are; `scale` is that of the motion's states."""
+    nodes, histories = int(s.nodes), int(s.histories)
+    s.states = len(scale) + nodes * histories
+    s.scale_at = tables.add(_scale(nodes, histories, scale))
+    rows = Tables()
+    s.branches_at = rows.add(np.zeros(2 * MATERIALS * int(s.branch_length) * histories))
+    s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
+    s.error_weights_at = rows.add(np.zeros(int(s.states)))
+    s.exposures = 2 * int(s.pinion_teeth) * QUANTITIES * int(s.places)
+    s.exposures_at = rows.add(np.zeros(int(s.exposures)))
+    branches = MATERIALS * int(s.points * s.point_branch_length) * histories
+    s.point_branches_at = rows.add(np.zeros(branches))
+    s.scratch_at = rows.add(np.zeros(scratch_size(nodes) if nodes else 0))
+    s.trial_at = rows.add(np.zeros(int(s.states) if nodes else 0))
+    return blank_model(s, tables.whole(), rows.size)
+
+
+def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:
+    """What an error of 1 means for each state.
+
+    The solver's norm is a mean over all states. Factors make it that of the motion alone, however many
+    nodes there are, with the nodes of one pair counting as one more state.
+    """
+    share = math.sqrt(len(motion) / (len(motion) + nodes * histories))
+    return np.concatenate(
+        [share * np.array(motion), np.full(nodes * histories, share * math.sqrt(max(nodes, 1)))]
+    )
+
+
+def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int]) -> Problem:
+    """Set the histories and the energy balance for the start."""
+    s = m.scene
+    y = np.concatenate([motion, np.zeros(int(s.nodes * s.histories))])
+    if s.nodes > 0:
+        make_part_ready(ELASTIC)
+        settle_nodes(m, 0.0, y)
+    if s.places > 0:
+        make_part_ready(EXPOSURES)
+    begin(m, 0.0, y)
+    open_balance(m, y)
+    scale = m.tables[s.scale_at : s.scale_at + s.states]
+    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
+    return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
+
+
+def _skipped(m: Model, scene: Scene) -> dict[str, int]:
+    """What the contact of this scene does not need."""
+    skipped = {"elastic_deflection": int(m.scene.nodes == 0)}
+    shares = {one.name: one.share for one in scene.materials()}
+    for own, name in zip(m.scene.material, MATERIAL_NAMES, strict=True):
+        skipped[f"{name}_surface"] = int(shares.get(name, 0.0) == 0.0)
+        skipped[f"{name}_hysteresis"] = int(own.stretch_limit == 0.0)
+    return skipped

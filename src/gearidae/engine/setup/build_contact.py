@@ -1,0 +1,156 @@
+"""From a scene's surfaces and contact model to force scales, tables and nodes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gearidae.asperities import law_of
+from gearidae.asperities.base import AsperityLaw
+from gearidae.asperities.ranges import check_reach
+from gearidae.asperities.tip import asperity_of
+from gearidae.contact.kernels.energy import energy_table, joining_energy, loading_pieces, number_table
+from gearidae.contact.kernels.lanes import BESIDE
+from gearidae.contact.kernels.law import (
+    GAP_LOW,
+    H_STRETCH,
+    HEADER,
+    N_LOADING,
+    Kernel,
+    branch_length,
+    force_scale,
+    largest_forces,
+    law_table,
+)
+from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
+from gearidae.engine.elastic.rows import point_count, row_numbers
+from gearidae.engine.model.state import Record
+from gearidae.engine.setup.tables import Tables
+from gearidae.scene import Material, Scene
+
+__all__ = ["Nodes", "add_contact", "add_nodes", "choose_model"]
+
+FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
+CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
+
+
+class Nodes(NamedTuple):
+    """Layout of the nodes of an elastic contact: lowest gap in roughnesses, nodes, and number of the layout."""
+
+    lowest_gap: float
+    nodes: int
+    depth: int
+
+
+def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | None) -> NodeGrid | None:
+    """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
+    model = scene.contact.model
+    s.lowest_gap = GAP_LOW  # where the tables of the force law end
+    if model == "auto":
+        lowest, enough = rigid_limit(scene, bounds)
+        model = "asperity" if enough else "elastic"
+        s.lowest_gap = lowest
+    if model == "asperity":
+        return None
+    if nodes is None:
+        deepest, count = min(deepest_gap(scene, bounds), 0.0), None
+    else:
+        deepest, count = nodes.lowest_gap, nodes.nodes
+    grid = node_grid(scene, bounds, float(s.force_unit), deepest, count)
+    s.nodes, s.points, s.orders = grid.nodes, point_count(grid.nodes), grid.orders
+    s.length_middle, s.length_half_range = grid.middle, grid.half
+    s.lowest_gap = deepest
+    return grid
+
+
+def add_nodes(s: Record, tables: Tables, grid: NodeGrid | None) -> None:
+    """Lay out the constants of the nodes, and note how many numbers of them change."""
+    if grid is None:
+        return
+    n, points = grid.nodes, int(s.points)
+    start = tables.add(grid.body)
+    sizes = (n, n, grid.orders * n * n, points, points)
+    starts = start + np.cumsum([0, *sizes])
+    s.profile_at, s.weights_at, s.influence_at, s.point_profile_at, s.point_weights_at, s.shares_at = starts
+    s.node_row_length = row_numbers(n)
+
+
+def add_contact(
+    s: Record, tables: Tables, scene: Scene, width: float, unit_length: float, widest: float
+) -> None:
+    """Lay out force laws and stored energies, and set the gaps where contact begins to count and to exist at all.
+
+    Parameters
+    ----------
+    s : record
+        ``SCENE``; changed.
+    tables : Tables
+    scene : Scene
+    width, unit_length : float
+        Face width, and ``sqrt(2 R sigma)`` of a contact of unit length [m].
+    widest : float
+        Largest contact length.
+    """
+    _add_coverage(s, tables, scene)
+    reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
+    kernel: Kernel = "plane" if s.nodes > 0 else "line"
+    loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
+    loadings, potentials, numbers = np.zeros((3, loading.size, BESIDE))
+    longest = 0
+    for material, (surface, share, offset, _) in enumerate(_parts(scene)):
+        own, tip = s.material[material], asperity_of(surface)
+        own.gap_offset = offset / surface.roughness
+        law = law_of(scene.contact.asperity, surface)
+        check_reach(law, surface.roughness)
+        table = law_table(law, kernel) if share > 0.0 else np.zeros(HEADER)
+        energy = energy_table(law, kernel) if share > 0.0 else table
+        scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
+        force = share * scale * unit_length / float(s.force_unit)
+        own.force_scale, own.stretch_limit = force, table[H_STRETCH]
+        own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
+        own.table_at, own.energy_at, own.table_count = tables.add(table), tables.add(energy), table.size
+        own.number_at = tables.add(number_table(kernel, law.join))
+        if s.by_place != 0:
+            numbers[:, material] = number_table(kernel, law.join - float(own.gap_offset))
+        longest = max(longest, branch_length(table))
+        if share > 0.0:
+            push, stored = loading_pieces(law, kernel, float(own.gap_offset))
+            loading += force * push
+            potential += force * stored
+            loadings[:, material], potentials[:, material] = force * push, force * stored
+            for floor, gap in reach.items():
+                widest_gap = _outermost(law, kernel, floor / (force * widest))
+                reach[floor] = max(gap, widest_gap - float(own.gap_offset))
+    s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
+    if s.by_place != 0:
+        s.loadings_at, s.potentials_at, s.numbers_at = (
+            tables.add(each.ravel()) for each in (loadings, potentials, numbers)
+        )
+    s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
+    s.branch_length, s.point_branch_length = (0, longest) if s.nodes > 0 else (longest, 0)
+
+
+def _parts(scene: Scene) -> tuple[Material, ...]:
+    """Materials with the shares that their force scales hold: one each where shares change with tooth and place."""
+    if not scene.coating.by_place:
+        return scene.materials()
+    return tuple(material._replace(share=1.0) for material in scene.materials())
+
+
+def _add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
+    """Lay out the fractions by tooth and place, if there are any."""
+    if not scene.coating.by_place:
+        return
+    s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
+    for own, table in zip(s.coverage, scene.coating.tables, strict=True):
+        own.teeth, own.places = len(table), len(table[0])
+        own.values_at = tables.add(np.array(table).ravel())
+        own.place_scale = len(table[0]) / float(s.contact_ratio)
+
+
+def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:
+    """Widest gap at which this surface's force still exceeds `least`, on a grid of an eighth."""
+    gaps, forces = largest_forces(law, kernel)
+    felt = np.flatnonzero(forces > least)
+    return float(gaps[felt[0]]) if felt.size else GAP_LOW

@@ -1,0 +1,143 @@
+"""From a scene's drive, load and run to torques, schedules, stops and the load that the scene is about."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Record
+from gearidae.engine.setup.tables import Tables
+from gearidae.engine.torques.harmonic import pack_harmonics
+from gearidae.engine.torques.law import largest_torque
+from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule
+from gearidae.scene import Drive, Knots, Load, Scene
+
+__all__ = ["add_torques", "reference_force", "set_run", "set_stop"]
+
+STRIDE = 6  # accepted steps near contact that the energy balance integrates over at once
+SPAN = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
+KNOT_SPACING = 1e-12  # what knots must be apart, over the time itself
+ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
+ROOT_SPACING = 1e-12  # what is close, over the time itself
+
+
+def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
+    """Bound of a shaft's prescribed torque [N m]; of its law, up to a speed [rad/s]."""
+    steady = abs(shaft.torque) + sum(abs(h.amplitude) for h in shaft.harmonic)
+    if isinstance(shaft, Load):
+        steady += shaft.viscous * abs(speed)
+    if shaft.law is not None:
+        steady += largest_torque(shaft.law.name, shaft.law.parameters, speed, duration)
+    return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
+
+
+def _largest_held(scene: Scene, speed: float, ratio: float) -> float:
+    """Bound of the torque [N m] that holds a speed: of the first difference, and to carry both gears along."""
+    assert scene.drive
+    assert scene.gears
+    knots = np.array(scene.drive.speed_knots())
+    inertia = scene.gears.pinion_inertia + scene.gears.gear_inertia / ratio**2
+    slopes = np.abs(np.diff(knots[:, 1]) / np.diff(knots[:, 0]))
+    most = scene.drive.speed_gain * float(np.ptp(knots[:, 1]))
+    return scene.drive.speed_gain * abs(float(knots[0, 1]) - speed) + min(
+        inertia * float(slopes.max(initial=0.0)), most
+    )
+
+
+def reference_force(scene: Scene, mass: float) -> float:
+    """Load along the line of action that this scene is about [N]: from the torques, else from the motion."""
+    assert scene.drive
+    assert scene.load
+    assert scene.initial
+    geometry, speed, duration = scene.geometry, scene.initial.gear_speed, scene.run.duration
+    ratio = geometry.base_radius_gear / geometry.base_radius_pinion
+    drive = _largest(scene.drive, speed * ratio, duration)
+    if scene.drive.speed is not None:
+        drive += _largest_held(scene, speed * ratio, ratio)
+        speed = max([abs(speed), *(abs(value) / ratio for _, value in scene.drive.speed_knots())])
+    load = _largest(scene.load, speed, duration)
+    force = max(
+        drive / geometry.base_radius_pinion,
+        (load + scene.load.drag * speed**2) / geometry.base_radius_gear,
+    )
+    if force == 0.0:
+        force = mass * (speed * geometry.base_radius_gear) ** 2 / geometry.base_pitch
+    return force if force > 0.0 else mass * scene.surface.roughness * (1e3 / scene.run.duration) ** 2
+
+
+def add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
+    """Lay out the torques of both shafts and the times of their knots, and set what the run follows from them."""
+    assert scene.drive
+    assert scene.load
+    tau, force = float(s.time_unit), float(s.force_unit)
+    shafts = ((DRIVE, scene.drive, float(s.pinion_radius)), (LOAD, scene.load, float(s.gear_radius)))
+    knots = set()
+    fastest = 0.0
+    for shaft, law, radius in shafts:
+        own, unit = s.torque[shaft], force * radius
+        harmonics = [(h.amplitude, h.frequency, h.phase) for h in law.harmonic]
+        own.constant = law.torque / unit
+        own.harmonic_count, own.harmonics_at = (
+            len(harmonics),
+            tables.add(pack_harmonics(harmonics, tau, unit)),
+        )
+        own.law_torque, own.law_speed = unit, float(s.length_unit) / tau / radius
+        if law.law is not None:
+            own.law_count, own.law_at = len(law.law.parameters), tables.add(law.law.parameters)
+        fastest = max([fastest, *(h.frequency for h in law.harmonic)])
+    speed = float(s.length_unit) / tau / float(s.pinion_radius)
+    schedules = (
+        (DRIVE, scene.drive.schedule, force * float(s.pinion_radius)),
+        (LOAD, scene.load.schedule, force * float(s.gear_radius)),
+        (SPEED, scene.drive.speed_knots(), speed),
+    )
+    for which, schedule, unit in schedules:
+        knots |= _add_schedule(s, tables, which, schedule, unit)
+        if s.schedule[which].cubic:
+            omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
+            fastest = max(fastest, omega / (2.0 * math.pi * tau))
+    set_run(s, tables, scene, knots, begin)
+    # a torque that knows the speed vibrates with it, and is looked at in each step
+    knows_speed = scene.drive.law is not None or scene.load.law is not None or s.speed_gain != 0.0
+    s.balance_steps = 1 if knows_speed else STRIDE
+    s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
+
+
+def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: float) -> set[float]:
+    """Lay out a schedule of values in a unit; return the times over tau at which the solver has to stop for it."""
+    tau, own = float(s.time_unit), s.schedule[which]
+    cubic = schedule.interpolation == "cubic" and len(schedule) >= LEAST_CUBIC
+    own.knot_count, own.cubic = len(schedule), int(cubic)
+    own.knots_at = tables.add(pack_schedule(schedule, tau, unit, cubic=cubic))
+    stops = (schedule[0], schedule[-1]) if cubic else schedule
+    return {t / tau for t, _ in stops}
+
+
+def set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: float) -> None:
+    """Set start and end of the run, its knots and checkpoints, and what counts as chatter."""
+    tau = float(s.time_unit)
+    s.start, s.end = begin / tau, (begin + scene.run.duration) / tau
+    kept = {t / tau for t in scene.run.checkpoints}
+    times = sorted(t for t in knots | kept if s.start < t < s.end)
+    # of knots that the solver cannot tell apart the last one serves for all: schedules enter every segment up to it
+    following = [*times[1:], float(s.end)]
+    apart: list[float] = []
+    marks: list[float] = []
+    marked = False
+    for t, after in zip(times, following, strict=False):
+        marked |= t in kept
+        if after - t > KNOT_SPACING * after:
+            apart.append(t)
+            marks.append(float(marked))
+            marked = False
+    s.knot_count, s.knots_at, s.checkpoints_at = len(apart), tables.add(apart), tables.add(marks)
+    s.root_limit, s.root_spacing = ROOT_LIMIT, ROOT_SPACING
+
+
+def set_stop(s: Record, scene: Scene, place: float) -> None:
+    """Set what ends the run before its time."""
+    assert scene.gears
+    word, _, turns = scene.run.stop.partition(" ")
+    s.stop, s.stop_from = STOPS.index(word), place
+    s.stop_pitches = float(turns or 0.0) * scene.gears.gear_teeth

@@ -1,0 +1,274 @@
+"""One scene, scaled and ready to run: what the drivers work with."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from gearidae.engine.followers.balance import BALANCE, balance_at
+from gearidae.engine.followers.exposures.follow import close_exposures_at, exposures_of
+from gearidae.engine.followers.extremes.follow import note_present_at
+from gearidae.engine.followers.extremes.units import extremes_in_si
+from gearidae.engine.model.located import Located
+from gearidae.engine.model.state import (
+    DRIVE,
+    GEARS,
+    LOAD,
+    MATERIALS,
+    SPEED,
+    Floats,
+    Model,
+    V,
+    assign,
+    blank_work,
+    copied,
+    plain,
+)
+from gearidae.engine.pairs.tooth_pairs import set_branches
+from gearidae.engine.setup import checkpoint as checkpoints
+from gearidae.engine.torques.harmonic import fastest_harmonic
+from gearidae.engine.torques.schedule import fastest_schedule
+from gearidae.errors import SceneError
+from gearidae.records import EnergyBalance, Extremes, first_sample
+
+__all__ = ["Problem"]
+
+ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
+PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
+FELT = 0.1  # of the tolerance of a speed
+
+
+@dataclass(slots=True)
+class Problem:
+    """One scene, scaled and ready to run; a driver changes its model in place.
+
+    Attributes
+    ----------
+    model : Model
+        See `gearidae.engine.model.state`.
+    start : ndarray, shape (n,)
+        Scaled state at time 0.
+    tolerance_scale : ndarray, shape (n,)
+        What an error of 1 means for each state: times rtol, the absolute tolerances.
+    columns : tuple of str
+        What `observe` writes.
+    skipped : dict
+        What this scene does not need.
+    digest : tuple of four floats
+        Tells this scene's checkpoints from others.
+    depth : int
+        0 for the asperity model, 1 and more for the layouts of the elastic model.
+    elastic : callable, optional
+        Makes the elastic problem for the time when the automatically chosen asperity model is no longer sufficient.
+    deeper : callable, optional
+        Makes the same elastic problem with nodes laid out for deeper contacts, if there can be any.
+    method : str
+        ``run.method`` of the scene.
+    located : Located
+        Where the model lies in this process, for compiled functions that are called from Python.
+    """
+
+    model: Model
+    start: Floats
+    tolerance_scale: Floats
+    columns: tuple[str, ...]
+    skipped: dict[str, int]
+    digest: tuple[float, ...] = ()
+    depth: int = 0
+    elastic: Callable[[], Problem] | None = None
+    deeper: Callable[[], Problem] | None = None
+    method: str = "auto"
+    located: Located = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Note where the model lies."""
+        self.located = Located(self.model)
+
+    @property
+    def time_unit(self) -> float:
+        """The scene's tau [s]."""
+        return float(self.model.scene.time_unit)
+
+    def shortened(self, end: float) -> Problem:
+        """Copy of this problem that ends early, at a time over tau, and has no knots."""
+        m = self.model
+        scene, state, work = (np.array([record])[0] for record in (m.scene, m.state, m.work))
+        copy = Model(scene, state, work, m.tables.copy(), m.rows.copy())
+        copy.scene.start, copy.scene.end = 0.0, min(float(m.scene.end), end)
+        copy.scene.knot_count = copy.scene.stop = 0
+        return replace(self, model=copy, start=self.start.copy())
+
+    def prepare(self, rtol: float, samples: int) -> Model:
+        """Set the tolerance and the number of samples of a run, and return the model.
+
+        Every state's error counts in absolute tolerances, `rtol` times its scale. At tight ones the energy balance
+        divides steps in flight: the error of its quadrature goes with the fourth power of a step, and a step with no
+        more than the eighth root of the tolerance. Torques that shake a gear by less than a share of the tolerance need
+        not be followed.
+        """
+        m = self.model
+        s, first = m.scene, m.scene.error_weights_at
+        s.rtol, s.samples = rtol, samples
+        s.first_sample = first_sample(float(s.start), float(s.end), samples)
+        m.rows[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
+        s.balance_error = ERRORS * rtol
+        s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
+        if s.kind == GEARS:
+            felt = FELT * rtol * float(self.tolerance_scale[V])
+            s.torque_omega = max(
+                self._fastest(shaft, felt / float(share))
+                for shaft, share in ((DRIVE, s.pinion_inverse_mass), (LOAD, s.gear_inverse_mass))
+            )
+            steepest = max(fastest_schedule(own, m.tables, 0.0) for own in s.schedule)
+            s.longest_step = 1.0 / steepest if steepest > 0.0 else 0.0
+        return m
+
+    def _fastest(self, shaft: int, felt: float) -> float:
+        scene, tables = self.model.scene, self.model.tables
+        own = scene.torque[shaft]
+        harmonics = tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
+        fastest = max(
+            fastest_harmonic(harmonics, felt), fastest_schedule(scene.schedule[shaft], tables, felt)
+        )
+        if shaft == DRIVE and scene.speed_gain > 0.0:
+            fastest = max(fastest, fastest_schedule(scene.schedule[SPEED], tables, felt / scene.speed_gain))
+        return float(fastest)
+
+    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance, Extremes]:
+        """Return the energy balance and the extremes of the run up to an accepted time.
+
+        Whoever looks leaves the run as it was: intervals are not split by a look at what they have added up to.
+
+        Parameters
+        ----------
+        time : float
+            Over tau.
+        state, rates : ndarray, shape (n,)
+            Scaled state there, and its rate.
+        """
+        m, now, exposures = self.model, np.empty(BALANCE), exposures_of(self.model)
+        before, exposed = (copied(m.state), copied(m.work)), exposures.copy()
+        balance_at(self.located.place, time, state, rates, now)
+        balance = self._in_joules(time, *now.tolist())
+        if m.scene.places > 0:
+            close_exposures_at(self.located.place, time, state, rates)
+        if m.state.extremes.begun != 0:
+            note_present_at(self.located.place, state)
+        extremes = extremes_in_si(m, time, state)
+        for record, one in zip((m.state, m.work), before, strict=True):
+            assign(record, one)
+        exposures[:] = exposed
+        return balance, extremes
+
+    def _in_joules(
+        self, time: float, stored: float, pending: float, kinetic: float, lag: float, slope: float
+    ) -> EnergyBalance:
+        e, scene = plain(self.model.state.energy), self.model.scene
+        unit = float(scene.force_unit * scene.length_unit)
+        return EnergyBalance(
+            time=time * self.time_unit,
+            drive_work=unit * e.drive_work,
+            radius_work=unit * (e.radius_work - (lag if scene.radius_force == 0 else 0.0)),
+            model_change=unit * e.model_change,
+            drag_loss=unit * e.drag_loss,
+            dry_loss=unit * e.dry_loss,
+            damping_loss=unit * e.damping_loss,
+            adhesion_loss=unit * (e.adhesion_loss + pending - lag),
+            stored_change=unit * (stored - pending - e.start_stored),
+            kinetic_change=unit * (kinetic - e.start_kinetic),
+            throughput=unit * e.throughput,
+            quadrature_error=unit * (e.quadrature_error + e.loss_error),
+            largest=unit * (e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)),
+            # both shafts' torques are at most the unit of force
+            pitch_work=unit * float(2.0 / scene.phase_rate) if scene.kind == GEARS else 0.0,
+            speed_work=unit * self._momenta(e.peak_kinetic),
+            torque_work=unit * slope * self._top_speed(e.peak_kinetic) * time,
+        )
+
+    def _momenta(self, kinetic: float) -> float:
+        """Sum of what the momenta of both gears can be at a kinetic energy, scaled; 0 of a roller."""
+        s = self.model.scene
+        if s.kind != GEARS:
+            return 0.0
+        return sum(
+            math.sqrt(2.0 * kinetic / float(one)) for one in (s.pinion_inverse_mass, s.gear_inverse_mass)
+        )
+
+    def _top_speed(self, kinetic: float) -> float:
+        """Speed of both base circles at a kinetic energy, scaled; 0 of a roller."""
+        s = self.model.scene
+        if s.kind != GEARS:
+            return 0.0
+        mass = 1.0 / float(s.pinion_inverse_mass) + 1.0 / float(s.gear_inverse_mass)
+        return math.sqrt(2.0 * kinetic / mass)
+
+    def checkpoint(self, time: float, state: Floats) -> Floats:
+        """Everything that changes in a run, as one vector.
+
+        Parameters
+        ----------
+        time : float
+            Time reached, over tau.
+        state : ndarray, shape (n,)
+            Scaled state there.
+        """
+        self.model.state.time = time
+        return checkpoints.pack(self.model, self.digest, self.depth, state)
+
+    def of_checkpoint(self, checkpoint: Floats) -> Problem:
+        """Return this scene's problem with the contact model that a checkpoint has.
+
+        Raises
+        ------
+        SceneError
+            If the checkpoint is not of this scene.
+        """
+        depth, problem = checkpoints.depth_of(checkpoint, self.digest), self
+        if depth > 0 and problem.elastic is not None:
+            problem = problem.elastic()
+        while problem.depth < depth and problem.deeper is not None:
+            problem = problem.deeper()
+        if problem.depth != depth:
+            raise SceneError("checkpoint", f"contact model {depth}", "not one that this scene has")
+        return problem
+
+    def restore(self, checkpoint: Floats, state: Floats) -> float:
+        """Take a checkpoint of this problem back, in place, and return its time over tau.
+
+        Nothing is left of a run of this problem before: its work records are blank as for a start.
+
+        Raises
+        ------
+        SceneError
+            If a number is none that a run of this scene could have left.
+        """
+        m = self.model
+        checkpoints.unpack(m, checkpoint, state)
+        blank_work(m.work)
+        for k in range(m.scene.histories):
+            for material in range(MATERIALS):
+                set_branches(m, k, material)
+        time = float(m.state.time)
+        m.work.quadrature.time = m.work.resistance.time = time
+        m.work.driver.time = time
+        return time
+
+    def restored(self, checkpoint: Floats) -> tuple[float, Floats]:
+        """Take a checkpoint of this problem back, as `restore` does; return its time over tau and the state vector."""
+        state = np.empty(self.start.size)
+        return self.restore(checkpoint, state), state
+
+    def outgrown(self, checkpoint: Floats) -> bool:
+        """Whether a checkpoint of this problem stands where the model's bound has been exceeded."""
+        return checkpoints.exceeded(checkpoint)
+
+    def has_been_elastic(self, checkpoint: Floats) -> bool:
+        """Whether bodies have been elastic in the run of a checkpoint of this problem."""
+        return self.depth > 0 or checkpoints.elastic_so_far(checkpoint)
+
+    def lightened(self, checkpoint: Floats) -> bool:
+        """Whether a checkpoint stands where the asperity model would do again."""
+        return checkpoints.light(checkpoint)

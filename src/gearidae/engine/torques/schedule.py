@@ -1,0 +1,172 @@
+"""Schedules of torques and of a held speed: linear or monotone cubic between their knots, constant outside them.
+
+Of a linear schedule the current segment is part of the state and not searched: it changes at knots only, so that a step
+never sees two of them. A cubic one is smooth from its first knot to its last, so that only these two are stops of the
+solver; the piece between two knots is found from the one used before, which is work space and in no file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.model.state import Floats, Model, Record
+
+__all__ = [
+    "LEAST_CUBIC",
+    "enter_segment",
+    "fastest_schedule",
+    "pack_schedule",
+    "schedule_rate",
+    "schedule_value",
+    "segment_ends",
+]
+
+LEAST_CUBIC = 3
+"""Knots that a cubic takes; two are joined by a straight line."""
+
+
+def pack_schedule(
+    schedule: Sequence[tuple[float, float]], time_unit: float, unit: float, *, cubic: bool
+) -> Floats:
+    """Lay a schedule out as the functions below read it.
+
+    Parameters
+    ----------
+    schedule : sequence of (time, value)
+        [s], [SI].
+    time_unit, unit : float
+        tau [s] and the unit of the values.
+    cubic : bool
+        Whether to add the coefficients of the cubics, of powers one to three of the time since the knot, by pieces.
+    """
+    knots = np.array(schedule, np.float64).reshape(-1, 2) / np.array([time_unit, unit])
+    if not cubic:
+        return knots.ravel()
+    from scipy.interpolate import PchipInterpolator  # a sixth of a second, and few scenes need it
+
+    coefficients = PchipInterpolator(knots[:, 0], knots[:, 1]).c
+    return np.concatenate([knots.ravel(), coefficients[2::-1].T.ravel()])
+
+
+def segment_ends(own: Record, tables: Floats) -> Floats:
+    """Times at which a schedule enters its segments: all knots, or the first and the last of a cubic one.
+
+    Parameters
+    ----------
+    own : record
+        ``SCHEDULE``.
+    tables : ndarray
+        Of the model.
+    """
+    times = tables[own.knots_at : own.knots_at + 2 * own.knot_count : 2]
+    return times[[0, -1]] if own.cubic else times
+
+
+def fastest_schedule(own: Record, tables: Floats, felt: float) -> float:
+    """Angular frequency of the harmonic that is as steep as a cubic schedule, if it is felt; 0 else.
+
+    Between two knots at which its slope is zero a cubic is steeper than their chord by half.
+
+    Parameters
+    ----------
+    own : record
+        ``SCHEDULE``.
+    tables : ndarray
+        Of the model.
+    felt : float
+        Impulse, see `gearidae.engine.torques.harmonic.fastest_harmonic`.
+    """
+    if not own.cubic:
+        return 0.0
+    count, start = int(own.knot_count), int(own.knots_at)
+    values = tables[start + 1 : start + 2 * count : 2]
+    steepest = 1.5 * np.abs(np.diff(values) / np.diff(tables[start : start + 2 * count : 2])).max()
+    amplitude = 0.5 * float(values.max() - values.min())
+    omega = float(steepest) / amplitude if amplitude > 0.0 else 0.0
+    return omega if amplitude > felt * omega else 0.0
+
+
+@compiled
+def _piece(m: Model, which: int, t: float) -> int:
+    """Index of the knot before a time, at most the last but one."""
+    own = m.scene.schedule[which]
+    j, times = m.work.piece[which], own.knots_at
+    while j > 0 and t < m.tables[times + 2 * j]:
+        j -= 1
+    while j < own.knot_count - 2 and t >= m.tables[times + 2 * j + 2]:
+        j += 1
+    m.work.piece[which] = j
+    return j
+
+
+@compiled_once(SOLVER)
+def _cubic_value(m: Model, which: int, t: float) -> float:
+    """Value of a cubic schedule within its knots."""
+    j = _piece(m, which, t)
+    k = m.scene.schedule[which].knots_at + 2 * j
+    c = m.scene.schedule[which].knots_at + 2 * m.scene.schedule[which].knot_count + 3 * j
+    s = t - m.tables[k]
+    return m.tables[k + 1] + s * (m.tables[c] + s * (m.tables[c + 1] + s * m.tables[c + 2]))
+
+
+@compiled_once(SOLVER)
+def _cubic_rate(m: Model, which: int, t: float) -> float:
+    """Rate of change of a cubic schedule within its knots."""
+    j = _piece(m, which, t)
+    c = m.scene.schedule[which].knots_at + 2 * m.scene.schedule[which].knot_count + 3 * j
+    s = t - m.tables[m.scene.schedule[which].knots_at + 2 * j]
+    return m.tables[c] + s * (2.0 * m.tables[c + 1] + s * 3.0 * m.tables[c + 2])
+
+
+@compiled(inline=True)
+def schedule_value(m: Model, which: int, t: float, value: float) -> float:
+    """Add the schedule at a time to a value."""
+    own = m.scene.schedule[which]
+    knots = own.knot_count
+    if knots > 0:
+        k, j = own.knots_at, m.state.segment[which]
+        if j == 0:
+            value += m.tables[k + 1]
+        elif j == (2 if own.cubic != 0 else knots):
+            value += m.tables[k + 2 * knots - 1]
+        elif own.cubic != 0:
+            value += _cubic_value(m, which, t)
+        else:
+            k += 2 * j
+            share = (t - m.tables[k - 2]) / (m.tables[k] - m.tables[k - 2])
+            value += m.tables[k - 1] + share * (m.tables[k + 1] - m.tables[k - 1])
+    return value
+
+
+@compiled
+def schedule_rate(m: Model, which: int, t: float) -> float:
+    """Rate of change of the schedule."""
+    own = m.scene.schedule[which]
+    k, j = own.knots_at, m.state.segment[which]
+    if not 0 < j < (2 if own.cubic != 0 else own.knot_count):
+        return 0.0
+    if own.cubic != 0:
+        return _cubic_rate(m, which, t)
+    k += 2 * j
+    return (m.tables[k + 1] - m.tables[k - 1]) / (m.tables[k] - m.tables[k - 2])
+
+
+@compiled
+def enter_segment(m: Model, which: int, t: float) -> None:
+    """Enter the segment that begins at a knot, if this schedule has one at this time."""
+    own = m.scene.schedule[which]
+    if own.cubic != 0:
+        last = own.knots_at + 2 * own.knot_count - 2
+        if m.state.segment[which] == 0 and m.tables[own.knots_at] <= t:
+            m.state.segment[which] = 1
+        if m.state.segment[which] == 1 and m.tables[last] <= t:
+            m.state.segment[which] = 2
+        return
+    while (
+        m.state.segment[which] < own.knot_count and m.tables[own.knots_at + 2 * m.state.segment[which]] <= t
+    ):
+        m.state.segment[which] += 1

@@ -1,0 +1,69 @@
+"""How the rooms of the package hang together: who imports whom, read from the sources and never run."""
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src" / "gearidae"
+
+
+def imported(path, package):
+    """Modules below a package that a file imports, also inside functions; not what only type checkers read."""
+    tree = ast.parse(path.read_text())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node.body = []
+    prefix = f"{package}."
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [one.name for one in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names = [f"{node.module}.{one.name}" for one in node.names]
+        else:
+            continue
+        yield from (name.removeprefix(prefix) for name in names if name.startswith(prefix))
+
+
+def arrows(folder, package):
+    """Rooms of a package, each with the rooms that it imports; a room is a folder, or a module beside the folders."""
+    rooms = {
+        path.stem for path in folder.iterdir() if (path / "__init__.py").exists() or path.suffix == ".py"
+    }
+    found = {room: set() for room in rooms - {"__init__"}}
+    for path in folder.rglob("*.py"):
+        room = path.relative_to(folder).parts[0].removesuffix(".py")
+        if room != "__init__":  # the door, which shows names of upper rooms
+            others = {name.partition(".")[0] for name in imported(path, package)}
+            found[room] |= (others & rooms) - {room, "__init__"}
+    return found
+
+
+def test_no_arrow_between_rooms_of_the_engine_runs_back():
+    found = arrows(SOURCE / "engine", "gearidae.engine")
+    both_ways = sorted(
+        {tuple(sorted((one, other))) for one in found for other in found[one] if one in found[other]}
+    )
+    assert both_ways == []
+    order = list(TopologicalSorter(found).static_order())
+    assert order.index("model") < order.index("motion") < order.index("setup") < order.index("integrate")
+
+
+def test_no_two_rooms_of_the_package_import_each_other():
+    found = arrows(SOURCE, "gearidae")
+    assert [(one, other) for one in found for other in found[one] if one in found[other]] == []
+
+
+def test_a_circle_would_be_found(tmp_path):
+    """Also one over three rooms, and one through an import inside a function."""
+    for room, text in (
+        ("a", "import p.b.x"),
+        ("b", "def f():\n    from p.c import y"),
+        ("c", "from p.a import z"),
+    ):
+        (tmp_path / room).mkdir()
+        (tmp_path / room / "__init__.py").write_text(text)
+    assert arrows(tmp_path, "p") == {"a": {"b"}, "b": {"c"}, "c": {"a"}}
+    with pytest.raises(CycleError):
+        TopologicalSorter(arrows(tmp_path, "p")).prepare()
