@@ -27,7 +27,7 @@ from gearidae.engine.changeover import (
 )
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
-from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.followers.exposures.follow import QUANTITIES, exposures_of
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.state import (
@@ -173,14 +173,14 @@ def knots_at_start(problem: Problem) -> Floats:
 
     Returns
     -------
-    ndarray, shape (0 or 1, 5)
+    ndarray, shape (0 or 1, EVENT_NUMBERS)
         Time [s], kind, pair, flank, gap rate [m/s].
     """
     s, tables = problem.model.scene, problem.model.tables
     if not any((segment_ends(own, tables) == s.start).any() for own in s.schedule):
-        return np.empty((0, 5))
+        return np.empty((0, EVENT_NUMBERS))
     time = float(s.start * s.time_unit)
-    return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0]])
+    return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0, -1.0]])
 
 
 def _restored(scene: Scene, words: Floats, start: float) -> tuple[Problem, Floats]:
@@ -329,4 +329,4 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
         s.slip, s.slipping = float(np.sign(y[W])), int(abs(y[W]) > m.scene.rest_speed)
     s.stop_armed = 0
     if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:
-        stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, 5)), 0)
+        stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)

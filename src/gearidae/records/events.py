@@ -24,6 +24,8 @@ class EventKind(IntEnum):
     SLIP = 7
     FLANK_CHANGE = 8
     SCHEDULE_KNOT = 9
+    ASPERITY_ONSET = 10
+    ASPERITY_DETACHMENT = 11
 
 
 class Flank(IntEnum):

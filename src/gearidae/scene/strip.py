@@ -65,6 +65,12 @@ def check_population(scene: Scene) -> None:
             scene.run.exposures,
             "must be 0 with contact.model = population, which keeps none yet",
         )
+    if len(scene.coating.gear_table) > 1:
+        raise SceneError(
+            "coating.gear_table",
+            f"({len(scene.coating.gear_table)} rows)",
+            "must have one row with contact.model = population, where an asperity meets every tooth of the gear",
+        )
     if scene.contact.asperities:
         return
     low, high = flank_strip(scene)

@@ -11,8 +11,6 @@ at fixed gap. As the phase of the mesh is the gear's, the pinion has no part in 
 
 from __future__ import annotations
 
-import math
-
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.compiling import SOLVER
@@ -22,9 +20,9 @@ from gearidae.engine.energy.coverage import coverage_force, coverage_power
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import WHOLE, potentials_of
 from gearidae.engine.pairs.lengths import length_and_rates
-from gearidae.engine.pairs.tooth_pairs import history_of
+from gearidae.engine.pairs.tooth_pairs import history_of, pairs_on_path
 
-__all__ = ["pairs_on_path", "radius_force", "radius_power", "sample_radius_power"]
+__all__ = ["radius_force", "radius_power", "sample_radius_power"]
 
 
 @compiled_once(SOLVER)
@@ -88,17 +86,6 @@ def _power_by_place(
             power += more
             rate += change
     return power, rate
-
-
-@compiled
-def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
-    """First and last number of a flank's pairs on the path of contact.
-
-    The last two mesh marks tell, so that a step that ends at a mark sees the side it comes from.
-    """
-    between = 0.5 * (m.state.mark_low + m.state.mark_high)
-    lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
-    return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
 @compiled

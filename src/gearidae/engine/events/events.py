@@ -13,6 +13,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import middle_gap
+from gearidae.engine.events.asperity_events import asperity_guard, flip_asperities, record_flips
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import handle_pair, newly_stretched, pair_guard
@@ -58,6 +59,9 @@ def guard(m: Model, t: float, y: Floats) -> float:
             least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
     if m.state.near[DRIVE] == 0:
         least = min(least, nearest_gap(m, DRIVE, y) - m.scene.cutoff)
+    if m.scene.population.flanks != 0:
+        least = min(least, asperity_guard(m, y))
+        return least if least != 0.0 else _TINY
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -98,6 +102,7 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
         crossed = crossed_mark(m, y)
         if crossed:
             count = cross_mark(m, t, y, events, count)
+            m.state.cycle_events = 0
             if m.scene.nodes > 0 and _light(m):
                 m.state.light = 1
             # the force of a pair there jumps, or it would part unseen
@@ -106,6 +111,13 @@ def handle(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[i
         if m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0:
             action = RESTART
             count = stick_or_slip(m, t, y, events, count)
+    if m.scene.population.flanks != 0:
+        if flip_asperities(m, y):
+            action = RESTART
+        count, chatter = record_flips(m, t, events, count)
+        if chatter or _crowded(m, t):
+            action = CROWDED
+        return count, action
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -148,6 +160,8 @@ def balance_can_wait(m: Model, t: float, y: Floats) -> bool:
     powers know nothing of it.
     """
     if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
+        return False
+    if m.scene.population.flanks != 0:  # forces jump
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
         return False

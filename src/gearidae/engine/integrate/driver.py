@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearidae.compiled import compiled
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
 from gearidae.records import Block, Ending, EnergyBalance, Extremes, Statistics
 
@@ -82,7 +83,7 @@ class Output(NamedTuple):
     Attributes
     ----------
     rows : ndarray, shape (BLOCK_ROWS, columns)
-    events : ndarray, shape (BLOCK_EVENTS, 5)
+    events : ndarray, shape (BLOCK_EVENTS, EVENT_NUMBERS)
     """
 
     rows: Floats
@@ -91,7 +92,7 @@ class Output(NamedTuple):
     @classmethod
     def empty(cls, columns: int) -> Output:
         """Room for a block."""
-        return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, 5)))
+        return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, EVENT_NUMBERS)))
 
     def block(
         self,

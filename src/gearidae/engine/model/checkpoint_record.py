@@ -131,6 +131,9 @@ STATE: Final = record_type(
         "stop_armed",
         INT,
     ),  # 1 once the gear has moved forward, in a run that ends where its speed falls to zero
+    ("asperity_onsets", INT),  # single asperities that have joined, and let go, so far
+    ("asperity_detachments", INT),
+    ("cycle_events", INT),  # both since the last mesh mark
     ("last_root", REAL),  # time of the last root, and how many have come in close succession
     ("roots", INT),
     ("next_knot", INT),  # index of the coming knot among all knots

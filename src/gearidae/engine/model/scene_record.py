@@ -15,6 +15,7 @@ from gearidae.engine.model.record_types import (
 __all__ = [
     "COVERAGE",
     "MATERIAL",
+    "POPULATION",
     "SCENE",
     "SCHEDULE",
     "TORQUE",
@@ -52,6 +53,22 @@ SCHEDULE: Final = record_type(
     ("knot_count", INT),  # (time, value) of each, then the coefficients of the pieces of a cubic one
     ("knots_at", INT),
     ("cubic", INT),  # 1 for monotone cubics between the knots, 0 for straight lines
+)
+
+POPULATION: Final = record_type(
+    ("flanks", INT),  # of the pinion, both sides of each tooth, or one of a roller; 0 for the mean of many surfaces
+    ("starts_at", INT),  # among the tables, for each level: the first asperity of each flank, and one past the last
+    ("listed_at", INT),  # asperities of the levels, where one past the last of a level is the first of the next
+    ("arcs_at", INT),  # of all asperities places along the flank, heights over sigma, and where their kind is
+    ("heights_at", INT),
+    ("kinds_at", INT),
+    ("highest", REAL),  # of their heights,
+    ("join", REAL),  # and farthest distance at which any joins
+    ("steepness", REAL),  # base pitch, or a roller's radius, over sigma
+    ("arc_scale", REAL),  # arc over the squared radius of curvature, per base pitch
+    ("capacity", INT),  # candidates of a pair at most
+    ("rows_at", INT),  # where they begin among the rows
+    ("quiet", INT),  # 1 where events of single asperities are not recorded
 )
 
 SCENE: Final = record_type(
@@ -105,6 +122,7 @@ SCENE: Final = record_type(
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
     ("loading_at", INT),  # loading branch of all materials together, in forces
     ("potential_at", INT),  # potential of that branch
+    ("population", POPULATION),
     ("slots", INT),  # histories per flank in use, a power of two, and of all flanks
     ("histories", INT),
     ("branch_length", INT),  # size of a branch of the force law or the stored energy; 0 if none is kept

@@ -18,6 +18,7 @@ from gearidae.engine.model.record_types import (
 __all__ = [
     "ADAMS",
     "CELL",
+    "CONTACT",
     "DRIVER",
     "EXPOSED",
     "EXPOSING",
@@ -224,6 +225,22 @@ CELL: Final = (
     )
 )
 
+CONTACT: Final = record_type(  # of a population: the candidates of a pair
+    ("known", INT),  # whether they have been chosen for the pair of the history,
+    ("gap", REAL),  # down to which gap, and between which places,
+    ("low", REAL),
+    ("high", REAL),
+    ("count", INT),  # how many there are, and how many of them are joined
+    ("joined", INT),
+    ("flips", INT),  # how many have joined or let go at the present root
+    ("started", INT),  # whether the pair was there when the step began, and then whether it was on the path,
+    ("start_moves", INT),
+    ("start_gap", REAL),  # its gap and place, with their rates
+    ("start_rate", REAL),
+    ("start_place", REAL),
+    ("start_place_rate", REAL),
+)
+
 WORK: Final = record_type(
     ("quadrature", QUADRATURE),
     ("resistance", RESISTANCE),
@@ -238,6 +255,9 @@ WORK: Final = record_type(
         (2 * SLOTS_HIGH, MATERIALS),
     ),  # by tooth and place, of elastic contacts as last asked for
     ("settling", SETTLING, (2 * SLOTS_HIGH,)),
+    ("contact", CONTACT, (2 * SLOTS_HIGH,)),
+    ("least_guard", REAL),  # least guard of a population when last asked for, and where the step began
+    ("least_before", REAL),
     ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),
     ("search", SEARCH),
