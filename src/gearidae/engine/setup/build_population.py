@@ -21,7 +21,7 @@ from gearidae.scene import MATERIAL_NAMES, Scene
 
 __all__ = ["add_population", "population_rows"]
 
-RELEASED: Final = 1e-6
+RELEASED: Final = 1e-10
 """How much sooner than at the fold an asperity lets go, over the width of its hysteresis: the slope of its load is
 infinite there, and less of its loss is out than this."""
 LEAST_CUTOFF: Final = GAP_LOW + 1.0
