@@ -209,7 +209,7 @@ def run_scene(
     -------
     Followed
     """
-    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
+    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
     found = Followed(rows[0], events[0])
     started = time.perf_counter()

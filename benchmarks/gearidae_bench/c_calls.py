@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.schedule_knots import next_stop
-from gearidae.engine.integrate import adams
+from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.driver import BLOCK_EVENTS
 from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.native import restart, state_for_sample

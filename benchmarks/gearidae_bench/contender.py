@@ -86,9 +86,13 @@ class Contender:
     unavailable: Callable[[], str] = field(default=_always)
 
 
-def _engine(backend: str) -> Callable[[Problem, float, Floats], Outcome]:
+def _engine(backend: str, *, follow: bool = True) -> Callable[[Problem, float, Floats], Outcome]:
+    """Run with one of the package's drivers; with its energy balance and extremes, or like a peer that has neither."""
+
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
         statistics = Statistics()
+        if not follow:
+            problem.model.scene.follow.balance = problem.model.scene.follow.extremes = 0
         table = np.concatenate(
             [b.rows for b in run_blocks(problem, tolerance, times.size, backend, statistics)]
         )
@@ -111,6 +115,13 @@ def engine_contenders() -> tuple[Contender, ...]:
     """gearidae's own drivers."""
     return (
         Contender("native", "gearidae, native", _engine("native"), "gearidae", unavailable=_no_native),
+        Contender(
+            "native_alone",
+            "gearidae, native, without balance and extremes",
+            _engine("native", follow=False),
+            "gearidae",
+            unavailable=_no_native,
+        ),
         Contender("portable", "gearidae, sksundae", _engine("sksundae"), "gearidae"),
     )
 

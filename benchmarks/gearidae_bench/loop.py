@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.events import CROWDED, guard
+from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.schedule_knots import pass_knot
@@ -20,6 +20,7 @@ from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import arm, watch
 from gearidae_bench.roots import (
     CALLS,
+    CROWDED,
     CUBIC,
     DOP853,
     EVENTS,

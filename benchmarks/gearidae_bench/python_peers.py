@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
-from gearidae.engine.events.events import CONTINUE
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate.by_address import guard_at, jacobian_at, residual_at
@@ -27,7 +26,7 @@ from gearidae.engine.setup.problem import Problem
 from gearidae_bench.compiling import compiled
 from gearidae_bench.contender import BROKEN, Contender, Outcome
 from gearidae_bench.reference import end_of, physical
-from gearidae_bench.roots import handle_event
+from gearidae_bench.roots import CONTINUE, handle_event
 from gearidae_bench.steps import rates
 
 __all__ = ["scipy_contenders", "sundials_contenders"]

@@ -7,8 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.events import guard, handle
+from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
+from gearidae.engine.integrate.epilogue import handle
 from gearidae.engine.model.state import Model
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import watch
@@ -16,11 +17,14 @@ from gearidae_bench.steps import dop853_value, gauss_step, hermite_value
 
 __all__ = [
     "CALLS",
+    "CONTINUE",
+    "CROWDED",
     "CUBIC",
     "DOP853",
     "EVENTS",
     "FAILED",
     "GAUSS",
+    "RESTART",
     "STEPS",
     "find_root",
     "handle_event",
@@ -36,8 +40,11 @@ GAUSS: Final = 2
 """How to know the state within a step: by a cubic, by the method's own interpolant, by a step that ends there."""
 
 STEPS, CALLS, EVENTS, FAILED = range(4)
-"""Columns of the counters; FAILED is not zero where a run had to be given up: the action that the
-engine's `handle` asks for and these loops do not know, or -1 where steps became too small."""
+"""Columns of the counters; FAILED is not zero where a run had to be given up: what `handle_event` returns, or -1 where
+steps became too small."""
+
+CONTINUE, RESTART, CROWDED = range(3)
+"""What is to be done after an event: go on, begin anew, or give up as events follow without progress in time."""
 
 _ROOT_TOLERANCE = 1e-15  # of the step's end time
 _MOST_TRIALS = 60
@@ -119,14 +126,17 @@ def find_root(
 
 @compiled()
 def handle_event(m: Model, t: float, y: Floats, room: Floats) -> int:
-    """Have the engine deal with the event at t, which `accept` has reached; returns the action that it asks for.
+    """Have the engine deal with the event at t, which `accept` has reached; `CONTINUE`, `RESTART` or `CROWDED`.
 
     The engine asks its own drivers to begin anew at a mesh mark where their steps are longer than the tip relief
     takes to part a pair. The other methods rely on their error test alone: no step is noted for them.
     """
-    m.work.driver.step, m.work.driver.step_end = 0.0, t
-    _, action = handle(m, t, y, room, 0)
-    return action
+    driver = m.work.driver
+    driver.step, driver.step_end, driver.events = 0.0, t, 0
+    m.scene.follow.balance = m.scene.follow.extremes = 0  # the other methods keep neither
+    if handle(m, t, y, y, room):
+        return RESTART
+    return CROWDED if driver.error != 0 else CONTINUE
 
 
 @compiled()

@@ -63,9 +63,9 @@ PARTS: Final = (
     Part(_EVENTS, "integrate.native", "finish_step", ""),
     Part("histories", "integrate.epilogue", "accept", _EVENTS),
     Part("events", "integrate.epilogue", "handle", _EVENTS),
-    Part("energy balance: adhesion", "integrate.epilogue", "follow_joining", _EVENTS),
-    Part("energy balance: works and losses", "integrate.epilogue", "_book", _EVENTS),
-    Part("extremes", "integrate.epilogue", "follow_extremes", _EVENTS),
+    Part("energy balance: adhesion", "followers.in_turn.joining", "step", _EVENTS),
+    Part("energy balance: works and losses", "followers.in_turn.balance", "step", _EVENTS),
+    Part("extremes", "followers.in_turn.extremes", "step", _EVENTS),
     Part("choice of formulas", "integrate.epilogue", "change_wanted", _EVENTS),
 )
 """A part comes after the one that it is part of."""

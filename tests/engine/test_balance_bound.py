@@ -8,7 +8,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.followers.quadrature import error_of_square, integral, integral_of_cube
+from gearidae.engine.formulas.quadrature import error_of_square, integral, integral_of_cube
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import (
     GEAR_BOUND,

@@ -255,7 +255,7 @@ def _samples(solution: Solution, name: str) -> NDArray[np.float64]:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(scene.roller is not None, scene.contact.model == "elastic")
+    return columns(scene.roller is not None, scene.contact.model)
 
 
 def key_labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:

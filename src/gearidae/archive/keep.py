@@ -151,4 +151,4 @@ def kept_in(attributes: Any, scene: Scene) -> Keep:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(scene.roller is not None, scene.contact.model == "elastic")
+    return columns(scene.roller is not None, scene.contact.model)

@@ -15,7 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gearidae.records import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES, EventKind, Flank, sampled_columns
+from gearidae.records import (
+    ELASTIC_SAMPLES,
+    GEAR_SAMPLES,
+    POPULATION_SAMPLES,
+    ROLLER_SAMPLES,
+    EventKind,
+    Flank,
+    sampled_columns,
+)
 
 __all__ = [
     "ENERGY_BALANCE",
@@ -85,7 +93,7 @@ SAM_FRACTION = Variable(
 
 SAMPLES: Mapping[str, Variable] = {
     column.name: Variable(column.name, ("time",), column.units, column.long_name, comment=column.comment)
-    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES, *ELASTIC_SAMPLES)
+    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES, *ELASTIC_SAMPLES, *POPULATION_SAMPLES)
 }
 
 _EVENTS = (
@@ -242,9 +250,9 @@ VERDICT: Mapping[str, Variable] = {variable.name: variable for variable in _VERD
 """What a run of a sweep leaves behind that keeps only parts of its runs."""
 
 
-def columns(is_roller: bool, is_elastic: bool = False) -> tuple[str, ...]:
-    """Names of the sampled columns of a gear or a roller scene, whose contact model is elastic or not."""
-    return sampled_columns(roller=is_roller, elastic=is_elastic)
+def columns(is_roller: bool, model: str = "asperity") -> tuple[str, ...]:
+    """Names of the sampled columns of a gear or a roller scene with a contact model."""
+    return sampled_columns(roller=is_roller, model=model)
 
 
 def by_name() -> dict[str, Variable]:

@@ -212,7 +212,10 @@ def follow(
             at_start = knots_at_start(problem)
         for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
             if len(at_start):
-                block.events, at_start = np.concatenate([at_start, block.events]), np.empty((0, EVENT_NUMBERS))
+                block.events, at_start = (
+                    np.concatenate([at_start, block.events]),
+                    np.empty((0, EVENT_NUMBERS)),
+                )
             take(block, statistics, begin.wall_time + time.perf_counter() - started)
             reached = block.time
             balance, extremes = block.balance or balance, block.extremes or extremes
@@ -278,7 +281,7 @@ def solve(
     given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
-    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
+    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, EVENT_NUMBERS))]
 
     def take(block: Block, statistics: Statistics, wall_time: float) -> None:
@@ -342,7 +345,7 @@ def outlook(
 
 def kept_at(
     scene: Scene, checkpoint: NDArray[np.float64], backend: str, origin: Origin | None = None
-) -> tuple[EnergyBalance, Extremes]:
+) -> tuple[EnergyBalance | None, Extremes | None]:
     """Return the energy balance and the extremes at a checkpoint of a run.
 
     Parameters

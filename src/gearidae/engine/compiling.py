@@ -24,7 +24,12 @@ EXPOSURES: Final = "exposures"
 POPULATION: Final = "populations of asperities"
 """Parts of the engine, each compiled with the first scene that needs it."""
 
-HOW_LONG: Final = {SOLVER: "about a minute", ELASTIC: "some ten seconds", EXPOSURES: "some ten seconds", POPULATION: "some ten seconds"}
+HOW_LONG: Final = {
+    SOLVER: "about a minute",
+    ELASTIC: "some ten seconds",
+    EXPOSURES: "some ten seconds",
+    POPULATION: "some ten seconds",
+}
 """How long that takes."""
 
 _one_at_a_time = threading.RLock()

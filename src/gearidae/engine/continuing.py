@@ -6,7 +6,8 @@ last bit. A new torque changes the units of time and force, a new coating what a
 
 - Joined heights are places on the surface, and stay; where asperities cannot stretch so far any more they have let go.
   A material that remembers nothing so far, or has not been there, starts with nothing stretched.
-- What the contacts store with the new materials less what they stored is booked as change of the model.
+- What the contacts store with the new materials less what they stored is booked as change of the model. An energy
+  balance that the other run has not kept begins here.
 - Where the contact was elastic it stays so, with its nodes carried to those of the new scene.
 """
 
@@ -26,12 +27,15 @@ from gearidae.engine.changeover import (
     take_over,
 )
 from gearidae.engine.energy.contacts import stored_energy
+from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
+from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.follow import QUANTITIES, exposures_of
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.state import (
     EMPTY,
+    ENERGY,
     EXTREMES,
     GEARS,
     MATERIALS,
@@ -42,9 +46,12 @@ from gearidae.engine.model.state import (
     Record,
     V,
     W,
+    assign,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.population.restore import take_joined
 from gearidae.engine.setup.build import Begin, make_problem
+from gearidae.engine.setup.kept_asperities import joined_asperities
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
@@ -152,7 +159,9 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     units.convert_motion(old_y, y)
     take_over(source, m)
     units.convert_state(m.state)
-    changed = _materials(source) != _materials(m)
+    changed = _materials(source) != _materials(m) or (
+        m.scene.population.flanks > 0 and origin.scene.coating != scene.coating
+    )
     if changed:  # what other materials have been exposed to says nothing of these
         exposures_of(m)[:] = 0.0
     else:
@@ -163,6 +172,8 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     _carry_contacts(old, old_y, new, y, changed=changed)
     _begin_stretch(m)
     _hold_or_slip(source, m, time, y)
+    if source.scene.follow.balance != m.scene.follow.balance:
+        _begin_balance(m, y)
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)
@@ -275,6 +286,12 @@ def _materials(m: Model) -> list[tuple[float, ...]]:
 def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:
     """Carry what contacts remember to the new materials and nodes, and book the change of the stored energy."""
     source, m = old.model, new.model
+    if m.scene.population.flanks > 0:
+        take_joined(m, y, joined_asperities(source))
+        if changed:
+            join_at_start(m, y)
+            _note_change(source, old_y, m, y)
+        return
     for k in range(int(m.scene.histories)):
         if m.state.history[k].pair != EMPTY and changed:
             remember(source, m, k)
@@ -286,8 +303,13 @@ def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, cha
             settle_nodes(m, float(m.state.time), y)
         note_gaps(m, y)
     if changed or not same_nodes:
-        was = stored_energy(source, old_y)[0] * float(source.scene.force_unit / m.scene.force_unit)
-        m.state.energy.model_change += stored_energy(m, y)[0] - was
+        _note_change(source, old_y, m, y)
+
+
+def _note_change(source: Model, old_y: Floats, m: Model, y: Floats) -> None:
+    """Book by how much contacts store more with the new materials than they did with the old ones."""
+    was = stored_energy(source, old_y)[0] * float(source.scene.force_unit / m.scene.force_unit)
+    m.state.energy.model_change += stored_energy(m, y)[0] - was
 
 
 def _carry_deflections(source: Model, old_y: Floats, m: Model, y: Floats) -> bool:
@@ -316,6 +338,15 @@ def _begin_stretch(m: Model) -> None:
     for which in range(len(m.scene.schedule)):
         ends = segment_ends(m.scene.schedule[which], m.tables)
         s.segment[which] = int((ends <= time).sum())
+
+
+def _begin_balance(m: Model, y: Floats) -> None:
+    """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
+    assign(m.state.energy, np.zeros(1, ENERGY)[0])
+    for name in ("lag", "lag_power", "lag_rate"):
+        m.state.history[name] = 0.0
+    if m.scene.follow.balance:
+        open_balance(m, y)
 
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:

@@ -13,6 +13,8 @@ __all__ = [
     "ELASTIC_SAMPLES",
     "GEAR_COLUMNS",
     "GEAR_SAMPLES",
+    "POPULATION_COLUMNS",
+    "POPULATION_SAMPLES",
     "ROLLER_COLUMNS",
     "ROLLER_SAMPLES",
     "Column",
@@ -67,6 +69,9 @@ ROLLER_SAMPLES: Final = (
     Column("speed", "m s-1", "velocity of the roller", "positive upwards, away from the plane"),
     Column("force", "N", "contact force on the roller", "positive pushes the bodies apart"),
 )
+POPULATION_SAMPLES: Final = (
+    Column("asperities_in_contact", "1", "number of asperities in contact, of all pairs"),
+)
 ELASTIC_SAMPLES: Final = (
     Column("min_separation", "m", "smallest distance of the flanks, deflection included"),
 )
@@ -74,9 +79,11 @@ ELASTIC_SAMPLES: Final = (
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
-"""What is sampled of elastic contacts besides, last."""
+POPULATION_COLUMNS = tuple(column.name for column in POPULATION_SAMPLES)
+"""What is sampled of elastic contacts and of populations besides, last."""
 
 
-def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
-    """Names of what is sampled of a scene of gears or a roller, whose contact model is `elastic` or not."""
-    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())
+def sampled_columns(*, roller: bool, model: str) -> tuple[str, ...]:
+    """Names of what is sampled of a scene of gears or a roller with a contact model, as ``contact.model`` names it."""
+    more = {"elastic": ELASTIC_COLUMNS, "population": POPULATION_COLUMNS}.get(model, ())
+    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + more

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group
 from gearidae.scene.knots import Time
-from gearidae.scene.quantity import Count, Quantity, Sampling
+from gearidae.scene.quantity import Count, Quantity, Sampling, Switch
 
 __all__ = ["Initial", "Roller", "Run"]
 
@@ -75,6 +75,13 @@ class Run(Group):
         default=0,
         description="places along the flank at which contacts, adhesion and sliding work are kept; 0 for none",
     )
+    balance: Switch = Field(
+        default=True, description="whether the energy balance is kept; exposures and a life need it"
+    )
+    asperity_events: Switch = Field(
+        default=True,
+        description="whether each joining and detachment of a population's asperities is an event kept",
+    )
     stop: Annotated[str, BeforeValidator(_read_stop)] = Field(
         default="time", description="what ends the run before its time: sticks, or turns N of the gear"
     )
@@ -93,6 +100,13 @@ class Run(Group):
                     self.samples,
                     f"gives {wanted:.4g} samples in {self.duration:g} s; there must be 2..{MOST_SAMPLES:g}",
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _balance_for_exposures(self) -> Self:
+        """Refuse exposures without the balance, whose losses by joining they are part of."""
+        if self.exposures and not self.balance:
+            raise SceneError("balance", self.balance, "must be true where run.exposures are kept")
         return self
 
     @property

@@ -11,9 +11,8 @@ at fixed gap. As the phase of the mesh is the gear's, the pinion has no part in 
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled, compiled_once
+from gearidae.compiled import compiled
 from gearidae.contact.kernels.law import loading_value
-from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_length_force
 from gearidae.engine.energy.contacts import free_energy, joined_energy
 from gearidae.engine.energy.coverage import coverage_force, coverage_power
@@ -22,17 +21,7 @@ from gearidae.engine.pairs.coverage import WHOLE, potentials_of
 from gearidae.engine.pairs.lengths import length_and_rates
 from gearidae.engine.pairs.tooth_pairs import history_of, pairs_on_path
 
-__all__ = ["radius_force", "radius_power", "sample_radius_power"]
-
-
-@compiled_once(SOLVER)
-def sample_radius_power(m: Model, t: float, y: Floats) -> None:
-    """Look again at the power of the changing radius, which jumps at a mesh mark.
-
-    For an elastic contact it also jumps where an adhesion loss is added.
-    """
-    q = m.work.quadrature
-    q.radius_power, q.radius_power_rate = radius_power(m, t, y, q.gear_acceleration)
+__all__ = ["radius_force", "radius_power"]
 
 
 @compiled

@@ -2,8 +2,8 @@
 
 A free asperity waits with the guard ``-(overlap + join)``, a joined one with ``overlap + detach``; the least of all is
 watched. Once it has flipped its guard is the width of its hysteresis, so that nothing chatters. The guard is looked at
-where steps end. In between an asperity may dip below and come back: guards and their rates at both ends make a cubic for
-each candidate that falls at first and rises in the end, and its minimum says whether to look there.
+where steps end. In between an asperity may dip below and come back: guards and their rates at both ends make a cubic
+for each candidate that falls at first and rises in the end, and its minimum says whether to look there.
 """
 
 from __future__ import annotations
@@ -34,7 +34,14 @@ from gearidae.engine.population.layout import (
 from gearidae.engine.population.spots import Pair, overlap_slopes, pair_now, spot_at
 from gearidae.records import EventKind
 
-__all__ = ["asperity_guard", "first_dip", "flip_asperities", "join_at_start", "note_step_start", "record_flips"]
+__all__ = [
+    "asperity_guard",
+    "first_dip",
+    "flip_asperities",
+    "join_at_start",
+    "note_step_start",
+    "record_flips",
+]
 
 _ONSET, _DETACHMENT = float(EventKind.ASPERITY_ONSET), float(EventKind.ASPERITY_DETACHMENT)
 _PAIR_ONSET, _PAIR_SEPARATION = float(EventKind.ONSET), float(EventKind.SEPARATION)
@@ -63,7 +70,11 @@ def asperity_guard(m: Model, y: Floats) -> float:
         if not covers(m, k, now.gap, now.place):
             own, gap, low, high = m.work.contact[k], now.gap, now.place, now.place
             if own.started != 0:
-                gap, low, high = min(gap, own.start_gap), min(low, own.start_place), max(high, own.start_place)
+                gap, low, high = (
+                    min(gap, own.start_gap),
+                    min(low, own.start_place),
+                    max(high, own.start_place),
+                )
             choose(m, k, coast, pair, gap, low, high)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
@@ -187,7 +198,7 @@ def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, b
 
 @compiled_once(POPULATION)
 def join_at_start(m: Model, y: Floats) -> None:
-    """Let asperities be joined where they overlap at a start, and those of a continued run that have lost their hold go."""
+    """Let asperities be joined where they overlap at a start, and let go what a new material does not hold."""
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -260,7 +271,10 @@ def _first_dip_of(m: Model, k: int, before: Pair, now: Pair, h: float) -> float:
     """Earliest dip of the candidates of a pair between two states; 2 if there is none."""
     first = 2.0
     at0, at1 = spot_at(m, before.place, before.moves), spot_at(m, now.place, now.moves)
-    bend0, bend1 = 0.5 * m.scene.population.steepness / at0.radius, 0.5 * m.scene.population.steepness / at1.radius
+    bend0, bend1 = (
+        0.5 * m.scene.population.steepness / at0.radius,
+        0.5 * m.scene.population.steepness / at1.radius,
+    )
     for j in range(m.work.contact[k].count):
         g0, g1 = _guard(m, k, j, before, at0.arc, bend0), _guard(m, k, j, now, at1.arc, bend1)
         arc, sign = m.rows[column(m, k, ARC) + j], m.rows[column(m, k, SIGN) + j]

@@ -6,7 +6,6 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.kinetic import kinetic_energy
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import LOAD, Floats, Model, V, W
 from gearidae.engine.motion.residual import mesh_forces
@@ -51,10 +50,8 @@ def note_slip(m: Model, y: Floats) -> None:
 @compiled
 def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> int:
     """Set-valued dry resistance: it holds the gear up to its limit, and slips in the direction of the load."""
-    before = kinetic_energy(m, y)
     y[W] = 0.0
     m.state.slipping = 0
-    m.state.energy.dry_loss += before - kinetic_energy(m, y)
     push = _push(m, t, y)
     slipping = m.state.slip != 0.0
     if slipping and abs(push) <= max(torque_force(m, LOAD, t, 0.0), 0.0) + _NO_FORCE:

@@ -99,6 +99,7 @@ def begin(m: Model, t: float, y: Floats) -> None:
         set_marks(m, y[PHASE])
     if m.scene.population.flanks != 0:
         join_at_start(m, y)
-    if m.scene.kind == GEARS:
-        if m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0:  # nothing holds it from the start
-            stick_or_slip(m, t, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)
+    if (
+        m.scene.dry != 0 and m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0
+    ):  # nothing holds it from the start
+        stick_or_slip(m, t, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)

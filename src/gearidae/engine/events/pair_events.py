@@ -5,20 +5,18 @@ For each kind, its guard (positive while the event is to come) and what is done 
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.engine.elastic.histories import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.record import record
-from gearidae.engine.followers.exposures.follow import expose_touch, expose_turning
-from gearidae.engine.followers.joining import book_joining
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import gap_and_rate, set_joined
 from gearidae.records import EventKind
 
-__all__ = ["handle_pair", "newly_stretched", "pair_guard"]
+__all__ = ["PairEvent", "find_event", "newly_stretched", "pair_guard", "take_event"]
 
 _ONSET: Final = float(EventKind.ONSET)
 _SEPARATION: Final = float(EventKind.SEPARATION)
@@ -45,11 +43,48 @@ def pair_guard(m: Model, k: int, gap: float, rate: float, middle: float) -> floa
     return least
 
 
+class PairEvent(NamedTuple):
+    """What has happened to a tooth pair at a root of the guard, before its history knows.
+
+    Attributes
+    ----------
+    coast, pair, k : int
+        Flank and number of the pair, and index of its history.
+    gap, rate, middle : float
+        Its gap, the gap's rate, and the gap in the middle of its contact.
+    touches, stretches, turns : bool
+        Whether contact has begun or ended, a material is stretched in full, and the gap has turned round.
+    """
+
+    coast: int
+    pair: int
+    k: int
+    gap: float
+    rate: float
+    middle: float
+    touches: bool
+    stretches: bool
+    turns: bool
+
+
+@compiled(inline=True)
+def find_event(m: Model, y: Floats, coast: int, pair: int, k: int) -> PairEvent:
+    """Say which guards of a pair have fallen at a state."""
+    gap, rate = gap_and_rate(m, coast, pair, y)
+    h = m.state.history[k]
+    inside = gap <= m.scene.contact_gap if h.in_contact == 0 else gap < m.scene.contact_gap
+    touches, stretches, turns, middle = inside != (h.in_contact != 0), False, False, gap
+    if gap < m.scene.cutoff:
+        middle = middle_gap(m, k, y, gap)
+        for material in range(MATERIALS):
+            stretches |= newly_stretched(m, k, material, middle)
+        turns = h.direction != 0.0 and h.direction * rate <= 0.0
+    return PairEvent(coast, pair, k, gap, rate, middle, touches, stretches, turns)
+
+
 @compiled
-def handle_pair(
-    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, events: Floats, count: int
-) -> int:
-    """Deal with one pair's guards that have fallen, disarm them, and return the new number of events.
+def take_event(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, count: int) -> int:
+    """Have a pair's history take what has happened, which disarms its guards, and return the new number of events.
 
     Parameters
     ----------
@@ -58,30 +93,20 @@ def handle_pair(
         Time over tau.
     y : ndarray, shape (n,)
         State there.
-    coast, pair, k : int
-        Flank and number of the pair, and index of its history.
+    found : PairEvent
     events : ndarray, shape (n, 5)
     count : int
         See `gearidae.engine.events.record`.
     """
-    gap, rate = gap_and_rate(m, coast, pair, y)
-    h = m.state.history[k]
-    inside = gap <= m.scene.contact_gap if h.in_contact == 0 else gap < m.scene.contact_gap
-    if inside != (h.in_contact != 0):
-        if m.scene.places > 0:
-            expose_touch(m, t, y, coast, pair, k)
+    coast, pair, k, rate = found.coast, found.pair, found.k, found.rate
+    if found.touches:
         count = _change_contact(m, t, coast, pair, k, rate, events, count)
-    if gap >= m.scene.cutoff:
-        return count
-    middle = middle_gap(m, k, y, gap)
-    for material in range(MATERIALS):
-        if newly_stretched(m, k, material, middle):
-            h.fully_stretched[material] = 1
+    for material in range(MATERIALS if found.stretches else 0):
+        if newly_stretched(m, k, material, found.middle):
+            m.state.history[k].fully_stretched[material] = 1
             count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
-    if h.direction != 0.0 and h.direction * rate <= 0.0:
-        if m.scene.places > 0:
-            expose_turning(m, t, y, coast, pair, k, gap)
-        _turn_round(m, y, coast, pair, k, gap)
+    if found.turns:
+        _turn_round(m, y, k, found.gap, found.middle)
         count = record(m, events, count, t, _TURNING_POINT, pair, coast, rate)
     return count
 
@@ -111,11 +136,10 @@ def newly_stretched(m: Model, k: int, material: int, middle: float) -> bool:
 
 
 @compiled
-def _turn_round(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
-    """Take the joined heights at a turning point of the gap."""
-    h, middle = m.state.history[k], middle_gap(m, k, y, gap)
-    if h.direction < 0.0:
-        book_joining(m, y, coast, pair, k, gap)
+def _turn_round(m: Model, y: Floats, k: int, gap: float, middle: float) -> None:
+    """Take the joined heights at a turning point of the gap; joining has lagged up to there."""
+    h = m.state.history[k]
+    h.lag = h.lag_power = h.lag_rate = 0.0
     for material in range(MATERIALS):
         limit = m.scene.material[material].stretch_limit
         if limit > 0.0:

@@ -35,10 +35,13 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.kinetic import kinetic_energy
-from gearidae.engine.energy.radius import radius_power, sample_radius_power
-from gearidae.engine.followers.exposures.follow import begin_exposures
-from gearidae.engine.followers.joining import follow_joining_by_place, joining_lag
-from gearidae.engine.followers.quadrature import (
+from gearidae.engine.energy.radius import radius_power
+from gearidae.engine.events.dry_resistance import dry_guard
+from gearidae.engine.events.mesh_marks import crossed_mark
+from gearidae.engine.events.pair_events import newly_stretched
+from gearidae.engine.followers.joining import joining_lag
+from gearidae.engine.formulas import adams
+from gearidae.engine.formulas.quadrature import (
     Ends,
     error_estimate,
     error_of_square,
@@ -48,20 +51,31 @@ from gearidae.engine.followers.quadrature import (
     torque_work,
 )
 from gearidae.engine.model.located import model_at
-from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
+from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.pairs.tooth_pairs import (
+    gap_and_rate,
+    history_of,
+    in_flight,
+    pair_at,
+    pairs_near,
+    static_error,
+)
 from gearidae.engine.torques.torque import is_constant, torque_force, torque_rate
 
 __all__ = [
-    "BALANCE",
-    "accumulate_energy",
-    "balance_at",
+    "ENERGIES",
+    "begin",
     "carry_balance",
-    "close_balance",
+    "energies_at",
+    "finish",
     "open_balance",
-    "restart_quadrature",
-    "sample_radius_power",
+    "resume",
+    "step",
 ]
+
+
+ORDER: Final = 4
+"""Order of the quadrature."""
 
 
 @compiled
@@ -75,16 +89,18 @@ def open_balance(m: Model, y: Floats) -> None:
 @compiled
 def carry_balance(old: Model, old_y: Floats, m: Model, y: Floats) -> None:
     """Add the stored energy of another model of the same scene minus that of the old one to ``model_change``."""
+    if m.scene.follow.balance == 0:
+        return
     m.state.energy.model_change += stored_energy(m, y)[0] - stored_energy(old, old_y)[0]
 
 
 @compiled_once(SOLVER)
-def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
+def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Begin a quadrature at a start, where speeds and torques may jump."""
     q = m.work.quadrature
     q.steps = 0
     q.length_work = 0.0
-    q.time = m.work.lag_time = t
+    q.time = t
     q.kinetic = kinetic_energy(m, y)
     if m.scene.kind == ROLLER:
         return
@@ -93,25 +109,111 @@ def restart_quadrature(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q.pinion_travel, q.pinion_speed, q.pinion_acceleration = _pinion(m, y, yp)
     q.drive, q.drive_rate = _torque(m, DRIVE, t, q.pinion_speed, q.pinion_acceleration)
     q.load, q.load_rate = _torque(m, LOAD, t, y[W], yp[W])
-    sample_radius_power(m, t, y)
-    if m.scene.places > 0:
-        begin_exposures(m, t, y, yp)
+    _sample_radius_power(m, t, y)
 
 
 @compiled(inline=True)
-def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
-    """Add all works and losses up to an accepted time; histories and mesh marks must still be those before it.
+def step(
+    m: Model, t: float, y: Floats, yp: Floats, at: tuple[bool, bool], between: tuple[Floats, Floats]
+) -> None:
+    """Add works and losses up to an accepted time; histories and mesh marks must still be those before it.
+
+    A turning point needs no sample. In free flight, where only torques and drag are integrated, formulas of high
+    order take steps that are too long for the quadrature; these steps are divided.
 
     Parameters
     ----------
     m : Model
     t : float
-        Time over tau that has been accepted.
-    y, yp : ndarray
+        Time over tau.
+    y, yp : ndarray, shape (n,)
         State there and its rate.
-    now : bool
-        Whether to close the quadrature interval now, instead of after ``balance_steps`` steps.
+    at : tuple of bool
+        Whether a stop or a root of the guard is there, and whether it is a root.
+    between : tuple of two ndarrays, shape (n,)
+        Work space.
     """
+    if at[1] and _can_wait(m, t, y):
+        return
+    now = at[0] or m.state.bound_exceeded != 0
+    a, parts, start = m.work.adams, 1, m.work.quadrature.time
+    if a.order_used > ORDER and in_flight(m) and m.scene.kind == GEARS:
+        parts = m.scene.flight_parts
+        start = max(start, a.time - a.last_step)
+    for part in range(1, parts + 1):
+        time, state, rates = t, y, yp
+        if part < parts:
+            time, state, rates = start + (t - start) * part / parts, between[0], between[1]
+            adams.between(a, time, state, rates)
+        _accumulate(m, time, state, rates, now or part < parts)
+
+
+@compiled
+def _can_wait(m: Model, t: float, y: Floats) -> bool:
+    """Whether no sample is needed at a root, before its events are dealt with.
+
+    That is so where gears' pairs touch, part or turn round and nothing else happens: up to their third derivative the
+    powers know nothing of it.
+    """
+    if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
+        return False
+    if m.scene.population.flanks != 0:  # forces jump
+        return False
+    if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
+        return False
+    if crossed_mark(m, y) or (m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0):
+        return False
+    reach = pairs_near(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        k = history_of(m, coast, pair)
+        if m.state.history[k].pair == pair:
+            gap, _ = gap_and_rate(m, coast, pair, y)
+            for material in range(MATERIALS):
+                if newly_stretched(m, k, material, gap):
+                    return False
+    return True
+
+
+@compiled
+def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
+    """Go on after events at a root, with histories and mesh marks behind them.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    y : ndarray, shape (n,)
+        State, which a gear that comes to rest has changed.
+    crossed : bool
+        Whether the phase has crossed a mark of the mesh, where the power of the changing radius jumps.
+    joined : bool
+        Whether an adhesion loss has been added, where that of elastic contacts jumps.
+    """
+    q = m.work.quadrature
+    if m.scene.dry != 0 and q.time == t:
+        m.state.energy.dry_loss += q.kinetic - kinetic_energy(m, y)
+    if crossed or (joined and m.scene.nodes > 0 and m.scene.kind == GEARS):
+        _sample_radius_power(m, t, y)
+
+
+@compiled_once(SOLVER)
+def finish(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Bring all sums up to an accepted time, after its event."""
+    _accumulate(m, t, y, yp, True)
+
+
+@compiled_once(SOLVER)
+def _sample_radius_power(m: Model, t: float, y: Floats) -> None:
+    """Look at the power of the changing radius and at its rate."""
+    q = m.work.quadrature
+    q.radius_power, q.radius_power_rate = radius_power(m, t, y, q.gear_acceleration)
+
+
+@compiled(inline=True)
+def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
+    """Add all works and losses up to a time, `now` or once so many steps have been taken."""
     q = m.work.quadrature
     if m.scene.kind == GEARS:
         _accumulate_losses(m, t, y, yp)
@@ -125,8 +227,6 @@ def accumulate_energy(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> N
         _book_kinetic(m, kinetic_energy(m, y), 0.0)
         return
     w, w_rate = y[W], yp[W]
-    if m.scene.by_place != 0:
-        follow_joining_by_place(m, t, y, w_rate)
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _book_drive(m, h, t, y, yp)
     if m.scene.dry != 0:
@@ -246,19 +346,13 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
     r.mesh_speed, r.mesh_acceleration = y[V], yp[V]
 
 
-@compiled_once(SOLVER)
-def close_balance(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Bring all sums up to an accepted time, after its event."""
-    accumulate_energy(m, t, y, yp, True)
-
-
-BALANCE: Final = 5
-"""Numbers that `balance_at` leaves besides the sums: stored and pending energy, energy of motion, lag of joining."""
+ENERGIES: Final = 5
+"""Numbers that `energies_at` leaves: stored and pending energy, energy of motion, lag of joining, slope of torques."""
 
 
 @compiled
-def balance_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:
-    """Keep the sums up to an accepted time, and say what contacts store and what moves there.
+def energies_at(place: int, t: float, y: Floats, out: Floats) -> None:
+    """Say what contacts store and what moves at a state, which the sums of the balance know nothing of.
 
     Parameters
     ----------
@@ -266,13 +360,12 @@ def balance_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None
         Of the model, from `gearidae.engine.model.located.Located`.
     t : float
         Time over tau.
-    y, yp : ndarray, shape (n,)
-        State there, and its rate.
-    out : ndarray, shape (BALANCE,)
+    y : ndarray, shape (n,)
+        State there.
+    out : ndarray, shape (ENERGIES,)
         Filled in.
     """
     m = model_at(place)
-    close_balance(m, t, y, yp)
     out[0], out[1] = stored_energy(m, y)
     out[2], out[3] = kinetic_energy(m, y), joining_lag(m)
     out[4] = _torque_slopes(m, t, y)

@@ -5,9 +5,8 @@ length changes along the path of contact, so that it loses
 
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
-The last integral, the lag, is followed from step to step; where shares change with tooth and place, which takes longer,
-over the intervals of the energy balance, and to every event. The work of the changing radius is less by the
-same: it has been worked out as if nothing were lost until the turning point (`gearidae.engine.followers.balance`).
+The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has
+been worked out as if nothing were lost until the turning point (`gearidae.engine.followers.balance`).
 """
 
 from __future__ import annotations
@@ -18,27 +17,56 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_joining_loss
 from gearidae.engine.energy.contacts import joining_loss
 from gearidae.engine.energy.coverage import losses_by_material
-from gearidae.engine.energy.radius import pairs_on_path
-from gearidae.engine.followers.quadrature import integral
+from gearidae.engine.formulas.quadrature import integral
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import WHOLE, note_shares, place_inside, shares_of
 from gearidae.engine.pairs.lengths import length_and_rates, material_lengths
-from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pair_gap
+from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pair_gap, pairs_on_path
 
-__all__ = ["book_joining", "follow_joining", "follow_joining_by_place", "joining_lag", "sample_joining"]
+__all__ = ["begin", "event", "joining_lag", "resume", "step"]
+
+
+@compiled(inline=True)
+def begin(m: Model, t: float) -> None:
+    """Begin to follow the lags at a start."""
+    m.work.lag_time = t
+
+
+@compiled(inline=True)
+def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
+    """Follow the lags of closing gear contacts to an accepted time.
+
+    Parameters
+    ----------
+    m : Model
+        With its mesh marks as they were in the step.
+    t : float
+        Time over tau.
+    y : ndarray
+        State there.
+    w_rate : float
+        Acceleration of the gear's surface there.
+    """
+    h = t - m.work.lag_time
+    if m.scene.kind == GEARS and h > 0.0:
+        m.work.lag_time = t
+        for coast in range(2):
+            if m.state.near[coast] != 0:
+                _follow_flank(m, coast, h, y, w_rate)
 
 
 @compiled_once(SOLVER)
-def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+def event(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
     """Add the adhesion loss of a pair's asperities, before the turning point of a closing contact is noted."""
+    if m.state.history[k].direction > 0.0:
+        return
     length = 1.0
     if m.scene.kind == GEARS:
         length = contact_length(m, pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[3])
-        h = m.state.history[k]
-        m.state.energy.adhesion_loss -= h.lag
+        lag = m.state.history[k].lag
+        m.state.energy.adhesion_loss -= lag
         if m.scene.radius_force == 0:
-            m.state.energy.radius_work -= h.lag
-        h.lag = h.lag_power = h.lag_rate = 0.0
+            m.state.energy.radius_work -= lag
     if m.scene.nodes > 0:
         if m.scene.by_place != 0:
             note_shares(m, k, coast, pair, place_inside(m, coast, pair, y[PHASE]))
@@ -55,6 +83,14 @@ def book_joining(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float)
         _book_materials_before(m, coast, pair, k, y, gap)
     else:
         _book_before(m, coast, pair, loss, length)
+
+
+@compiled
+def resume(m: Model, y: Floats) -> None:
+    """Look again at the rates of the lags, which jump at a mesh mark."""
+    for coast in range(2):
+        if m.state.near[coast] != 0:
+            _follow_flank(m, coast, 0.0, y, m.work.quadrature.gear_acceleration)
 
 
 @compiled
@@ -90,56 +126,6 @@ def _book_materials_before(m: Model, coast: int, pair: int, k: int, y: Floats, g
         q.radius_power -= losses[material] * rates[material]
         q.radius_power_rate -= losses[material] * bends[material]
         q.length_work += losses[material] * (now[material] - was[material])
-
-
-@compiled(inline=True)
-def follow_joining(m: Model, h: float, y: Floats, w_rate: float, now: bool) -> None:
-    """Follow the lag of closing gear contacts over a step that has been accepted.
-
-    Parameters
-    ----------
-    m : Model
-        With its mesh marks as they were in the step.
-    h : float
-        Length of the step.
-    y : ndarray
-        State at its end.
-    w_rate : float
-        Acceleration of the gear's surface there.
-    now : bool
-        Whether to do so even where several steps can be followed at once.
-    """
-    if m.scene.kind != GEARS:
-        return
-    if m.scene.by_place != 0:
-        if now:
-            follow_joining_by_place(m, m.state.time, y, w_rate)
-        return
-    if h <= 0.0:
-        return
-    for coast in range(2):
-        if m.state.near[coast] != 0:
-            _follow_flank(m, coast, h, y, w_rate)
-
-
-@compiled
-def follow_joining_by_place(m: Model, t: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of contacts whose shares change along the path from where they were followed last, to t."""
-    h = t - m.work.lag_time
-    if h <= 0.0:
-        return
-    m.work.lag_time = t
-    for coast in range(2):
-        if m.state.near[coast] != 0:
-            _follow_flank(m, coast, h, y, w_rate)
-
-
-@compiled
-def sample_joining(m: Model, y: Floats) -> None:
-    """Look again at the rates of the lags, which jump at a mesh mark."""
-    for coast in range(2):
-        if m.state.near[coast] != 0:
-            _follow_flank(m, coast, 0.0, y, m.work.quadrature.gear_acceleration)
 
 
 @compiled

@@ -15,7 +15,7 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.elimination import begin_deflections
 from gearidae.engine.events.schedule_knots import next_stop
-from gearidae.engine.integrate import adams
+from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.by_address import observe_at
 from gearidae.engine.integrate.callbacks import callbacks
 from gearidae.engine.integrate.driver import (

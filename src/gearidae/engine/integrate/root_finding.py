@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine.events.asperity_events import first_dip, note_step_start
 from gearidae.engine.events.events import guard
-from gearidae.engine.integrate import adams
+from gearidae.engine.formulas import adams
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.motion.residual import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.sundials import memory

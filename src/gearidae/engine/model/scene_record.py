@@ -14,6 +14,7 @@ from gearidae.engine.model.record_types import (
 
 __all__ = [
     "COVERAGE",
+    "FOLLOW",
     "MATERIAL",
     "POPULATION",
     "SCENE",
@@ -56,9 +57,18 @@ SCHEDULE: Final = record_type(
 )
 
 POPULATION: Final = record_type(
-    ("flanks", INT),  # of the pinion, both sides of each tooth, or one of a roller; 0 for the mean of many surfaces
-    ("starts_at", INT),  # among the tables, for each level: the first asperity of each flank, and one past the last
-    ("listed_at", INT),  # asperities of the levels, where one past the last of a level is the first of the next
+    (
+        "flanks",
+        INT,
+    ),  # of the pinion, both sides of each tooth, or one of a roller; 0 for the mean of many surfaces
+    (
+        "starts_at",
+        INT,
+    ),  # among the tables, for each level: the first asperity of each flank, and one past the last
+    (
+        "listed_at",
+        INT,
+    ),  # asperities of the levels, where one past the last of a level is the first of the next
     ("arcs_at", INT),  # of all asperities places along the flank, heights over sigma, and where their kind is
     ("heights_at", INT),
     ("kinds_at", INT),
@@ -69,9 +79,17 @@ POPULATION: Final = record_type(
     ("capacity", INT),  # candidates of a pair at most
     ("rows_at", INT),  # where they begin among the rows
     ("quiet", INT),  # 1 where events of single asperities are not recorded
+    ("digest", REAL, (4,)),  # of all asperities
+)
+
+FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
+    ("balance", INT),
+    ("extremes", INT),
+    ("exposures", INT),
 )
 
 SCENE: Final = record_type(
+    ("follow", FOLLOW),
     ("kind", INT),  # GEARS or ROLLER
     ("length_unit", REAL),  # sigma [m]
     ("time_unit", REAL),  # tau [s]

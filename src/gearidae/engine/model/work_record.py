@@ -245,7 +245,7 @@ WORK: Final = record_type(
     ("quadrature", QUADRATURE),
     ("resistance", RESISTANCE),
     ("track", TRACK),
-    ("lag_time", REAL),  # by tooth and place: time to which the lags of joining are followed
+    ("lag_time", REAL),  # time to which the lags of joining are followed
     ("exposing", EXPOSING),
     ("notes", NOTES),
     ("cell", CELL, (2 * SLOTS_HIGH,)),

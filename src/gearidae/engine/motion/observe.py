@@ -11,6 +11,7 @@ from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import mesh_forces, roller_force
 from gearidae.engine.motion.separation import separation
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
+from gearidae.engine.population.forces import asperities_joined
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
 
 __all__ = ["observe"]
@@ -39,7 +40,9 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     if m.scene.kind == ROLLER:
         force, _ = roller_force(m, t, y, False)
         row[0], row[1], row[2] = u * length, v * speed, force * m.scene.force_unit
-        if row.size > _ROLLER:
+        if m.scene.population.flanks != 0:
+            row[_ROLLER] = asperities_joined(m)[0]
+        elif row.size > _ROLLER:
             row[_ROLLER] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
@@ -65,5 +68,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         if gap < m.scene.contact_gap:
             touching += 1.0
     row[8] = touching
-    if row.size > _GEARS:
+    if m.scene.population.flanks != 0:
+        row[_GEARS], row[8] = asperities_joined(m)
+    elif row.size > _GEARS:
         row[_GEARS] = separation(m, y) * length

@@ -12,7 +12,7 @@ tables are read, and nowhere else.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap, joined_height
@@ -40,6 +40,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.pairs.coverage import Shares, loading_of
 
 __all__ = [
+    "NO_PAIRS",
     "Reach",
     "all_pairs",
     "contact_length",
@@ -78,6 +79,9 @@ class Reach(NamedTuple):
     drive_count: int
     coast_first: int
     total: int
+
+
+NO_PAIRS: Final = Reach(0, 0, 0, 0)
 
 
 @compiled(inline=True)

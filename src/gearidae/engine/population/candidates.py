@@ -65,7 +65,12 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
     gap, low, high : float
         Least gap, and places along the path between which they are to hold; margins are added.
     """
-    own, index, joined, kept = m.work.contact[k], column(m, k, INDEX), column(m, k, JOINED), column(m, k, REMEMBERED)
+    own, index, joined, kept = (
+        m.work.contact[k],
+        column(m, k, INDEX),
+        column(m, k, JOINED),
+        column(m, k, REMEMBERED),
+    )
     for j in range(own.joined):
         m.rows[kept + j] = m.rows[index + int(m.rows[joined + j])]
     choose_beside(m, k, coast, pair, gap, low, high)
@@ -143,7 +148,10 @@ def _first_from(m: Model, level: int, flank: int, arc: float) -> int:
 @compiled(inline=True)
 def _may_join(m: Model, asperity: int, gap: float, before: Spot, after: Spot, bend: float) -> bool:
     """Whether a free asperity may join at a gap or a wider one, while the contact is between two spots."""
-    arc, kind = m.tables[m.scene.population.arcs_at + asperity], int(m.tables[m.scene.population.kinds_at + asperity])
+    arc, kind = (
+        m.tables[m.scene.population.arcs_at + asperity],
+        int(m.tables[m.scene.population.kinds_at + asperity]),
+    )
     x = max(before.arc - arc, arc - after.arc, 0.0)
     height = m.tables[m.scene.population.heights_at + asperity] - m.tables[kind + K_OFFSET]
     return bool(height - gap - bend * x * x + m.tables[kind + K_JOIN] > 0.0)

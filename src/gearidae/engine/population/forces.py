@@ -1,8 +1,8 @@
 r"""Forces and energy of a population: sums over the joined asperities of all pairs.
 
-A pair's asperities push with :math:`W = \sum P` along the line of action, and with :math:`T = -\sum P D` along the path of
-contact, since the overlaps change with it: that of a stretched asperity behind the contact holds the rolling back. Both
-are derivatives of the energy that the asperities store.
+A pair's asperities push with :math:`W = \sum P` along the line of action, and with :math:`T = -\sum P D` along the path
+of contact, since the overlaps change with it: that of a stretched asperity behind the contact holds the rolling back.
+Both are derivatives of the energy that the asperities store.
 """
 
 from __future__ import annotations
@@ -27,7 +27,14 @@ from gearidae.engine.population.layout import (
 )
 from gearidae.engine.population.spots import Pair, overlap_slopes, pair_now, spot_at
 
-__all__ = ["asperities_joined", "candidate_energy", "candidate_load", "mesh_sums", "population_energy", "roller_sum"]
+__all__ = [
+    "asperities_joined",
+    "candidate_energy",
+    "candidate_load",
+    "mesh_sums",
+    "population_energy",
+    "roller_sum",
+]
 
 
 class Sums(NamedTuple):

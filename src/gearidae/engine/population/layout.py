@@ -1,8 +1,8 @@
 """Where a population lies among a model's tables and rows.
 
-Tables hold all asperities of all flanks, one flank after the other and each in the order of places; an asperity is known
-by its place among them. Rows hold for each pair's history its candidates, those that may join or let go soon: `FIELDS`
-columns of as many numbers as a flank has asperities at most.
+Tables hold all asperities of all flanks, one flank after the other and each in the order of places; an asperity is
+known by its place among them. Rows hold for each pair's history its candidates, those that may join or let go soon:
+`FIELDS` columns of as many numbers as a flank has asperities at most.
 """
 
 from __future__ import annotations

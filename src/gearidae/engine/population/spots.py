@@ -1,7 +1,7 @@
 r"""Where a pair touches: arc on the pinion's flank, radius and their changes along the path of contact.
 
-With places :math:`\xi` along the path, arcs s and radii R in base pitches (of a roller in its radius), heights and gaps in
-roughnesses, an asperity at the arc s and of the height z overlaps by
+With places :math:`\xi` along the path, arcs s and radii R in base pitches (of a roller in its radius), heights and gaps
+in roughnesses, an asperity at the arc s and of the height z overlaps by
 
 .. math:: \delta = z - g - k\,\frac{x^2}{2R}, \qquad x = s - s_1, \qquad s_1 = \frac{\pi}{z_1} r_1^2
 

@@ -318,9 +318,11 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
     if s.population.flanks > 0:
         make_part_ready(POPULATION)
     begin(m, 0.0, y)
-    open_balance(m, y)
+    s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.places > 0
+    if s.follow.balance != 0:
+        open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]
-    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
+    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
     return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
 
 

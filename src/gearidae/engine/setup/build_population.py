@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearidae.asperities import AsperityLaw, law_of_tip
 from gearidae.asperities.tip import asperity_of
@@ -15,9 +16,11 @@ from gearidae.engine.population.candidates import LEVELS
 from gearidae.engine.population.layout import FIELDS, K_DETACH, K_JOIN, KINDS
 from gearidae.engine.setup.tables import Tables
 from gearidae.errors import SceneError
-from gearidae.population.flanks import FlankAsperities, flanks_of
+from gearidae.population.flanks import FlankAsperities, flanks_digest, flanks_of
 from gearidae.population.materials import materials_at
 from gearidae.scene import MATERIAL_NAMES, Scene
+
+Integers = NDArray[np.int64]
 
 __all__ = ["add_population", "population_rows"]
 
@@ -26,7 +29,7 @@ RELEASED: Final = 1e-10
 infinite there, and less of its loss is out than this."""
 LEAST_CUTOFF: Final = GAP_LOW + 1.0
 MOST_LAWS: Final = 512
-"""Tables of laws that scale neither with radius nor with adhesion, as that of Maugis; each takes a tenth of a second."""
+"""Tables of laws that scale with neither radius nor adhesion, as that of Maugis; each takes a tenth of a second."""
 
 
 def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, arc_scale: float) -> None:
@@ -49,7 +52,9 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     own, sigma, flanks = s.population, scene.surface.roughness, flanks_of(scene)
     counts = np.array([one.arc.size for one in flanks])
     if counts.sum() == 0:
-        raise SceneError("contact.asperities", "(none)", "a population needs an asperity on one of its flanks")
+        raise SceneError(
+            "contact.asperities", "(none)", "a population needs an asperity on one of its flanks"
+        )
     length = float(s.base_pitch) if scene.gears is not None else steepness * sigma
     arcs = np.concatenate([one.arc for one in flanks]) / length
     heights = np.concatenate([one.height for one in flanks]) / sigma
@@ -60,6 +65,9 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     numbers, kinds = _kinds(s, tables, scene, flanks)
     own.kinds_at = tables.add(tables.add(numbers.ravel()) + KINDS * kinds)
     own.join = float(numbers[:, K_JOIN].max())
+    digest = flanks_digest(flanks)
+    own.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
+    own.quiet = int(not scene.run.asperity_events)
     s.cutoff = s.contact_gap = max(own.highest + float(numbers[:, K_DETACH].max()), LEAST_CUTOFF)
 
 
@@ -68,10 +76,10 @@ def population_rows(s: Record) -> Floats:
     return np.zeros(int(s.histories * FIELDS * s.population.capacity))
 
 
-def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Floats) -> None:
+def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Integers) -> None:
     """List the asperities above each level, flank by flank."""
     flank = np.repeat(np.arange(counts.size), counts)
-    starts, listed = [np.concatenate([[0], np.cumsum(counts)])], [np.empty(0)]
+    starts, listed = [np.concatenate([[0], np.cumsum(counts)])], [np.empty(0, np.int64)]
     gone = 0
     for level in LEVELS:
         high = np.flatnonzero(heights > level)
@@ -84,7 +92,7 @@ def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Floats) ->
 
 def _kinds(
     s: Record, tables: Tables, scene: Scene, flanks: tuple[FlankAsperities, ...]
-) -> tuple[Floats, np.ndarray]:
+) -> tuple[Floats, Integers]:
     """Numbers of each kind, and the kind of each asperity; a kind is a material with a radius."""
     radii, of_radius = np.unique(np.concatenate([one.radius for one in flanks]), return_inverse=True)
     material = np.concatenate([materials_at(scene, one, one.tooth + one.flank) for one in flanks])

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gearidae.engine.followers.balance import BALANCE, balance_at
-from gearidae.engine.followers.exposures.follow import close_exposures_at, exposures_of
-from gearidae.engine.followers.extremes.follow import note_present_at
+from gearidae.engine.followers.balance import ENERGIES, energies_at
+from gearidae.engine.followers.exposures.follow import exposures_of
 from gearidae.engine.followers.extremes.units import extremes_in_si
+from gearidae.engine.followers.in_turn import look_at
 from gearidae.engine.model.located import Located
 from gearidae.engine.model.state import (
     DRIVE,
@@ -29,6 +29,7 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.pairs.tooth_pairs import set_branches
 from gearidae.engine.setup import checkpoint as checkpoints
+from gearidae.engine.setup.kept_asperities import restore_asperities
 from gearidae.engine.torques.harmonic import fastest_harmonic
 from gearidae.engine.torques.schedule import fastest_schedule
 from gearidae.errors import SceneError
@@ -137,10 +138,10 @@ class Problem:
             fastest = max(fastest, fastest_schedule(scene.schedule[SPEED], tables, felt / scene.speed_gain))
         return float(fastest)
 
-    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance, Extremes]:
-        """Return the energy balance and the extremes of the run up to an accepted time.
+    def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance | None, Extremes | None]:
+        """Return the energy balance and the extremes of the run up to an accepted time; None of what is not followed.
 
-        Whoever looks leaves the run as it was: intervals are not split by a look at what they have added up to.
+        The model is restored afterwards: intervals are not split by a look at what they have added up to.
 
         Parameters
         ----------
@@ -149,15 +150,15 @@ class Problem:
         state, rates : ndarray, shape (n,)
             Scaled state there, and its rate.
         """
-        m, now, exposures = self.model, np.empty(BALANCE), exposures_of(self.model)
+        m, exposures, balance, extremes = self.model, exposures_of(self.model), None, None
         before, exposed = (copied(m.state), copied(m.work)), exposures.copy()
-        balance_at(self.located.place, time, state, rates, now)
-        balance = self._in_joules(time, *now.tolist())
-        if m.scene.places > 0:
-            close_exposures_at(self.located.place, time, state, rates)
-        if m.state.extremes.begun != 0:
-            note_present_at(self.located.place, state)
-        extremes = extremes_in_si(m, time, state)
+        look_at(self.located.place, time, state, rates)
+        if m.scene.follow.balance:
+            now = np.empty(ENERGIES)
+            energies_at(self.located.place, time, state, now)
+            balance = self._in_joules(time, *now.tolist())
+        if m.scene.follow.extremes:
+            extremes = extremes_in_si(m, time, state)
         for record, one in zip((m.state, m.work), before, strict=True):
             assign(record, one)
         exposures[:] = exposed
@@ -246,13 +247,14 @@ class Problem:
             If a number is none that a run of this scene could have left.
         """
         m = self.model
-        checkpoints.unpack(m, checkpoint, state)
+        joined = checkpoints.unpack(m, checkpoint, state)
         blank_work(m.work)
+        restore_asperities(m, state, joined)
         for k in range(m.scene.histories):
             for material in range(MATERIALS):
                 set_branches(m, k, material)
         time = float(m.state.time)
-        m.work.quadrature.time = m.work.resistance.time = time
+        m.work.quadrature.time = m.work.resistance.time = m.work.lag_time = time
         m.work.driver.time = time
         return time
 

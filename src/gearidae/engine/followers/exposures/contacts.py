@@ -14,7 +14,7 @@ from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.energy import nodes_number
 from gearidae.engine.followers.exposures.places import place_at, share_at_edge
-from gearidae.engine.followers.interpolation import cubic
+from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import contact_length
 

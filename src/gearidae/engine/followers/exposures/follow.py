@@ -26,6 +26,7 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.elastic.nodes import node_force
+from gearidae.engine.events.pair_events import PairEvent
 from gearidae.engine.followers.exposures.contacts import (
     adds_often,
     begin_contacts,
@@ -43,8 +44,7 @@ from gearidae.engine.followers.exposures.intervals import (
 )
 from gearidae.engine.followers.exposures.places import place_at, way_to_edge
 from gearidae.engine.followers.exposures.pressure import PRESSURE, note_pressure, see_pressure
-from gearidae.engine.followers.exposures.sliding import add_sliding, sliding_speeds, speeds_here
-from gearidae.engine.model.located import model_at
+from gearidae.engine.followers.exposures.sliding import add_sliding, sliding_speeds
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.noted_force import begin_notes, note_force
 from gearidae.engine.pairs.coverage import note_shares, place_inside, shares_of
@@ -60,13 +60,11 @@ from gearidae.engine.pairs.tooth_pairs import (
 __all__ = [
     "PRESSURE",
     "QUANTITIES",
-    "begin_exposures",
-    "close_exposures_at",
-    "expose_step",
-    "expose_touch",
-    "expose_turning",
+    "begin",
+    "event",
     "exposures_of",
-    "follow_exposures",
+    "finish",
+    "step",
 ]
 
 QUANTITIES = 2 * MATERIALS + 2
@@ -79,7 +77,7 @@ def exposures_of(m: Model) -> Floats:
 
 
 @compiled_once(EXPOSURES)
-def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
+def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Note what is in contact at a start; nothing is exposed yet."""
     m.work.exposing.time, m.work.exposing.begun = t, 1
     m.work.exposing.often = 1 if adds_often(m) else 0
@@ -99,7 +97,7 @@ def begin_exposures(m: Model, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled_once(EXPOSURES)
-def follow_exposures(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
+def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
     """Add what the flanks have been exposed to since the last call, up to an accepted time.
 
     Parameters
@@ -145,43 +143,61 @@ def follow_exposures(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> 
 
 
 @compiled(inline=True)
-def expose_step(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Count an accepted step of rigid bodies, and follow the exposures where that is wanted after it."""
-    m.work.exposing.steps += 1
-    if m.work.exposing.steps >= m.work.exposing.wanted:
-        follow_exposures(m, t, y, yp, False)
+def step(m: Model, t: float, y: Floats, yp: Floats, root: bool) -> None:
+    """Count an accepted step, and follow the exposures where that is wanted after it.
+
+    Forces of elastic contacts have to be evaluated for it: that is done where the energy balance closes an interval.
+    """
+    exposing = m.work.exposing
+    if m.scene.nodes > 0:
+        if m.work.quadrature.time == t:
+            _follow(m, t, y, yp, False)
+    elif not root:
+        exposing.steps += 1
+        if exposing.steps >= exposing.wanted:
+            _follow(m, t, y, yp, False)
 
 
 @compiled(inline=True)
-def expose_turning(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
-    """Add what a contact has been exposed to up to its turning point, before the history takes that.
+def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
+    """Add what a contact has been exposed to up to an event, before its history takes that.
 
     Most turning points add nothing. That is found out in the caller's code.
     """
+    if m.work.exposing.begun == 0:
+        return
+    coast, pair, k, gap = found.coast, found.pair, found.k, found.gap
+    if found.touches:
+        _touch(m, t, y, yp, coast, pair, k)
+    if not found.turns:
+        return
     own = m.work.exposing.pair[k]
     if m.state.history[k].direction < 0.0:
         inside = place_inside(m, coast, pair, y[PHASE])
         if gap < own.lowest or place_at(m, inside) != own.seen_at or m.scene.nodes > 0 or joins(m, k, gap):
-            _expose_closed(m, t, y, coast, pair, k, gap)
+            _close(m, t, y, yp, coast, pair, k, gap)
     elif m.work.exposing.often == 0:
         own.turned = 1
     else:
-        _expose_opened(m, y, coast, pair, k, gap)
+        _open(m, y, coast, pair, k, gap)
+
+
+@compiled
+def finish(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Bring all sums up to an accepted time, those of contacts that are closing, too."""
+    _follow(m, t, y, yp, True)
 
 
 @compiled_once(EXPOSURES)
-def _expose_opened(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
-    """Do so where a contact begins to close."""
-    if m.work.exposing.begun != 0:
-        _begin_new(m, k, pair, place_inside(m, coast, pair, y[PHASE]))
-        turn_to_closing(m, y, k, gap)
+def _open(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Note a contact that begins to close, whose contacts are added up often."""
+    _begin_new(m, k, pair, place_inside(m, coast, pair, y[PHASE]))
+    turn_to_closing(m, y, k, gap)
 
 
 @compiled_once(EXPOSURES)
-def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
-    """Do so where a contact ceases to close: the pressure is largest where the gap is least."""
-    if m.work.exposing.begun == 0:
-        return
+def _close(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+    """Add what a contact that ceases to close has been exposed to: the pressure is largest where the gap is least."""
     own, inside = m.work.exposing.pair[k], place_inside(m, coast, pair, y[PHASE])
     _begin_new(m, k, pair, inside)
     if joins(m, k, gap):
@@ -191,32 +207,23 @@ def _expose_closed(m: Model, t: float, y: Floats, coast: int, pair: int, k: int,
         own.lowest = min(own.lowest, gap)
         force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
         if elastic:  # the slope of the force has a jump here
-            add_sliding(m, t, k, speeds_here(m, y), inside, (gap, 0.0), (force, 0.0))
+            add_sliding(m, t, k, sliding_speeds(m, y, yp[V], yp[W]), inside, (gap, 0.0), (force, 0.0))
             see_pressure(m, t, k, inside, (force, 0.0))
         elif force > 0.0:
             note_pressure(m, k, at, inside, force)
 
 
 @compiled_once(EXPOSURES)
-def expose_touch(m: Model, t: float, y: Floats, coast: int, pair: int, k: int) -> None:
+def _touch(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int) -> None:
     """Add what a contact has been exposed to up to its onset or separation, and take single steps from there."""
-    if m.work.exposing.begun == 0:
-        return
     gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     _begin_new(m, k, pair, inside)
     if joins_here(m, k, inside, gap):
         join(m, t, y, k, inside, (gap, rate))
     force, slope = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
-    add_sliding(m, t, k, speeds_here(m, y), inside, (gap, rate), (force, slope * rate))
+    add_sliding(m, t, k, sliding_speeds(m, y, yp[V], yp[W]), inside, (gap, rate), (force, slope * rate))
     see_pressure(m, t, k, inside, (force, slope * rate))
     start_with_one_step(m)
-
-
-@compiled
-def close_exposures_at(place: int, t: float, y: Floats, yp: Floats) -> None:
-    """`follow_exposures` of the model at a place, from `gearidae.engine.model.located.Located`."""
-    m = model_at(place)
-    follow_exposures(m, t, y, yp, True)
 
 
 @compiled(inline=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.followers.exposures.places import place_at
-from gearidae.engine.followers.interpolation import cubic
+from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Model
 from gearidae.engine.pairs.tooth_pairs import contact_length
 

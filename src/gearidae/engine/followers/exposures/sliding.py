@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.followers.exposures.places import place_at, share_at_edge
-from gearidae.engine.followers.interpolation import cubic, cubic_slope
-from gearidae.engine.followers.quadrature import error_estimate, integral
+from gearidae.engine.formulas.interpolation import cubic, cubic_slope
+from gearidae.engine.formulas.quadrature import error_estimate, integral
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.tooth_pairs import static_error
 
-__all__ = ["add_sliding", "sliding_speeds", "speeds_here"]
+__all__ = ["add_sliding", "sliding_speeds"]
 
 SLIDING = 2 * MATERIALS
 """Its place among the quantities."""
@@ -30,13 +30,6 @@ def sliding_speeds(m: Model, y: Floats, v_rate: float, w_rate: float) -> tuple[f
         turn /= 1.0 - static_error(m, y[U], y[PHASE])[2]
     speed = s.sliding_pinion * turn + s.sliding_gear * y[W]
     return speed, s.sliding_pinion * turn_rate + s.sliding_gear * w_rate, s.phase_rate * y[W]
-
-
-@compiled
-def speeds_here(m: Model, y: Floats) -> tuple[float, float, float]:
-    """Do the same at the accepted time that is being dealt with, whose rates the extremes have noted."""
-    point = m.work.track.point[m.work.track.last]
-    return sliding_speeds(m, y, point.travel_bend, point.speed_rate)
 
 
 @compiled(inline=True)

@@ -1,4 +1,4 @@
-"""What both drivers call: at every accepted time, and at every start."""
+"""The extremes of a run: followed from a start, over accepted times and events."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ from gearidae.compiled import compiled
 from gearidae.engine.followers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
 from gearidae.engine.followers.extremes.separations import follow_separation, note_separation
 from gearidae.engine.followers.extremes.speeds import follow_speed, next_part, note_speed, stand
-from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.separation import separation
 
-__all__ = ["follow_extremes", "note_present_at", "note_rest", "restart_extremes"]
+__all__ = ["begin", "note_present", "resume", "step"]
 
 
 @compiled(inline=True)
-def follow_extremes(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) -> None:
+def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) -> None:
     """Follow the extremes to an accepted time, before its events are handled.
 
     Parameters
@@ -44,7 +43,7 @@ def follow_extremes(m: Model, t: float, y: Floats, yp: Floats, event: bool, spar
     if event:
         k.smooth = 1
         note_corner(m, k.point[k.last], y)
-        _note_present(m, y)
+        note_present(m, y)
 
 
 @compiled(inline=True)
@@ -57,14 +56,10 @@ def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled
-def note_present_at(place: int, y: Floats) -> None:
-    """Note a state of the model at a place, from `gearidae.engine.model.located.Located`, as it is."""
-    _note_present(model_at(place), y)
-
-
-@compiled
-def _note_present(m: Model, y: Floats) -> None:
+def note_present(m: Model, y: Floats) -> None:
     """Note a state as it is: until an extremum is passed it may be one."""
+    if m.state.extremes.begun == 0:
+        return
     if m.scene.kind == GEARS:
         note_speed(m, y[W])
     else:
@@ -73,7 +68,7 @@ def _note_present(m: Model, y: Floats) -> None:
 
 
 @compiled
-def note_rest(m: Model, t: float, y: Floats) -> None:
+def resume(m: Model, t: float, y: Floats) -> None:
     """Note that an event has brought the gear to rest."""
     p = m.work.track.point[m.work.track.last]
     if m.scene.kind == GEARS and y[W] <= 0.0 < p.speed:
@@ -82,7 +77,7 @@ def note_rest(m: Model, t: float, y: Floats) -> None:
 
 
 @compiled
-def restart_extremes(m: Model, t: float, y: Floats, yp: Floats) -> None:
+def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Go on from a start, where forces and accelerations may have jumped."""
     e, k = m.state.extremes, m.work.track
     if e.begun == 0:
@@ -92,4 +87,4 @@ def restart_extremes(m: Model, t: float, y: Floats, yp: Floats) -> None:
     _set_point(m, 0, t, y, yp)
     first_force(m, t, k.point[0].force)
     e.begun = 1
-    _note_present(m, y)
+    note_present(m, y)

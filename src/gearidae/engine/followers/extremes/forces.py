@@ -11,7 +11,7 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.followers.interpolation import cubic, quintic, vertex
+from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.residual import mesh_forces, roller_force
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error

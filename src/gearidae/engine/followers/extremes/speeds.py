@@ -11,7 +11,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
-from gearidae.engine.followers.interpolation import cubic, cubic_slope
+from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.model.state import PARTS, Model, Record
 
 __all__ = ["follow_speed", "next_part", "note_speed", "stand"]

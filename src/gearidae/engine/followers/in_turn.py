@@ -1,0 +1,118 @@
+"""The followers of a run in their order, each called only if the scene wants it.
+
+A follower keeps sums or extremes of its own and changes nothing else. It is a module with `begin` at a start of the
+integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root, `resume`
+behind all events of a root, and `finish` before a restart, at the end and for a look in between. It leaves out what it
+does not need. Exposures use what joining and the balance have left at the same time.
+"""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled
+from gearidae.engine.events.pair_events import PairEvent
+from gearidae.engine.followers import balance, joining
+from gearidae.engine.followers.exposures import follow as exposures
+from gearidae.engine.followers.extremes import follow as extremes
+from gearidae.engine.model.located import model_at
+from gearidae.engine.model.state import GEARS, Floats, Model, W
+
+__all__ = ["begin", "event", "finish", "look_at", "resume", "step"]
+
+
+@compiled
+def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Begin at a start of the integration, with its state and rates."""
+    if m.scene.follow.balance != 0:
+        joining.begin(m, t)
+        balance.begin(m, t, y, yp)
+    if m.scene.follow.extremes != 0:
+        extremes.begin(m, t, y, yp)
+    if m.scene.follow.exposures != 0:
+        exposures.begin(m, t, y, yp)
+
+
+@compiled(inline=True)
+def step(
+    m: Model, t: float, y: Floats, yp: Floats, at: tuple[bool, bool], between: tuple[Floats, Floats]
+) -> None:
+    """Go on to an accepted time, with histories and mesh marks as they were in the step.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    y, yp : ndarray, shape (n,)
+        State there and its rate.
+    at : tuple of bool
+        Whether a stop or a root of the guard is there, and whether it is a root.
+    between : tuple of two ndarrays, shape (n,)
+        Work space.
+    """
+    if m.scene.follow.balance != 0:
+        joining.step(m, t, y, yp[W] if m.scene.kind == GEARS else 0.0)
+    if m.scene.follow.extremes != 0:
+        extremes.step(m, t, y, yp, at[0], between[0])
+    if m.scene.follow.balance != 0:
+        balance.step(m, t, y, yp, at, between)
+    if m.scene.follow.exposures != 0:
+        exposures.step(m, t, y, yp, at[1])
+
+
+@compiled(inline=True)
+def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
+    """Take note of what has happened to a pair, before its history does."""
+    if m.scene.follow.balance != 0 and found.turns:
+        joining.event(m, y, found.coast, found.pair, found.k, found.gap)
+    if m.scene.follow.exposures != 0:
+        exposures.event(m, t, y, yp, found)
+
+
+@compiled
+def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
+    """Go on behind all events of a root.
+
+    Parameters
+    ----------
+    m : Model
+    t : float
+        Time over tau.
+    y : ndarray, shape (n,)
+        State, which a gear that comes to rest has changed.
+    crossed, joined : bool
+        Whether the phase has crossed a mark of the mesh, and whether a closing contact has turned round.
+    """
+    if m.scene.follow.balance != 0:
+        if crossed:
+            joining.resume(m, y)
+        balance.resume(m, t, y, crossed, joined)
+    if m.scene.follow.extremes != 0:
+        extremes.resume(m, t, y)
+
+
+@compiled
+def finish(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Bring all sums up to an accepted time."""
+    if m.scene.follow.balance != 0:
+        balance.finish(m, t, y, yp)
+    if m.scene.follow.exposures != 0:
+        exposures.finish(m, t, y, yp)
+
+
+@compiled
+def look_at(place: int, t: float, y: Floats, yp: Floats) -> None:
+    """Finish as for the end of a run, of which the last state may be an extreme.
+
+    Parameters
+    ----------
+    place : int
+        Of the model, from `gearidae.engine.model.located.Located`.
+    t : float
+        Time over tau.
+    y, yp : ndarray, shape (n,)
+        State there, and its rate.
+    """
+    m = model_at(place)
+    finish(m, t, y, yp)
+    if m.scene.follow.extremes != 0:
+        extremes.note_present(m, y)
