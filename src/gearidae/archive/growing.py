@@ -21,6 +21,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.asperity_events import teeth_in, tooth_of
 from gearidae.archive.definition import define, offsets
 from gearidae.archive.disk import commit, disk_errors, open_file, read_at, sync, write_at
 from gearidae.archive.growing_layout import COPIED, lay_out
@@ -28,7 +29,7 @@ from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import HEADER, Checkpoint, newest
 from gearidae.archive.library import opened
 from gearidae.archive.lock import WriterLock, take_or_refuse
-from gearidae.archive.variables import EVENTS
+from gearidae.archive.variables import EVENTS, POPULATION_EVENTS
 from gearidae.records import Block, Statistics
 
 __all__ = ["GrowingArchive"]
@@ -189,6 +190,10 @@ class GrowingArchive:
             self._write(name, self.samples, block.rows[:, column])
         for column, name in enumerate(_EVENT_COLUMNS):
             self._write(name, self.events, block.events[:, column].astype(EVENTS[name].dtype))
+        if "event_asperity" in self._template:
+            self._write("event_asperity", self.events, block.events[:, 5].astype(np.int64))
+            teeth = tooth_of(teeth_in(self._template.attrs), block.events[:, 2], block.events[:, 3])
+            self._write("event_tooth", self.events, teeth)
         self._write("event_sam_fraction", self.events, np.full(len(block.events), self._fraction))
         self.samples += len(block.rows)
         self.events += len(block.events)
@@ -330,7 +335,7 @@ class GrowingArchive:
             return size * self._sizes["time"]
         if name in self._columns:
             return size * self.samples
-        return size * self.events if name in EVENTS else size
+        return size * self.events if name in EVENTS or name in POPULATION_EVENTS else size
 
     def _raw(self, name: str) -> Iterator[tuple[int, bytes]]:
         """Go through a variable's bytes piece by piece."""

@@ -26,12 +26,14 @@ from gearidae.records import (
 )
 
 __all__ = [
+    "ASPERITY_COUNTS",
     "ENERGY_BALANCE",
     "EVENTS",
     "EXPOSURES",
     "EXTREMES",
     "OF_SWEPT_RUN",
     "PLACES",
+    "POPULATION_EVENTS",
     "ROLLER_EXTREMES",
     "RUN",
     "SAMPLES",
@@ -41,6 +43,7 @@ __all__ = [
     "Variable",
     "by_name",
     "columns",
+    "extreme_names",
 ]
 
 
@@ -114,6 +117,29 @@ _EVENTS = (
 )
 EVENTS: Mapping[str, Variable] = {variable.name: variable for variable in _EVENTS}
 
+POPULATION_EVENTS: Mapping[str, Variable] = {
+    variable.name: variable
+    for variable in (
+        Variable(
+            "event_tooth",
+            ("event",),
+            "1",
+            "tooth of the pinion that the event belongs to, counted from 0",
+            np.int64,
+            comment="-1 where it belongs to none",
+        ),
+        Variable(
+            "event_asperity",
+            ("event",),
+            "1",
+            "asperity that has joined or let go, counted along its flank from 0",
+            np.int64,
+            comment="-1 where the event is of no single asperity; gearidae.population lists them in this order",
+        ),
+    )
+}
+"""What events of a population have besides."""
+
 _RUN = (
     Variable("status", (), "1", "how the run ended", np.str_),
     Variable("message", (), "1", "how the run ended, in a sentence", np.str_),
@@ -166,6 +192,10 @@ _FORCE_EXTREMES = (
         comment="of elastic contacts along time, of others over the run",
     ),
     Variable("final_speed", (), "1", "speed of the gear [rad/s] or the roller [m/s] where the run ended"),
+)
+_ASPERITY_COUNTS = (
+    Variable("asperity_onsets", (), "1", "asperities that have joined", np.int64),
+    Variable("asperity_detachments", (), "1", "asperities that have let go", np.int64),
 )
 _GEAR_EXTREMES = (
     Variable("min_gear_speed", (), "rad s-1", "smallest speed of the gear"),
@@ -239,15 +269,25 @@ EXPOSURES: Mapping[str, Variable] = {variable.name: variable for variable in _EX
 PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACES}
 """What the exposures are labelled by."""
 ENERGY_BALANCE: Mapping[str, Variable] = {variable.name: variable for variable in _ENERGY_BALANCE}
-ROLLER_EXTREMES: Mapping[str, Variable] = {variable.name: variable for variable in _FORCE_EXTREMES}
-EXTREMES: Mapping[str, Variable] = {
-    variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES)
+ROLLER_EXTREMES: Mapping[str, Variable] = {
+    variable.name: variable for variable in (*_FORCE_EXTREMES, *_ASPERITY_COUNTS)
 }
+EXTREMES: Mapping[str, Variable] = {
+    variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES, *_ASPERITY_COUNTS)
+}
+ASPERITY_COUNTS = tuple(variable.name for variable in _ASPERITY_COUNTS)
+"""Those that only populations have."""
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
 OF_SWEPT_RUN: Mapping[str, Variable] = {variable.name: variable for variable in _OF_SWEPT_RUN}
 """What every run of a sweep has besides; of a single run these are attributes, or follow from them."""
 VERDICT: Mapping[str, Variable] = {variable.name: variable for variable in _VERDICT}
 """What a run of a sweep leaves behind that keeps only parts of its runs."""
+
+
+def extreme_names(is_roller: bool, model: str) -> tuple[str, ...]:
+    """Names of the extremes that a run of gears or a roller leaves, with a contact model."""
+    found = ROLLER_EXTREMES if is_roller else EXTREMES
+    return tuple(name for name in found if name not in ASPERITY_COUNTS or model == "population")
 
 
 def columns(is_roller: bool, model: str = "asperity") -> tuple[str, ...]:
@@ -262,6 +302,7 @@ def by_name() -> dict[str, Variable]:
         "sam_fraction": SAM_FRACTION,
         **SAMPLES,
         **EVENTS,
+        **POPULATION_EVENTS,
         **RUN,
         **OF_SWEPT_RUN,
         **VERDICT,

@@ -376,4 +376,5 @@ def _events(table: NDArray[np.float64]) -> Events:
         pair=table[:, 2].astype(np.int64),
         flank=table[:, 3].astype(np.int8),
         gap_rate=np.ascontiguousarray(table[:, 4]),
+        asperity=table[:, 5].astype(np.int64),
     )

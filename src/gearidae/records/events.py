@@ -36,6 +36,9 @@ class Flank(IntEnum):
     COAST = 1
 
 
+_NONE: NDArray[np.int64] = np.empty(0, np.int64)
+
+
 @dataclass(frozen=True, slots=True)
 class Events:
     """Events in the order they happened; every array has shape (n_events,).
@@ -52,6 +55,8 @@ class Events:
         A `Flank`.
     gap_rate : ndarray of float64
         Rate of change of that pair's gap [m/s]; negative while it closes.
+    asperity : ndarray of int64, optional
+        Number of the asperity on its flank, of a population; -1, the default, where an event is of no single one.
     """
 
     time: NDArray[np.float64]
@@ -59,6 +64,12 @@ class Events:
     pair: NDArray[np.int64]
     flank: NDArray[np.int8]
     gap_rate: NDArray[np.float64]
+    asperity: NDArray[np.int64] = _NONE
+
+    def __post_init__(self) -> None:
+        """Let events be of no single asperity where none are named."""
+        if self.asperity is _NONE:
+            object.__setattr__(self, "asperity", np.full(len(self.time), -1, np.int64))
 
     def __len__(self) -> int:
         return len(self.time)

@@ -188,6 +188,8 @@ class Extremes:
         Smallest distance of the flanks [m], of elastic ones with their deflection.
     final_speed : float
         Speed of the gear [rad/s] or the roller [m/s] where the run stands.
+    asperity_onsets, asperity_detachments : int
+        Asperities of a population that have joined, and let go.
     exposures : array of float
         What the flanks have been exposed to, in the order flank, tooth of the pinion, quantity, place: for each
         material asperities joined over those of a unit contact length, for each the energy they lost [J], sliding work
@@ -216,4 +218,6 @@ class Extremes:
     smallest_mesh_force_time: float = math.nan
     smallest_separation: float = math.nan
     final_speed: float = math.nan
+    asperity_onsets: int = 0
+    asperity_detachments: int = 0
     exposures: array[float] = field(default_factory=lambda: array("d"))

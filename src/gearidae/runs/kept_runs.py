@@ -37,7 +37,14 @@ _JOURNAL = "runs.jsonl"
 """Holds the runs without samples and events."""
 _OURS = re.compile(r"\.?([0-9a-f]{64}|runs\.jsonl)(\.[0-9]+-[0-9a-f]{8}\.part|\.nc)")
 """Names of our other files, finished or cut off while they were written."""
-_EVENTS = {"time": np.float64, "kind": np.int8, "pair": np.int64, "flank": np.int8, "gap_rate": np.float64}
+_EVENTS = {
+    "time": np.float64,
+    "kind": np.int8,
+    "pair": np.int64,
+    "flank": np.int8,
+    "gap_rate": np.float64,
+    "asperity": np.int64,
+}
 """Rows of the table of events, all of which double precision holds exactly, and their types in memory."""
 
 _STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not in ("ending", "fold_gap"))

@@ -85,7 +85,7 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
         Time over tau; `accept` has been there.
     y : ndarray, shape (n,)
         State there; set to rest where dry resistance takes hold.
-    events : ndarray, shape (n, 5)
+    events : ndarray, shape (n, EVENT_NUMBERS)
         See `gearidae.engine.events.record`.
     count : int
         Events already there.

@@ -43,7 +43,7 @@ def finish_step(
         Work space.
     flag : int
         0, `STOP` or `ROOT`.
-    events : ndarray, shape (n, 5)
+    events : ndarray, shape (n, EVENT_NUMBERS)
         Of the block; see `has_room`.
 
     Returns

@@ -63,7 +63,8 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     own.arcs_at, own.heights_at = tables.add(arcs), tables.add(heights)
     _add_levels(own, tables, heights, counts)
     numbers, kinds = _kinds(s, tables, scene, flanks)
-    own.kinds_at = tables.add(tables.add(numbers.ravel()) + KINDS * kinds)
+    first = tables.add(numbers.ravel())
+    own.kinds_at = tables.add((first + KINDS * kinds).astype(np.float64))
     own.join = float(numbers[:, K_JOIN].max())
     digest = flanks_digest(flanks)
     own.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
