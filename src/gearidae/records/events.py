@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -36,9 +36,6 @@ class Flank(IntEnum):
     COAST = 1
 
 
-_NONE: NDArray[np.int64] = np.empty(0, np.int64)
-
-
 @dataclass(frozen=True, slots=True)
 class Events:
     """Events in the order they happened; every array has shape (n_events,).
@@ -64,11 +61,11 @@ class Events:
     pair: NDArray[np.int64]
     flank: NDArray[np.int8]
     gap_rate: NDArray[np.float64]
-    asperity: NDArray[np.int64] = _NONE
+    asperity: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
 
     def __post_init__(self) -> None:
         """Let events be of no single asperity where none are named."""
-        if self.asperity is _NONE:
+        if self.asperity.size == 0:
             object.__setattr__(self, "asperity", np.full(len(self.time), -1, np.int64))
 
     def __len__(self) -> int:
