@@ -113,7 +113,7 @@ def test_gears_with_ten_listed_asperities(backend, rtol, allowed):
 
 
 def test_gears_with_a_drawn_surface():
-    """With 5 % of critical damping the motion is reproducible; 760 events in 500 us. Balance 1e-10 of the drive work."""
+    """With 5 % of critical damping the motion is reproducible. The balance closes to 1e-10 of the drive's work."""
     told = NUMBERS["gear_drawn_seed0_damping_7e-6_f1"]
     scene = GEARS.replace(
         {"mesh.damping": 7e-6, "run.duration": 500e-6, "run.samples": 51, "run.rtol": 1e-10}
@@ -133,7 +133,7 @@ def test_gears_with_a_drawn_surface():
 # -- events ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("changes", [{}, {"coating.sam_fraction": 0.5}, {"contact.asperity": "dmt"}])
+@pytest.mark.parametrize("changes", [{}, {"coating.sam_fraction": 0.5}, {"contact.asperity": "maugis"}])
 def test_shorter_steps_find_the_same_events(changes):
     """A hundredth of the tolerance takes half again as many steps; in 20 us chaos has grown by less than tenfold."""
     scene = BARE.replace({"run.duration": 20e-6, "run.samples": "off", **changes})
@@ -178,7 +178,7 @@ def test_an_asperity_that_is_grazed_between_two_steps_is_not_missed(backend, dep
         {"contact.asperity": "hertz", "contact.asperities": {"x": [0.0], "height": [15e-9]}, "run.rtol": 1e-9}
     )
     lowest = run(spring, "native").extremes.smallest_separation
-    listed = {"x": [0.0, 1e-9], "height": [15e-9, lowest + depth], "radius": [None, 1e-10]}
+    listed = {"x": [0.0, 1e-11], "height": [15e-9, lowest + depth], "radius": [None, 1e-10]}
     solution = run(spring.replace({"contact.asperities": listed}), backend)
     grazed = [kind for kind, _, _, asperity in asperity_events(solution)[0] if asperity == 1]
     if depth > 1e-14:  # above what the motion's tolerance leaves of the turning point
@@ -325,7 +325,7 @@ def _asperities_begin(checkpoint):
         (lambda c, k: c.__setitem__(k + 5, np.nan), "places of asperities in order"),
         (lambda c, k: c.__setitem__(k + 5, c[k + 5] - 0.5), "places of asperities in order"),
         (lambda c, k: c.__setitem__(k + 5, c[k + 5] - 1.0), "those that the overlaps allow"),
-        (lambda c, k: c.__setitem__(k + 5, 0.0), "those of pairs that are near"),
+        (lambda c, k: c.__setitem__(k + 4 + int(c[k + 4]), 100_000.0), "those of pairs that are near"),
     ],
 )
 def test_joined_asperities_that_no_run_has_left_are_refused(change, told):
@@ -359,7 +359,8 @@ def test_a_run_goes_on_with_another_coating_and_torque():
     for changes in ({"coating.sam_fraction": 1.0}, {"coating.sam_fraction": 0.5}, {"drive.torque": 2e-11}):
         other = solve(first.replace(more | changes), origin=origin)
         assert other.status == "finished"
-        assert (other.balance.model_change != 0.0) == ("coating.sam_fraction" in changes)
+        if changes.get("coating.sam_fraction") != 0.5:  # a half may leave all that are joined bare
+            assert (other.balance.model_change != 0.0) == ("coating.sam_fraction" in changes)
         assert abs(other.balance.residual) < 1e-6 * other.balance.drive_work
         assert other.samples["asperities_in_contact"][0] <= before
     with pytest.raises(SceneError, match=r"contact\.seed"):

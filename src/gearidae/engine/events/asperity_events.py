@@ -17,7 +17,7 @@ from gearidae.engine.events.record import EVENTS_AT_ONCE, record, record_asperit
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pairs_near
 from gearidae.engine.population.candidates import choose, covers, list_joined
-from gearidae.engine.population.forces import candidate_energy, candidate_load
+from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import (
     ARC,
     BOUND,
@@ -52,8 +52,6 @@ CYCLE_HIGH: Final = 100_000
 """Events of asperities from one mesh mark to the next, beyond which they are called chatter."""
 FAR: Final = 1.0
 """Guard over the roughness beyond which it does not matter how far it is."""
-NO_JUMP: Final = 1e-9
-"""Load over the reference load that may come or go without a restart: that of asperities without adhesion."""
 
 
 @compiled_once(POPULATION)
@@ -94,7 +92,9 @@ def _guard(m: Model, k: int, j: int, now: Pair, arc: float, bend: float) -> floa
 
 @compiled_once(POPULATION)
 def flip_asperities(m: Model, y: Floats) -> bool:
-    """Let all asperities join and let go whose guards have fallen, for `record_flips` to record; whether forces jump.
+    """Let all asperities join and let go whose guards have fallen, for `record_flips` to record; whether any has.
+
+    The integration must then begin anew: loads jump, and the rest of the step has been made without them.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def flip_asperities(m: Model, y: Floats) -> bool:
     y : ndarray, shape (n,)
         State at the root.
     """
-    jumps = False
+    flips = 0
     for k in range(m.scene.histories):
         m.work.contact[k].flips = 0
     reach = pairs_near(m, y)
@@ -119,21 +119,21 @@ def flip_asperities(m: Model, y: Floats) -> bool:
         for j in range(own.count):
             guard = _guard(m, k, j, now, at.arc, bend)
             if guard < 0.0:
-                jumps |= _flip(m, k, j, guard)
+                _flip(m, k, j, guard)
                 m.rows[flipped + own.flips] = j
                 own.flips += 1
         if own.flips > 0:
             list_joined(m, k)
             m.state.cycle_events += own.flips
-    return jumps
+            flips += own.flips
+    return flips > 0
 
 
 @compiled
-def _flip(m: Model, k: int, j: int, guard: float) -> bool:
-    """Let a candidate join or let go, and book the energy that it loses; whether its load is felt."""
+def _flip(m: Model, k: int, j: int, guard: float) -> None:
+    """Let a candidate join or let go, and book the energy that it loses."""
     sign, bound, kind = column(m, k, SIGN) + j, column(m, k, BOUND) + j, int(m.rows[column(m, k, KIND) + j])
-    overlap = m.rows[sign] * guard - m.rows[bound]
-    energy, load = candidate_energy(m, kind, overlap), candidate_load(m, kind, overlap)[0]
+    energy = candidate_energy(m, kind, m.rows[sign] * guard - m.rows[bound])
     if m.rows[sign] < 0.0:
         m.state.energy.adhesion_loss -= energy
         m.state.asperity_onsets += 1
@@ -141,7 +141,6 @@ def _flip(m: Model, k: int, j: int, guard: float) -> bool:
         m.state.energy.adhesion_loss += energy
         m.state.asperity_detachments += 1
     _turn(m, k, j)
-    return bool(abs(load) > NO_JUMP)
 
 
 @compiled
