@@ -31,13 +31,13 @@ def rows(separator=",", first=0, last=64):
 
 
 @pytest.fixture
-def at_once(monkeypatch):
+def steps_per_interval(monkeypatch):
     """The file is read at once; looking at each line is for files in which something is wrong."""
     monkeypatch.setattr(measured, "_numbers_by_line", lambda *_: pytest.fail("read line by line"))
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
-@pytest.mark.usefixtures("at_once")
+@pytest.mark.usefixtures("steps_per_interval")
 def test_the_usual_file_is_read_at_once_and_exactly(separator, file):
     ds = read_signal(file(f"time [s]{separator}gear_speed [rad/s]\n{rows(separator)}"))
     np.testing.assert_array_max_ulp(ds.time.values, TIME, 1)  # pandas may round the last bit
@@ -46,7 +46,7 @@ def test_the_usual_file_is_read_at_once_and_exactly(separator, file):
 
 @pytest.mark.parametrize("delimiter", [",", " ", "\t"])
 @pytest.mark.parametrize("header", [HEADER, "time [ms] gear_speed [rad/s]", "a rig\n" + HEADER])
-@pytest.mark.usefixtures("at_once")
+@pytest.mark.usefixtures("steps_per_interval")
 def test_what_numpy_writes_is_read(delimiter, header, tmp_path):
     path = tmp_path / "rig.csv"
     np.savetxt(path, TABLE * [1e3, 1.0], delimiter=delimiter, header=header)
@@ -55,7 +55,7 @@ def test_what_numpy_writes_is_read(delimiter, header, tmp_path):
     np.testing.assert_allclose(ds.gear_speed, SPEED, rtol=1e-15)
 
 
-@pytest.mark.usefixtures("at_once")
+@pytest.mark.usefixtures("steps_per_interval")
 def test_other_columns_and_remarks_before_the_numbers_are_ignored(file):
     lines = "".join(f"x,{speed!r},{time!r}\n" for time, speed in TABLE.tolist())
     ds = read_signal(file(f"# a rig\n\nwho,gear_speed [rad/s],time [s]\n# of today\n{lines}"))

@@ -182,7 +182,8 @@ assert columns(False)[9] == GEAR_COLUMNS[9] == "drive_torque"
 assert SAMPLES["drive_torque"].units == "N m"
 import inspect
 from gearidae.engine.motion import observe
-assert "row[9] = drive" in inspect.getsource(observe.observe)
+assert "row[GEAR.drive_torque] = drive" in inspect.getsource(observe.observe)
+assert observe.GEAR.drive_torque == 9
 """
 
 

@@ -406,7 +406,7 @@ MUTANTS = (
     ),
     Mutant(
         "error estimate of sliding work without effect",
-        "engine/followers/exposures/intervals.py",
+        "engine/followers/exposures/sliding.py",
         "    if error > 0.0:",
         "    if error > 1e300:",
         ("engine/test_exposures.py::test_sums_at_a_usual_tolerance_are_those_at_a_tight_one",),

@@ -53,12 +53,12 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
     with _one_at_a_time, ExitStack() as stack:
         _depth += 1
         stack.callback(_leave)
-        if _depth > 1:  # whoever is outside says it
+        if _depth > 1:  # the outer one says it
             yield
             return
-        told = _Told(what, how_long)
-        stack.callback(told.end)
-        stack.enter_context(event.install_listener("numba:compile", told))
+        listener = CompileListener(what, how_long)
+        stack.callback(listener.end)
+        stack.enter_context(event.install_listener("numba:compile", listener))
         yield
 
 
@@ -74,8 +74,8 @@ def _leave() -> None:
     _depth -= 1
 
 
-class _Told(event.Listener):
-    """What numba tells when it compiles a function that it has not found on disk."""
+class CompileListener(event.Listener):
+    """Notes and shows what numba compiles because it has not found it on disk."""
 
     def __init__(self, what: str, how_long: str) -> None:
         self._what, self._how_long = what, how_long

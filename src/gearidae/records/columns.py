@@ -6,16 +6,21 @@ here.
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from collections import namedtuple
+from typing import Any, Final, NamedTuple
 
 __all__ = [
     "ELASTIC_COLUMNS",
     "ELASTIC_SAMPLES",
+    "GEAR",
     "GEAR_COLUMNS",
+    "GEAR_POPULATION",
     "GEAR_SAMPLES",
     "POPULATION_COLUMNS",
     "POPULATION_SAMPLES",
+    "ROLLER",
     "ROLLER_COLUMNS",
+    "ROLLER_POPULATION",
     "ROLLER_SAMPLES",
     "Column",
     "sampled_columns",
@@ -81,6 +86,19 @@ ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
 POPULATION_COLUMNS = tuple(column.name for column in POPULATION_SAMPLES)
 """What is sampled of elastic contacts and of populations besides, last."""
+
+
+def _places(*columns: str) -> Any:
+    """Place of each column in a row, by its name."""
+    make: Any = namedtuple  # mypy takes names that are written out only
+    return make("Places", columns)(*range(len(columns)))
+
+
+GEAR: Final = _places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
+ROLLER: Final = _places(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
+GEAR_POPULATION: Final = _places(*GEAR_COLUMNS, *POPULATION_COLUMNS)
+ROLLER_POPULATION: Final = _places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
+"""Places of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
 
 
 def sampled_columns(*, roller: bool, model: str) -> tuple[str, ...]:

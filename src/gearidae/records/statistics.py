@@ -14,6 +14,10 @@ class Ending(Enum):
 
     FINISHED = ("finished", "")
     CHATTER = ("chatter", "event followed event without the time going on")
+    MANY_EVENTS = (
+        "many_events",
+        "asperities joined and let go more than 100000 times in a mesh cycle, or hundreds at once",
+    )
     STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
     NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
     TOO_ACCURATE = (

@@ -116,7 +116,7 @@ def _add_joining_loss(m: Model, k: int, gaps: Floats, material: int, scale: floa
 
 @compiled_once(ELASTIC, makes_arrays=True)
 def nodes_material_loss(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
-    """Do the same for one material, as if it covered everything."""
+    """Adhesion loss per length of one material, as if it covered everything, since the last turning point."""
     own, gaps = m.scene.material[material], np.empty(m.scene.points)
     if own.stretch_limit == 0.0:
         return 0.0

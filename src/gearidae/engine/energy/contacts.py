@@ -48,7 +48,7 @@ def joined_energy(m: Model, k: int, gap: float, shares: Shares) -> tuple[float, 
 
 @compiled
 def material_energy(m: Model, k: int, gap: float, material: int) -> tuple[float, float]:
-    """Do the same for one of its materials, which has hysteresis, in the unit of its force scale."""
+    """Energy of a material's stretched asperities beyond its loading branch, over its force scale, and its slope."""
     h, own = m.state.history[k], m.scene.material[material]
     stretch = gap - h.joined[material]
     if stretch <= 0.0:

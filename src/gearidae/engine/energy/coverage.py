@@ -14,7 +14,7 @@ from gearidae.contact.kernels.evaluate import three_values
 from gearidae.engine.elastic.energy import nodes_length_force, nodes_material_energy, nodes_material_loss
 from gearidae.engine.energy.contacts import free_material_energy, material_energy, turning_point
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import Shares, note_shares, place_inside, potentials_of, shares_of
+from gearidae.engine.pairs.coverage import Shares, note_shares, path_position, potentials_of, shares_of
 from gearidae.engine.pairs.lengths import length_and_rates, material_lengths
 from gearidae.engine.pairs.tooth_pairs import history_of
 
@@ -103,7 +103,7 @@ def _bodies(
     m: Model, k: int, coast: int, pair: int, gap: float, rate: float, t: float, y: Floats
 ) -> tuple[float, float]:
     """What a longer contact of elastic bodies stores besides that of its asperities per length, and its rate."""
-    inside = place_inside(m, coast, pair, y[PHASE])
+    inside = path_position(m, coast, pair, y[PHASE])
     note_shares(m, k, coast, pair, inside)
     length = length_and_rates(m, coast, pair, y[PHASE], 0.0, 0.0)[0]
     stored, change = nodes_length_force(m, k, t, y, gap, rate, length)

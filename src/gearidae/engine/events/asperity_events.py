@@ -47,9 +47,9 @@ _ONSET, _DETACHMENT = float(EventKind.ASPERITY_ONSET), float(EventKind.ASPERITY_
 _PAIR_ONSET, _PAIR_SEPARATION = float(EventKind.ONSET), float(EventKind.SEPARATION)
 _FLANK_CHANGE: Final = float(EventKind.FLANK_CHANGE)
 FLIPS_HIGH: Final = EVENTS_AT_ONCE // 2
-"""Events of asperities at one time, from which on they are called chatter."""
+"""Events of asperities at one time, which are too many to follow."""
 CYCLE_HIGH: Final = 100_000
-"""Events of asperities from one mesh mark to the next, beyond which they are called chatter."""
+"""Events of asperities from one mesh mark to the next, beyond which they are too many to follow."""
 FAR: Final = 1.0
 """Guard over the roughness beyond which it does not matter how far it is."""
 
@@ -78,7 +78,6 @@ def asperity_guard(m: Model, y: Floats) -> float:
         bend = 0.5 * m.scene.population.steepness / at.radius
         for j in range(m.work.contact[k].count):
             least = min(least, _guard(m, k, j, now, at.arc, bend))
-    m.work.least_guard = least
     return least
 
 
@@ -229,7 +228,6 @@ def note_step_start(m: Model, y: Floats) -> None:
             own.started, own.start_moves = 1, 1 if now.moves else 0
             own.start_gap, own.start_rate = now.gap, now.rate
             own.start_place, own.start_place_rate = now.place, now.place_rate
-    m.work.least_before = m.work.least_guard
 
 
 @compiled_once(POPULATION)

@@ -19,7 +19,7 @@ from gearidae.engine.energy.contacts import joining_loss
 from gearidae.engine.energy.coverage import losses_by_material
 from gearidae.engine.formulas.quadrature import integral
 from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import WHOLE, note_shares, place_inside, shares_of
+from gearidae.engine.pairs.coverage import WHOLE, note_shares, path_position, shares_of
 from gearidae.engine.pairs.lengths import length_and_rates, material_lengths
 from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pair_gap, pairs_on_path
 
@@ -69,12 +69,12 @@ def event(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> Non
             m.state.energy.radius_work -= lag
     if m.scene.nodes > 0:
         if m.scene.by_place != 0:
-            note_shares(m, k, coast, pair, place_inside(m, coast, pair, y[PHASE]))
+            note_shares(m, k, coast, pair, path_position(m, coast, pair, y[PHASE]))
         m.state.energy.adhesion_loss += length * nodes_joining_loss(m, k, y, gap)
         return
     shares = WHOLE
     if m.scene.by_place != 0:
-        shares = shares_of(m, k, coast, pair, place_inside(m, coast, pair, y[PHASE]))
+        shares = shares_of(m, k, coast, pair, path_position(m, coast, pair, y[PHASE]))
     loss = joining_loss(m, k, gap, shares)
     m.state.energy.adhesion_loss += length * loss
     if m.scene.kind != GEARS or m.scene.radius_force != 0:

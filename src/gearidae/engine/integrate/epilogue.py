@@ -5,14 +5,14 @@ from __future__ import annotations
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.asperity_events import flip_asperities, record_flips
-from gearidae.engine.events.events import ROOT, STOP, crowded, handle_mesh
+from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
 from gearidae.engine.followers import in_turn as followers
-from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT
+from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
@@ -99,13 +99,14 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
                 joined |= found.turns and m.state.history[k].direction < 0.0
                 followers.event(m, t, y, yp, found)
                 count = take_event(m, t, y, found, events, count)
-    chatter = False
     if m.scene.population.flanks != 0:
         restart |= flip_asperities(m, y)
-        count, chatter = record_flips(m, t, events, count)
+        count, too_many = record_flips(m, t, events, count)
+        if too_many:
+            driver.error = MANY_EVENTS
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
-    if crowded(m, t) or chatter:
+    if chatters(m, t):
         driver.error = CHATTER
     return restart
 

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import mesh_forces, roller_force
 from gearidae.engine.motion.separation import separation
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
 from gearidae.engine.population.forces import asperities_joined
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
 
 __all__ = ["observe"]
-
-_GEARS: Final = len(GEAR_COLUMNS)
-_ROLLER: Final = len(ROLLER_COLUMNS)
 
 
 @compiled_once(SOLVER)
@@ -37,13 +33,15 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     """
     length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
     u, v = y[U], y[V]
-    if m.scene.kind == ROLLER:
+    if m.scene.kind != GEARS:
         force, _ = roller_force(m, t, y, False)
-        row[0], row[1], row[2] = u * length, v * speed, force * m.scene.force_unit
+        row[ROLLER.height] = u * length
+        row[ROLLER.speed] = v * speed
+        row[ROLLER.force] = force * m.scene.force_unit
         if m.scene.population.flanks != 0:
-            row[_ROLLER] = asperities_joined(m)[0]
-        elif row.size > _ROLLER:
-            row[_ROLLER] = separation(m, y) * length
+            row[ROLLER_POPULATION.asperities_in_contact] = asperities_joined(m)[0]
+        elif row.size > ROLLER.min_separation:
+            row[ROLLER.min_separation] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
     force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
@@ -52,23 +50,26 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     if m.scene.error_count != 0:
         _, _, e1, _ = static_error(m, u, phase)
     radius = m.scene.gear_radius
-    row[0] = w * speed / radius
-    row[1] = (v + w) * speed / (m.scene.pinion_radius * (1.0 - e1))
-    row[2] = (m.state.turns + phase) * m.scene.base_pitch / radius
-    row[3] = u * length
-    row[4] = force * m.scene.force_unit
-    row[5] = radius * (force + relief) * m.scene.force_unit
-    touching = 0.0
-    row[6] = row[7] = math.inf
+    row[GEAR.gear_speed] = w * speed / radius
+    row[GEAR.pinion_speed] = (v + w) * speed / (m.scene.pinion_radius * (1.0 - e1))
+    row[GEAR.gear_angle] = (m.state.turns + phase) * m.scene.base_pitch / radius
+    row[GEAR.transmission_error] = u * length
+    row[GEAR.mesh_force] = force * m.scene.force_unit
+    row[GEAR.gear_contact_torque] = radius * (force + relief) * m.scene.force_unit
+    drive_gap = coast_gap = math.inf
+    touching = 0
     reach = all_pairs(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
         gap, _, _, _ = pair_gap(m, coast, pair, u, v, phase, w)
-        row[6 + coast] = min(row[6 + coast], gap * length)
-        if gap < m.scene.contact_gap:
-            touching += 1.0
-    row[8] = touching
+        if coast:
+            coast_gap = min(coast_gap, gap)
+        else:
+            drive_gap = min(drive_gap, gap)
+        touching += gap < m.scene.contact_gap
+    row[GEAR.drive_gap], row[GEAR.coast_gap] = drive_gap * length, coast_gap * length
+    row[GEAR.pairs_in_contact] = touching
     if m.scene.population.flanks != 0:
-        row[_GEARS], row[8] = asperities_joined(m)
-    elif row.size > _GEARS:
-        row[_GEARS] = separation(m, y) * length
+        row[GEAR_POPULATION.asperities_in_contact], row[GEAR.pairs_in_contact] = asperities_joined(m)
+    elif row.size > GEAR.min_separation:
+        row[GEAR.min_separation] = separation(m, y) * length

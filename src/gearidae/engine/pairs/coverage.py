@@ -20,7 +20,7 @@ __all__ = [
     "loading_of",
     "note_shares",
     "noted_shares",
-    "place_inside",
+    "path_position",
     "potential_of",
     "potentials_of",
     "share_changes",
@@ -197,7 +197,7 @@ def potentials_of(m: Model, gap: float) -> tuple[Shares, Shares]:
 
 
 @compiled
-def place_inside(m: Model, coast: int, pair: int, phase: float) -> float:
+def path_position(m: Model, coast: int, pair: int, phase: float) -> float:
     """Place of a pair along the path of contact, clipped to it, in pitches."""
     along = m.scene.coast_phase + pair - phase if coast else phase - pair
     return min(max(along, 0.0), m.scene.contact_ratio)

@@ -10,7 +10,7 @@ import math
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
-from gearidae.engine.pairs.coverage import Shares, place_inside, share_changes
+from gearidae.engine.pairs.coverage import Shares, path_position, share_changes
 
 __all__ = ["length_and_rates", "material_lengths"]
 
@@ -42,7 +42,7 @@ def material_lengths(
     length, rate, bend = length_and_rates(m, coast, pair, phase, w, w_rate)
     along = m.scene.phase_rate * (1.0 - 2.0 * coast)
     speed, speed_rate = along * w, along * w_rate
-    inside = place_inside(m, coast, pair, phase)
+    inside = path_position(m, coast, pair, phase)
     (a, b, c), (a1, b1, c1), (a2, b2, c2) = share_changes(m, k, coast, pair, inside)
     # a' = da/dx v and a'' = d2a/dx2 v^2 + da/dx v', with x the place and v its rate
     twice, square, both = 2.0 * rate * speed, length * speed * speed, length * speed_rate

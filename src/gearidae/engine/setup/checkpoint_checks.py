@@ -97,7 +97,7 @@ def check_histories(m: Model, state: Record, y: Floats) -> None:
     """Check the histories of a state that `check_state` has accepted; parameters and errors as there."""
     history, count = state.history, int(m.scene.histories)
     used = (history["pair"] != EMPTY) & (np.arange(history.size) < count)
-    # most are empty, and told so all at once
+    # empty histories are compared bytewise, in one operation
     texts = np.frombuffer(history.tobytes(), np.uint8).reshape(history.size, -1)
     filled = ~used & (texts != np.frombuffer(empty_history().tobytes(), np.uint8)).any(axis=1)
     require(not filled.any(), f"history {int(filled.argmax())}", "empty")
@@ -145,7 +145,7 @@ def _check_numbers(record: Record, dtype: np.dtype[Any], prefix: str) -> None:
 
 
 def _check_columns(records: Record, dtype: np.dtype[Any], prefix: str) -> None:
-    """Do the same for an array of records, a field of all at once."""
+    """Check the real numbers of an array of records, a field of all at once."""
     for name in dtype.names or ():
         if dtype[name].base.kind == "f":
             require(bool((np.abs(records[name]) < _LARGEST).all()), f"{prefix}{name}", "finite")
@@ -193,16 +193,16 @@ def _between(index: int, times: Floats, time: float) -> bool:
 
 def _check_extremes(e: Record, time: float) -> None:
     """Check that extremes are in order, and times of the past."""
-    require(e.begun in _FLAGS and e.held in _FLAGS, "flags of the extremes", "0 or 1")
+    require(e.begun in _FLAGS and e.is_stuck in _FLAGS, "flags of the extremes", "0 or 1")
     require(e.lowest_speed <= e.highest_speed and e.smallest_force <= e.largest_force, "extremes", "in order")
-    counts = (e.reversals, e.mesh_exits, e.held_exits, e.turn_backs)
+    counts = (e.reversals, e.mesh_exits, e.stuck_exits, e.turn_backs)
     require(
-        min(counts) >= 0 and max(counts) <= _WHOLE_HIGH and e.held_exits <= e.mesh_exits,
+        min(counts) >= 0 and max(counts) <= _WHOLE_HIGH and e.stuck_exits <= e.mesh_exits,
         "counts of the extremes",
         "positive",
     )
     times = (
-        *(e.largest_force_time, e.smallest_force_time, e.held_time, e.turn_back_time, e.adhering),
+        *(e.largest_force_time, e.smallest_force_time, e.stuck_time, e.turn_back_time, e.adhering),
         *e.part["time"],
     )
     require(all(0.0 <= one <= time for one in times), "times of the extremes", "in the past")

@@ -52,8 +52,8 @@ def follow_speed(m: Model, last: Record, now: Record) -> None:
     turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
     if turned or (now.speed <= 0.0 < last.speed):
         _look_inside(m, last, now, turned)
-    if m.state.extremes.held != 0 and now.place - m.state.extremes.held_place > HELD_WITHIN:
-        m.state.extremes.held = 0  # it has turned on
+    if m.state.extremes.is_stuck != 0 and now.position - m.state.extremes.stuck_position > HELD_WITHIN:
+        m.state.extremes.is_stuck = 0  # it has turned on
 
 
 @compiled
@@ -65,7 +65,7 @@ def _look_inside(m: Model, last: Record, now: Record, turned: bool) -> None:
     if last.speed > 0.0 and min(now.speed, extreme) <= 0.0:
         share = _falls_to_zero(h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         time = last.time + share * h
-        stand(m, time, last.place + share * h * 0.5 * last.speed * m.scene.phase_rate)
+        stand(m, time, last.position + share * h * 0.5 * last.speed * m.scene.phase_rate)
         if last.travel > 0.0:  # the drive flank is the nearer
             _turn_back(m, time)
     if turned:
@@ -94,13 +94,13 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
 
 
 @compiled
-def stand(m: Model, t: float, place: float) -> None:
+def stand(m: Model, t: float, position: float) -> None:
     """Note that the speed has fallen to zero."""
     e = m.state.extremes
     e.reversals += 1
     note_speed(m, 0.0)
-    if e.held == 0:
-        e.held, e.held_time, e.held_place, e.held_exits = 1, t, place, e.mesh_exits
+    if e.is_stuck == 0:
+        e.is_stuck, e.stuck_time, e.stuck_position, e.stuck_exits = 1, t, position, e.mesh_exits
         e.turn_backs = 0
 
 
@@ -127,7 +127,9 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
         w = cubic(share, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         note_speed(m, w)
         e.part[i].begun, e.part[i].time = 1, time
-        e.part[i].place = cubic(share, h, last.place, scale * last.speed, now.place, scale * now.speed)
+        e.part[i].position = cubic(
+            share, h, last.position, scale * last.speed, now.position, scale * now.speed
+        )
         e.part[i].lowest = e.part[i].highest = w
         if i == 0:
             e.top = e.bottom = w
