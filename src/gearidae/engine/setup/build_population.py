@@ -27,6 +27,8 @@ __all__ = ["add_population", "population_rows"]
 RELEASED: Final = 1e-10
 """How much sooner than at the fold an asperity lets go, over the width of its hysteresis: the slope of its load is
 infinite there, and less of its loss is out than this."""
+BEYOND: Final = 0.25
+"""Roughnesses by which a flank comes near before its highest asperity may join, whose guard is to be seen waiting."""
 LEAST_CUTOFF: Final = GAP_LOW + 1.0
 MOST_LAWS: Final = 512
 """Tables of laws that scale with neither radius nor adhesion, as that of Maugis; each takes a tenth of a second."""
@@ -69,7 +71,7 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     digest = flanks_digest(flanks)
     own.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
     own.quiet = int(not scene.run.asperity_events)
-    s.cutoff = s.contact_gap = max(own.highest + float(numbers[:, K_DETACH].max()), LEAST_CUTOFF)
+    s.cutoff = s.contact_gap = max(own.highest + float(numbers[:, K_DETACH].max()) + BEYOND, LEAST_CUTOFF)
 
 
 def population_rows(s: Record) -> Floats:
@@ -100,34 +102,32 @@ def _kinds(
     pairs, kinds = np.unique(len(MATERIAL_NAMES) * of_radius + material, return_inverse=True)
     sigma, by_name = scene.surface.roughness, {one.name: one for one in scene.materials()}
     highest = float(s.population.highest) - GAP_LOW
-    found: dict[AsperityLaw, tuple[int, float]] = {}
-    numbers = np.empty((pairs.size, KINDS))
-    for row, pair in enumerate(pairs.tolist()):
+    tips = []
+    for pair in pairs.tolist():
         radius, one = radii[pair // len(MATERIAL_NAMES)], by_name[MATERIAL_NAMES[pair % len(MATERIAL_NAMES)]]
         tip = asperity_of(one.surface.model_copy(update={"asperity_radius": float(radius)}))
         unit = tip.stretch_limit if tip.stretch_limit > 0.0 else sigma
-        law = law_of_tip(scene.contact.asperity, tip, unit)
-        at, reach = found.get(law, (0, 0.0))
-        wanted = highest * sigma / unit
-        if wanted > reach:
-            if len(found) >= MOST_LAWS:
-                raise SceneError(
-                    "contact.asperity",
-                    scene.contact.asperity,
-                    f"has another law for each radius, and more than {MOST_LAWS}: radii must be fewer, or the law jkr",
-                )
-            reach = 4.0 * wanted  # tips of other radii reach a little farther
-            at = tables.add(asperity_table(law, reach))
-            found[law] = at, reach
-        load = tip.hertz_factor * unit**1.5
-        join, detach = law.join * unit / sigma, law.detach * unit / sigma
+        tips.append((law_of_tip(scene.contact.asperity, tip, unit), tip.hertz_factor, unit, one.gap_offset))
+    reach: dict[AsperityLaw, float] = {}
+    for law, _, unit, _ in tips:
+        reach[law] = max(reach.get(law, 0.0), highest * sigma / unit)
+    if len(reach) > MOST_LAWS:
+        raise SceneError(
+            "contact.asperity",
+            scene.contact.asperity,
+            f"has another law for each radius, here {len(reach)}: there may be {MOST_LAWS} at most, or the law jkr",
+        )
+    places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
+    numbers = np.empty((pairs.size, KINDS))
+    for row, (law, factor, unit, offset) in enumerate(tips):
+        load, join, detach = factor * unit**1.5, law.join * unit / sigma, law.detach * unit / sigma
         numbers[row] = (
-            at,
+            places[law],
             sigma / unit,
             load / float(s.force_unit),
             load * unit / (float(s.force_unit) * sigma),
             join,
             detach - RELEASED * (detach - join),
-            one.gap_offset / sigma,
+            offset / sigma,
         )
     return numbers, kinds
