@@ -2,6 +2,7 @@
 # make test  lint, types and tests
 # make types types once more, as macOS and Windows have them
 # make test-lowest  a short suite in a second environment, with the lowest versions that the package promises
+# make test-newest  the same with the newest versions of everything and the Python that NEWEST_PYTHON names; `make run` in it, too
 # make docs  the documentation: docs/_build/html/index.html
 # make bench    run time against error, all scenes: the benchmark's page anew (some ten minutes)
 # make stress   2,000 random scenes: the stress page anew (some minutes)
@@ -10,9 +11,13 @@
 PYTHON ?= python3
 VENV   ?= .venv
 LOWEST ?= .venv-lowest
-BIN    := $(VENV)/bin
+NEWEST ?= .venv-newest
+NEWEST_PYTHON ?= $(PYTHON)
+# On Windows: make SCRIPTS=Scripts, in a shell like Git's bash
+SCRIPTS ?= bin
+BIN    := $(VENV)/$(SCRIPTS)
 
-.PHONY: run test test-by-hand test-lowest lint warm types docs bench stress clean
+.PHONY: run test test-by-hand test-lowest test-newest lint warm types docs bench stress clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/installed
@@ -38,12 +43,20 @@ warm: $(VENV)/installed-dev
 	    [gd.simulate(gd.preset(name).replace({"contact.model": model}), t_end=1e-6, samples=3, backend=driver) \
 	     for name in ("teodorescu2009", "roller_slow") for model in ("asperity", "elastic") for driver in ("native", "sksundae")]'
 
-# Both drivers, scenes, archives, pictures and the command line. The warning is one that numpy itself switches off.
+# The short suite: both drivers, scenes, archives, pictures and the command line.
+SHORT := -q -n 2 --dist loadfile --no-loadscope-reorder \
+    tests/engine/test_backends.py tests/engine/test_compiled_once.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
+    tests/archive/test_lock.py tests/analysis/test_measured.py \
+    tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
+
+# The warning is one that numpy itself switches off.
 test-lowest: $(LOWEST)/installed
-	$(LOWEST)/bin/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -W "ignore:numpy.ndarray size changed:RuntimeWarning" \
-	    tests/engine/test_backends.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
-	    tests/archive/test_lock.py tests/analysis/test_measured.py \
-	    tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
+	$(LOWEST)/$(SCRIPTS)/python -m pytest -W "ignore:numpy.ndarray size changed:RuntimeWarning" $(SHORT)
+
+# The main job first: compiled code that it makes is taken from the cache by the tests.
+test-newest: $(NEWEST)/installed-test
+	$(MAKE) run VENV=$(NEWEST) PYTHON=$(NEWEST_PYTHON)
+	$(NEWEST)/$(SCRIPTS)/python -m pytest $(SHORT)
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
@@ -64,7 +77,7 @@ stress: $(VENV)/installed
 	PYTHONPATH=benchmarks $(BIN)/python -m gearidae_bench --stress -o out/stress
 
 clean:
-	rm -rf $(VENV) $(LOWEST) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(LOWEST) $(NEWEST) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
 
 # The package is installed in editable form: only a change of its requirements asks for more.
 $(VENV)/installed: pyproject.toml
@@ -81,8 +94,13 @@ $(VENV)/installed-dev: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	touch $@
 
+$(NEWEST)/installed-test: pyproject.toml
+	$(MAKE) $(NEWEST)/installed VENV=$(NEWEST) PYTHON=$(NEWEST_PYTHON)
+	$(NEWEST)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check pytest pytest-xdist hypothesis mpmath
+	touch $@
+
 $(LOWEST)/installed: pyproject.toml tests/lowest.txt
 	$(PYTHON) -m venv $(LOWEST)
-	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint tests/lowest.txt \
+	$(LOWEST)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check --constraint tests/lowest.txt \
 	    --editable . pytest pytest-xdist hypothesis mpmath
 	touch $@

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import re
 import sys
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -75,7 +77,8 @@ def test_ipython_on_a_terminal_is_no_notebook(monkeypatch):
 def test_nothing_is_shown_where_nobody_looks(monkeypatch):
     monkeypatch.setattr(sys, "stderr", io.StringIO())
     with progress.run_progress(True, 1.0) as report:
-        assert report is None
+        report(0.5, 1)
+    assert sys.stderr.getvalue() == ""
     with progress.sweep_progress(True, 3) as update:
         update(1.0, 3)
     assert sys.stderr.getvalue() == ""
@@ -94,8 +97,75 @@ def test_a_bar_is_drawn_on_a_terminal(monkeypatch):
     assert "300 of 300 ms, 7 events" in sys.stderr.getvalue()
 
 
+@pytest.mark.parametrize(("columns", "shown"), [(40, "0:00:"), (80, "events"), (150, "ms per second")])
+def test_narrow_terminals_show_the_time_that_remains(columns, shown, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", str(columns))
+    with progress.run_progress(True, 123.456e-3) as report:
+        for step in range(1, 4):
+            report(step * 12.3456e-3, 123_456)
+            time.sleep(0.01)
+    last = (
+        re.sub("\x1b\\[[0-9;?]*[a-zA-Z]", "", sys.stderr.getvalue()).strip().splitlines()[-1].split("\r")[-1]
+    )
+    assert re.search(r"\d+:\d\d:\d\d \S+:\S\S:\S\S$", last.strip())  # elapsed, and remaining
+    assert len(last) <= columns
+    assert shown in last
+
+
 def test_a_function_is_told():
     told = []
     with progress.run_progress(lambda *what: told.append(what), 1.0) as report:
         report(0.5, 2)
     assert told == [(0.5, 2)]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.0079, "0.0079 s"),
+        (119.0, "1.2e+02 s"),
+        (600.0, "10 min"),
+        (288e3, "3.3 days"),
+        (1.3e8, "4.1 years"),
+    ],
+)
+def test_times_are_said_as_people_say_them(seconds, words):
+    assert progress.in_words(seconds) == words
+
+
+@pytest.mark.parametrize(
+    ("reached", "said"),
+    [
+        ([0.0, 1e-4, 3e-4], ["at this rate the run takes another 22 min"]),  # 0.2997 s at 0.225 ms a second
+        (
+            [0.1, 0.1001, 0.1002],
+            ["at this rate the run takes another 22 min"],
+        ),  # resumed: what was there took no time
+        ([0.0, 1e-3, 2e-3], []),  # 200 s
+        ([0.0], []),
+    ],
+)
+def test_a_long_run_is_announced_once_by_the_rate_of_its_first_second(reached, said, monkeypatch, caplog):
+    clock = iter([5.0 + 0.66667 * number for number in range(len(reached))])
+    monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
+    told = []
+    with progress.run_progress(lambda *what: told.append(what), 0.3) as report:
+        for time_reached in reached:
+            report(time_reached, 0)
+    assert [record.getMessage() for record in caplog.records] == said
+    assert len(told) == len(reached)
+
+
+def test_a_run_without_progress_announces_it_too(monkeypatch, caplog):
+    clock = iter([0.0, 2.0, 4.0])
+    monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
+    with progress.run_progress(False, 1.0) as report:
+        for number in range(3):
+            report(1e-4 * number, 0)
+    assert [record.getMessage() for record in caplog.records] == ["at this rate the run takes another 5.6 h"]

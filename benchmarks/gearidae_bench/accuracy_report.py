@@ -21,25 +21,26 @@ PICTURE: Final = "accuracy.png"
 SHARES: Final = (0.1, 0.5, 0.9, 1.0)
 
 _INTRODUCTION = """\
-After this page you can choose `run.rtol` for the error that you need. Every shipped case is run in three states of the
-coating (full coverage, 60 % coverage, bare silicon) at seven tolerances, and compared with a reference solution.
+After this page you can choose `run.rtol` for the error that you need. The tables give the error of every shipped case
+in three states of the coating (full coverage, 60 % coverage, bare silicon) at seven tolerances.
 
 The tolerance bounds the local error of a single step: relative to the roughness for lengths, and to the roughness per
-time unit for speeds. The tables show the global error of the run, which is the larger of two numbers: the largest
-error of the speed of the gear (or roller) over its peak-to-peak fluctuation, and the largest error of the transmission
-error (or height) over the roughness. Local errors add up, and every impact amplifies the accumulated error.
+time unit for speeds. The tables show the global error of the run, the difference from a reference solution. It is the
+larger of two numbers: the largest error of the speed of the gear (or roller) over its peak-to-peak fluctuation, and the
+largest error of the transmission error (or height) over the roughness. Local errors add up, and every impact amplifies
+the accumulated error.
 
 **References.** The reference is Gauss-Legendre collocation of order twelve at a tolerance of 1e-12, with a step
 boundary at every event, every kink of the force, every schedule knot and every sample. Method, error control and event
 detection are independent of the engine. Its own error, given in the table, is its difference from a run at a tenth of
 the tolerance. With elastic bodies the equations are partly algebraic, and the reference is a run of the engine itself
-at 1e-12, compared with one at 1e-11. This shows how the error falls with the tolerance, but not that the limit is
-correct; the tests of the elastic contact check the limit.
+at 1e-12, compared with one at 1e-11. This comparison shows how the error falls with the tolerance. It does not show
+that the limit is correct; the tests of the elastic contact do.
 
 **Cases.** The low-speed case is run for 20 ms and the high-speed case for 0.5 ms. Run-up, braking and alternating
-torque are run for a hundredth of their duration, with torque schedules faster by the same factor, so that the gears
-still break away, stop and change their speed. Rollers are run with both contact models. In the names of the cases,
-"whole" means full coverage, "worn" 60 % coverage and "bare" no coverage.
+torque are run for a hundredth of their duration. Their torque schedules are faster by the same factor, so that the
+gears still break away, stop and change their speed. Rollers are run with both contact models. In the names of the
+cases, "whole" means full coverage, "worn" 60 % coverage and "bare" no coverage.
 """
 _ADVICE = """\
 ## Which tolerance to choose
@@ -47,11 +48,11 @@ _ADVICE = """\
 The median error of a run is some tens of tolerances, and some hundreds with elastic bodies. It falls in proportion to
 the tolerance. With the default of 1e-6, the error of most of these runs is below 1e-4 of the fluctuation.
 
-Two kinds of run need a smaller tolerance; 1e-3 is not sufficient for them. Gears braked to a stop continue to bounce
+Two kinds of run need a tolerance below 1e-3. Gears braked to a stop continue to bounce
 between their teeth with hardly any damping, and every bounce amplifies the error of the one before. Bare silicon at
 low speed falls into its adhesive potential well and vibrates there, with about a hundred thousand turning points in
-these 20 ms; the phase of this vibration is lost first. The amplitude of the vibration is reliable in such a run, but
-its phase at a given time is not. If the phase matters, use 1e-9 and compare two tolerances.
+these 20 ms. In such a run the amplitude of the vibration is reliable, but its phase at a given time is not. If the
+phase matters, use 1e-9 and compare two tolerances.
 """
 
 
@@ -87,9 +88,9 @@ def page(results: Sequence[Achieved], day: date) -> str:
     lines = [
         "# Requested and achieved accuracy",
         "",
-        f"`python -m gearidae_bench --accuracy` on {day.isoformat()}, gearidae {gearidae.__version__}.",
-        "",
         _INTRODUCTION,
+        f"Measured by `python -m gearidae_bench --accuracy` on {day.isoformat()}, gearidae {gearidae.__version__}.",
+        "",
         f"![Error of the run against the tolerance, and distribution of their ratio](images/{PICTURE})",
         "",
         "## Error over tolerance",

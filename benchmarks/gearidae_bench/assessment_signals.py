@@ -11,7 +11,7 @@ import xarray as xr
 from scipy import signal as dsp
 
 import gearidae as gd
-from gearidae.analysis.signal import Floats
+from gearidae.analysis.signal import CALIBRATION, Floats
 
 __all__ = ["CONDITIONS", "FRACTIONS", "RATE", "Condition", "Key", "clean_speeds", "cutoff", "record"]
 
@@ -50,6 +50,8 @@ class Condition:
         Divides the sampling rate.
     filtered : bool
         Whether a low-pass filter stands before the sampling, and `assess` is told so.
+    calibration : float
+        Relative uncertainty of the speed that `assess` is told [1].
     """
 
     decibels: float = 20.0
@@ -61,6 +63,7 @@ class Condition:
     quantum: float = 0.0
     slower: int = 1
     filtered: bool = False
+    calibration: float = CALIBRATION
 
 
 def _offset(time: Floats, speed: Floats, rng: np.random.Generator, *, by: float) -> Floats:
@@ -97,6 +100,10 @@ CONDITIONS: Mapping[str, Condition] = {
     "tone of 3 kHz, 0.01 rad/s": Condition(change=partial(_tone, frequency=3e3, amplitude=0.01)),
     "offset of 0.02 rad/s": Condition(change=partial(_offset, by=0.02)),
     "gain 1 % too low": Condition(change=partial(_gain, by=0.99)),
+    "gain 4 % too low": Condition(change=partial(_gain, by=0.96)),
+    "gain 4 % too high": Condition(change=partial(_gain, by=1.04)),
+    "gain 4 % too low, stated": Condition(change=partial(_gain, by=0.96), calibration=0.04),
+    "gain 4 % too high, stated": Condition(change=partial(_gain, by=1.04), calibration=0.04),
     "drift of 0.05 rad/s": Condition(change=partial(_drift, by=0.05)),
     "rounded to 0.001 rad/s": Condition(decibels=40.0, quantum=0.001),
     "rounded to 0.005 rad/s": Condition(decibels=40.0, quantum=0.005),

@@ -128,7 +128,8 @@ def _assess(
     signal = record(speed, condition, rate, rng)
     known = cutoff(condition, rate) if condition.filtered else None
     for title, chart in maps.items():
-        found, row = gd.analysis.assess(signal, chart, anti_alias_filter=known), rows[title]
+        found = gd.analysis.assess(signal, chart, anti_alias_filter=known, calibration=condition.calibration)
+        row = rows[title]
         row.records += 1
         if found.conclusive:
             row.clear += 1

@@ -66,7 +66,7 @@ class Start:
 
 def _drain(scene: Scene) -> int:
     statistics = Statistics()
-    backend = choose_backend()
+    backend = choose_backend("auto", "auto")
     for _ in run_blocks(make_problem(scene), scene.run.rtol, scene.run.sample_count, backend, statistics):
         pass
     return statistics.steps

@@ -104,21 +104,23 @@ def brute_force(scene: gd.Scene, law: gd.wear.LossLaw, most: int, resolved: str)
     coverage = coverage_of(scene, resolved, PLACES)
     window = window_scene(scene, Cycles(0, 1), PLACES)
     state, kept = coverage.start.copy(), [coverage.start]
-    origin: engine.Origin | None = None
+    start = engine.Start()
     before = None
     for _ in range(most):
         own = window.replace({**coverage.changes(state), "run.duration": PATIENCE * window.run.duration})
-        solution = engine.solve(own, origin=origin)
+        solution = engine.solve(own, start=start)
         if solution.extremes is None or not math.isnan(solution.extremes.stick_time):
             return BruteForce(np.arange(len(kept)) / teeth, np.array(kept), True)
         # exposures go on where the coating is the same as in the cycle before
-        exposures = gained(solution, before if origin and origin.scene.coating == own.coating else None, own)
+        exposures = gained(
+            solution, before if start.scene and start.scene.coating == own.coating else None, own
+        )
         seen = coverage.exposure(own, with_exposures(solution, exposures), 1, state)
         state = np.clip(state + law.rate(state, seen) / teeth, 0.0, 1.0)
         kept.append(state)
-        began, before = 0.0 if origin is None else origin.time, solution
+        before = solution
         assert solution.checkpoint is not None
-        origin = engine.end_of(own, solution.checkpoint, began)
+        start = engine.end_of(own, solution.checkpoint, start.time)
     return BruteForce(np.arange(len(kept)) / teeth, np.array(kept), False)
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from gearidae.surfaces import surface_from
     from gearidae.torques import register_torque, torque_names, unregister_torque
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "GearidaeError",

@@ -1,8 +1,9 @@
-"""Progress of a run or a sweep: a bar on a terminal or in a notebook, or whatever the caller wants to be told."""
+"""Progress of a run or a sweep: a bar on a terminal or in a notebook, or calls of the caller's own function."""
 
 from __future__ import annotations
 
 import html
+import logging
 import sys
 import threading
 from collections.abc import Callable, Iterator
@@ -10,10 +11,14 @@ from contextlib import contextmanager, nullcontext
 from time import monotonic
 from typing import Any, Final
 
-__all__ = ["RunProgress", "SweepProgress", "run_progress", "sweep_progress"]
+__all__ = ["RunProgress", "SweepProgress", "in_words", "run_progress", "sweep_progress"]
+
+log = logging.getLogger(__name__)
 
 RunProgress = Callable[[float, int], None]
 """Told the simulated time reached [s] and the number of events so far."""
+_LONG: Final = 600.0
+"""Wall time above which a run is announced as long [s]."""
 _REDRAWN: Final = 0.1
 """Least time between two states of a bar in a notebook [s]."""
 SweepProgress = Callable[[float, int], None]
@@ -21,8 +26,8 @@ SweepProgress = Callable[[float, int], None]
 
 
 @contextmanager
-def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunProgress | None]:
-    """Show how far a run is.
+def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunProgress]:
+    """Show how far a run is, and say how long it will take if that is long.
 
     Parameters
     ----------
@@ -34,34 +39,64 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunPro
 
     Yields
     ------
-    callable or None
-        What the engine shall call.
+    callable
+        What the engine shall call. It also logs, once, how long the run will take at the rate of its first second, if
+        that is more than ten minutes.
     """
-    if callable(wanted):
-        yield wanted
-        return
     prefix, scale = ("ms", 1e3) if duration < 1.0 else ("s", 1.0)
-    with _bar("simulating", duration * scale) if wanted else nullcontext() as advance:
-        if advance is None:
-            yield None
-            return
-        begun: list[tuple[float, float]] = []
+    pace = _Pace(duration)
+    with (
+        _bar("simulating", duration * scale) if wanted and not callable(wanted) else nullcontext() as advance
+    ):
 
         def update(time: float, events: int) -> None:
-            now = monotonic()
-            if (
-                not begun
-            ):  # the rate counts from the first report: compiling is over, and a resumed run is back
-                begun.append((now, time))
-            elapsed = now - begun[0][0]
-            rate = (time - begun[0][1]) / elapsed * scale if elapsed > 0.0 else 0.0
-            advance(
-                time * scale,
-                f"{time * scale:.4g} of {duration * scale:.4g} {prefix}, {events} events, "
-                f"{rate:.3g} {prefix} per second",
-            )
+            rate = pace.rate(time) * scale
+            if callable(wanted):
+                wanted(time, events)
+            elif advance is not None:
+                advance(
+                    time * scale,
+                    f"{time * scale:.4g} of {duration * scale:.4g} {prefix}, {events} events, "
+                    f"{rate:.3g} {prefix} per second",
+                )
 
         yield update
+
+
+class _Pace:
+    """Rate of a run, from its first report on: compiling is over then, and a resumed run is back.
+
+    Parameters
+    ----------
+    end : float
+        Simulated time at which the run ends [s].
+    """
+
+    def __init__(self, end: float) -> None:
+        self._end = end
+        self._begun: tuple[float, float] | None = None
+        self._judged = False
+
+    def rate(self, time: float) -> float:
+        """Return the simulated time for each second of wall time, once the run has reached a time [s]."""
+        now = monotonic()
+        began, start = self._begun = self._begun or (now, time)
+        elapsed = now - began
+        rate = (time - start) / elapsed if elapsed > 0.0 else 0.0
+        if not self._judged and elapsed >= 1.0 and rate > 0.0:
+            self._judged = True
+            if (remaining := (self._end - time) / rate) > _LONG:
+                log.warning("at this rate the run takes another %s", in_words(remaining))
+        return rate
+
+
+def in_words(seconds: float) -> str:
+    """Write a wall time as people say it: ``"80 h"``."""
+    for unit, length in (("years", 3.156e7), ("days", 86_400.0), ("h", 3600.0), ("min", 60.0)):
+        number = seconds / length
+        if number >= 2.0:
+            return f"{number:.2g} {unit}" if number < 100.0 else f"{number:.3g} {unit}"
+    return f"{seconds:.2g} s"
 
 
 @contextmanager
@@ -123,15 +158,22 @@ def _notebook() -> Any:
 def _terminal_bar(title: str, total: float) -> Iterator[Advance]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.table import Column
 
+    console = Console(stderr=True)
+    # where room is scarce, words are cut off, and never the time that remains
+    bar_width = min(max(console.width - 80, 8), 40)
+    room = max(console.width - len(title) - bar_width - 2 * len("0:00:00") - 4, 8)
     columns = (
         TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.fields[words]}"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
+        BarColumn(bar_width),
+        TextColumn(
+            "{task.fields[words]}", table_column=Column(no_wrap=True, overflow="ellipsis", max_width=room)
+        ),
+        TimeElapsedColumn(table_column=Column(no_wrap=True)),
+        TimeRemainingColumn(table_column=Column(no_wrap=True)),
     )
-    with Progress(*columns, console=Console(stderr=True)) as bar:
+    with Progress(*columns, console=console) as bar:
         task = bar.add_task(title, total=total, words="")
         yield lambda done, words: bar.update(task, completed=done, words=words)
         bar.update(task, refresh=True)

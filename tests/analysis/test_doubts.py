@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearidae.analysis import doubts
-from gearidae.analysis.fitting import Heard, first_explanation
+from gearidae.analysis.fitting import RingSet, first_explanation
 from gearidae.analysis.ringing import Ring, rings_of
 from gearidae.analysis.signal import Signal
-from reference.toy_map import heard, model
+from reference.toy_map import model, ring_set
 
 RATE = 50e3
 TIME = np.arange(0.0, 0.3, 1.0 / RATE)
@@ -96,9 +96,9 @@ def image(frequency, rate):
 
 def told(fraction, rate, numbers=range(4)):
     """A record of a fraction as its samples show it, with the fraction that explains it without images."""
-    true = heard(fraction, numbers=numbers)
+    true = ring_set(fraction, numbers=numbers)
     shown = np.array([image(f, rate) for f in true.frequency])
-    return Heard(true.numbers, shown, 0.002 * shown, true.speed, 0.0)
+    return RingSet(true.numbers, shown, 0.002 * shown, true.speed, 0.0)
 
 
 def test_an_image_that_another_fraction_explains_is_named():
@@ -125,14 +125,14 @@ def test_images_are_sought_at_other_torques_too():
 
     At the map's torque nothing shows so: 6.6 and 10.4 kHz would be 0.4 and 3.4 kHz.
     """
-    slow = heard(0.55, torque=0.6, numbers=range(4))
+    slow = ring_set(0.55, torque=0.6, numbers=range(4))
     shown = np.array([image(f, 7e3) for f in slow.frequency])
-    record = Heard(slow.numbers, shown, 0.002 * shown, slow.speed, 0.0)
+    record = RingSet(slow.numbers, shown, 0.002 * shown, slow.speed, 0.0)
     # an answer that explains four impacts by 2.5 standard deviations each, and another fraction
-    fit = first_explanation(model(), heard(0.9), "start")
+    fit = first_explanation(model(), ring_set(0.9), "start")
     fit = replace(fit, chi2=fit.chi2 + 4 * 2.5**2)
     assert doubts._image_of(model(), record, fit, 7e3, math.inf) == pytest.approx(0.55, abs=0.03)
-    as_map = Heard(slow.numbers, shown, 0.002 * shown, 1.0, 0.0)
+    as_map = RingSet(slow.numbers, shown, 0.002 * shown, 1.0, 0.0)
     assert math.isnan(doubts._image_of(model(), as_map, fit, 7e3, math.inf))
 
 
@@ -172,18 +172,18 @@ def test_the_first_impact_does_not_tell_a_tone():
 
 def test_another_torque_makes_slow_sampling_doubtful():
     """The map's first impacts ring at up to 8.1 kHz: sampled at 19 kHz, some do not show."""
-    fit = first_explanation(model(), heard(0.97), "start")
+    fit = first_explanation(model(), ring_set(0.97), "start")
     for speed, rate, doubtful in (
         (1.0, 19e3, False),
         (1.02, 19e3, False),
         (1.05, 19e3, True),
         (1.05, 20e3, False),
     ):
-        record = replace(heard(0.97), speed=speed)
+        record = replace(ring_set(0.97), speed=speed)
         said = doubts.alias(model(), record, fit, rate, math.inf)
         assert ("a map over drive.torque can" in said) == doubtful
     over = model([0.8, 1.2])
-    record = replace(heard(0.97), speed=1.05)
+    record = replace(ring_set(0.97), speed=1.05)
     assert "drive.torque" not in doubts.alias(
         over, record, first_explanation(over, record, "start"), 19e3, math.inf
     )

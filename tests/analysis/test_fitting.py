@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gearidae.analysis.fitting import COMMON, Heard, first_explanation
+from gearidae.analysis.fitting import COMMON, RingSet, first_explanation
 from gearidae.analysis.map_model import BEFORE
-from reference.toy_map import FRACTIONS, IMPACTS, heard, model, sequences
+from reference.toy_map import FRACTIONS, IMPACTS, model, ring_set, sequences
 
 
 @pytest.mark.parametrize("fraction", [0.6, 0.85, 0.99])
 def test_the_true_fraction_has_no_misfit(fraction):
-    fit = first_explanation(model(), heard(fraction), "auto")
+    fit = first_explanation(model(), ring_set(fraction), "auto")
     assert fit.history == "start"
     assert fit.chi2[fit.best] == pytest.approx(0.0, abs=1e-12)
     assert fit.fractions[fit.best] == pytest.approx(fraction, abs=1e-9)
@@ -21,7 +21,7 @@ def test_the_true_fraction_has_no_misfit(fraction):
 
 def test_chi_square_is_that_of_correlated_errors():
     """The common error's minimum in closed form is the quadratic form of the inverse covariance."""
-    record = heard(0.8)
+    record = ring_set(0.8)
     fit = first_explanation(model(), record, "start")
     covariance = np.diag(0.002**2 + 0.005**2 + (0.006 * np.arange(IMPACTS)) ** 2) + COMMON**2
     row = np.searchsorted(FRACTIONS, 0.77)
@@ -31,7 +31,7 @@ def test_chi_square_is_that_of_correlated_errors():
 
 
 def test_a_record_without_its_start_is_placed_by_its_steps():
-    late = heard(0.8, first=2.5)
+    late = ring_set(0.8, first=2.5)
     assert not first_explanation(model(), late, "start").explains
     fit = first_explanation(model(), late, "auto")
     assert fit.history == "unknown"
@@ -40,7 +40,7 @@ def test_a_record_without_its_start_is_placed_by_its_steps():
 
 @pytest.mark.parametrize("torque", [0.75, 0.93, 1.0, 1.22])
 def test_torque_is_found_from_the_speed(torque):
-    fit = first_explanation(model([0.7, 1.0, 1.3]), heard(0.9, torque), "auto")
+    fit = first_explanation(model([0.7, 1.0, 1.3]), ring_set(0.9, torque), "auto")
     assert fit.fractions[fit.best] == pytest.approx(0.9, abs=1e-3)
     assert fit.torques[fit.best] == pytest.approx(torque, rel=1e-6, abs=0)
 
@@ -48,15 +48,15 @@ def test_torque_is_found_from_the_speed(torque):
 @pytest.mark.parametrize("torque", [0.8, 0.9, 1.1, 1.2])
 def test_a_shift_by_the_torque_stays_in_the_interval_of_a_map_at_one_torque(torque):
     """The shift is 0.4 ln(torque), within the bounds of 0 and 0.5 ln(torque); the interval reaches both."""
-    fit = first_explanation(model(), heard(0.85, torque), "auto")
+    fit = first_explanation(model(), ring_set(0.85, torque), "auto")
     assert fit.possible[0] < 0.85 < fit.possible[-1]
-    exact = first_explanation(model(), heard(0.85), "auto").possible
+    exact = first_explanation(model(), ring_set(0.85), "auto").possible
     assert np.ptp(fit.possible) > np.ptp(exact) + 0.5 * abs(0.5 * np.log(torque)) / (4.0 + IMPACTS)
 
 
 def test_an_unsteady_speed_widens_the_interval():
-    record = heard(0.85)
-    drifting = Heard(record.numbers, record.frequency, record.uncertainty, record.speed, 0.03)
+    record = ring_set(0.85)
+    drifting = RingSet(record.numbers, record.frequency, record.uncertainty, record.speed, 0.03)
     for chart in (model(), model([0.7, 1.0, 1.3])):
         steady, widened = (first_explanation(chart, each, "auto") for each in (record, drifting))
         assert np.ptp(widened.possible) > 1.3 * np.ptp(steady.possible)

@@ -62,6 +62,42 @@ def test_noise_and_steady_running_do_not_ring():
         assert found.impacts == 0
 
 
+def test_a_missing_sample_within_a_record_is_named():
+    speed = ringing([1283.0, 2000.0])
+    speed[300] = np.nan
+    for analyse in (characteristic_frequency, impact_windows, impact_spectrum):
+        with pytest.raises(gd.SceneError, match=r"sample 300 \(0.003 s\) is missing.*1 in all"):
+            analyse(speed, gear_teeth=TEETH)
+    with pytest.raises(gd.SceneError, match="sample 300"):
+        gd.analysis.power_spectrum(speed)
+
+
+def test_missing_samples_at_the_ends_bound_a_record():
+    """As those of a running mean, or of a run that ended early."""
+    speed = ringing([1283.0, 2000.0])
+    whole = characteristic_frequency(speed[4:-7], gear_teeth=TEETH)
+    speed[:4] = speed[-7:] = np.nan
+    found = characteristic_frequency(speed, gear_teeth=TEETH)
+    assert found.item() == pytest.approx(whole.item(), rel=1e-9, abs=0)
+    assert found.uncertainty.item() == pytest.approx(whole.uncertainty.item(), rel=1e-6, abs=0)
+
+
+def test_a_running_mean_is_analysed(runs):
+    """Over 50 us, which leaves what rings at 1 to 4 kHz."""
+    means = runs.isel(sam_fraction=slice(3)).rolling(time=5).mean()
+    found, known = characteristic_frequency(means), characteristic_frequency(runs.isel(sam_fraction=slice(3)))
+    assert np.allclose(found, known, rtol=0.02)
+
+
+def test_a_record_with_the_sign_reversed_is_read():
+    speed = ringing([1283.0, 2000.0])
+    known, found = (impact_frequencies(sign * speed, gear_teeth=TEETH) for sign in (1, -1))
+    assert found.identical(known)
+    spectra = [impact_spectrum(sign * speed, gear_teeth=TEETH) for sign in (1, -1)]
+    assert np.allclose(*spectra, rtol=1e-9, equal_nan=True)
+    assert impact_windows(-speed, gear_teeth=TEETH).identical(impact_windows(speed, gear_teeth=TEETH))
+
+
 def test_characteristic_frequencies_of_the_low_speed_runs(runs):
     found = characteristic_frequency(runs)
     assert found.dims == ("sam_fraction",)

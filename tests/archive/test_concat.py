@@ -144,10 +144,10 @@ def test_a_chain_is_one_run(run, place):
 def test_a_chain_of_three_joined_at_once_or_one_by_one(run):
     first, rest = cut_in_two(run, 3)
     second, third = cut_in_two(rest, 4)
-    steps_per_interval = gd.concat([first, second, third], "time")
+    at_once = gd.concat([first, second, third], "time")
     one_by_one = gd.concat([gd.concat([first, second], "time"), third], "time")
     gone = {"history": ""}
-    xr.testing.assert_identical(steps_per_interval.assign_attrs(gone), one_by_one.assign_attrs(gone))
+    xr.testing.assert_identical(at_once.assign_attrs(gone), one_by_one.assign_attrs(gone))
 
 
 def test_a_chain_may_change_its_torque_and_is_judged_by_its_last(run):

@@ -7,15 +7,20 @@ import signal
 import subprocess
 import sys
 import threading
+import time
+import tracemalloc
 from contextlib import contextmanager
 
+import netCDF4
+import numpy as np
 import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import library
+from gearidae.archive import library, save
 from gearidae.archive.integrity import CheckedStore
-from gearidae.archive.library import uninterrupted
+from gearidae.archive.library import LIBRARY, loaded, uninterrupted
+from gearidae.cli import main
 
 
 @pytest.fixture(scope="module")
@@ -152,3 +157,92 @@ def test_a_lock_that_lasts_is_an_error(ds, tmp_path, monkeypatch):
     with locked(path, 60.0), pytest.raises(gd.SceneError, match="damaged or not a netCDF4 file"):
         gd.open_archive(path)
     xr.testing.assert_identical(gd.open_archive(path), ds)
+
+
+# -- forks -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_fork_while_a_thread_writes_can_use_the_library(ds, tmp_path):
+    save(ds, tmp_path / "run.nc")
+    writing = threading.Event()
+
+    def write():
+        with LIBRARY:
+            writing.set()
+            time.sleep(0.2)
+
+    thread = threading.Thread(target=write)
+    thread.start()
+    writing.wait()
+    child = os.fork()
+    if not child:
+        try:
+            read = LIBRARY.acquire(timeout=20.0) and gd.open_archive(tmp_path / "run.nc").identical(ds)
+            os._exit(0 if read else 1)
+        finally:
+            os._exit(2)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    thread.join()
+    assert LIBRARY.acquire(timeout=20.0)
+    LIBRARY.release()
+
+
+# -- files that declare more than they hold --------------------------------------------------------------------------
+
+
+def declaring(path, samples, **storage):
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("time", samples)
+        for name, unit in (("time", "s"), ("gear_speed", "rad s-1"), *((f"x{n}", "1") for n in range(4))):
+            file.createVariable(name, "f8", ("time",), chunksizes=(2**16,), **storage).units = unit
+
+
+READERS = {
+    "archive": gd.open_archive,
+    "signal": gd.analysis.read_signal,
+    "map": gd.analysis.open_map,
+    "life": gd.studies.open_life,
+}
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_a_small_file_that_declares_gigabytes_is_refused(reader, tmp_path):
+    declaring(tmp_path / "large.nc", 200_000_000)
+    assert (tmp_path / "large.nc").stat().st_size < 100_000
+    tracemalloc.start()
+    with pytest.raises(gd.SceneError, match=r"declares 9.6 GB and has 0.0\d+ MB"):
+        READERS[reader](tmp_path / "large.nc")
+    assert tracemalloc.get_traced_memory()[1] < 100e6
+    tracemalloc.stop()
+
+
+@pytest.mark.parametrize("command", [["info"], ["plot"], ["report"]])
+def test_commands_refuse_it_in_one_line(command, tmp_path, capfd, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    declaring("large.nc", 200_000_000)
+    assert main([*command, "large.nc"]) == 2
+    (line,) = capfd.readouterr().err.splitlines()
+    assert "declares 9.6 GB" in line
+
+
+def test_a_chunk_that_is_too_large_is_refused(tmp_path):
+    with netCDF4.Dataset(tmp_path / "large.nc", "w") as file:
+        file.createDimension("time", None)
+        for name in ("time", "gear_speed"):
+            one = file.createVariable(name, "f8", ("time",), chunksizes=(2**28,), zlib=True)
+            one.units = "s"
+    with pytest.raises(gd.SceneError, match=r"declares 4\.29 GB"):
+        gd.analysis.read_signal(tmp_path / "large.nc")
+
+
+def test_what_compression_shrinks_most_is_read(tmp_path):
+    """Deflate at its best: 160 MB of zeros."""
+    path = tmp_path / "zeros.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("time", 20_000_000)
+        one = file.createVariable("rest", "f8", ("time",), zlib=True, complevel=9, chunksizes=(20_000_000,))
+        one[:] = np.zeros(20_000_000)
+    assert path.stat().st_size < 170_000
+    assert loaded(path).rest.size == 20_000_000

@@ -15,6 +15,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.archive import check_target, combine, save, to_dataset
 from gearidae.archive import netcdf as netcdf_module
+from gearidae.archive import target as target_module
 from gearidae.archive.definition import CHUNK
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
@@ -214,14 +215,14 @@ def test_damage_within_samples_is_noticed(large, tmp_path):
 def _wait_while_writing(path, started):
     scene = gd.preset("teodorescu2009_low_speed")
     template = xr.open_dataset(path, engine="netcdf4").load()
-    original = netcdf_module.sync
+    original = target_module.sync
 
     def stop_here(target):
         started.set()
         threading.Event().wait()
         original(target)
 
-    netcdf_module.sync = stop_here
+    target_module.sync = stop_here
     save(template.assign_attrs(title=scene.name), path, overwrite=True)
 
 

@@ -19,6 +19,7 @@ from gearidae.archive import run_summary as account_module
 from gearidae.archive.growing import GrowingArchive
 from gearidae.plot import spectra, style
 from gearidae.report import build_report, series
+from same import assert_same
 
 teeth = import_module("gearidae.studies.tooth_contacts")
 SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
@@ -66,7 +67,7 @@ def long(make_solution, tmp_path, lengths):
 
 def test_outcome_and_account(long, lengths):
     opened, ds = long
-    assert outcomes(opened) == outcomes(ds)
+    assert_same(outcomes(opened), outcomes(ds))
     piecewise, whole = account_module.account(opened), account_module.account(ds)
     assert piecewise.as_json() == whole.as_json()  # in which what is not told, NaN, equals itself
     assert 1 < max(lengths) <= PIECE + 2  # pieces of the account overlap
@@ -119,6 +120,8 @@ def test_pieces(size, monkeypatch):
     assert found.mean == pytest.approx(values[5:900].mean(), rel=1e-12, abs=0)
     assert pieces.reached(array) == 900
     assert pieces.reached(array[:700]) == 700
+    assert pieces.reached(array.shift(time=3)) == 903
+    assert pieces.reached(array[900:]) == 0
     assert pieces.first_above(array, 1.5) == int(np.argmax(values > 1.5))
     assert pieces.first_above(array, 100.0) == 0
     assert pieces.count(array, values[3]) == 1

@@ -23,6 +23,8 @@ for module in filter(None, modules):
 import tempfile, subprocess, pathlib  # of the standard library, which knows what this system has
 for name in lacking:
     delattr(os, name)
+if "sched_getaffinity" in lacking and hasattr(os, "process_cpu_count"):  # of Python 3.13, which calls the first
+    os.process_cpu_count = os.cpu_count
 
 import gearidae as gd
 from gearidae.archive import growing

@@ -313,3 +313,31 @@ def test_nothing_is_compiled_for_a_new_law(impact):
         dataset = gd.simulate(impact)
     assert compiled.buffer == []
     assert "spring" in dataset.attrs["scene"]
+
+
+def broken(**changes):
+    """A law with one fault, registered while it is tested."""
+    return type("Broken", (Spring,), {"name": "broken"} | changes)
+
+
+def fails(cls, tip, unit):
+    return tip.no_such_property
+
+
+FAULTS = {
+    "an attribute that is not there": (classmethod(fails), r"Broken\.of fails: AttributeError"),
+    "a division by zero": (classmethod(lambda cls, tip, unit: 1 / 0), r"Broken\.of fails: ZeroDivisionError"),
+    "other arguments": (classmethod(lambda cls, tip: None), r"Broken\.of fails: TypeError"),
+    "nothing": (classmethod(lambda cls, tip, unit: None), r"Broken\.of must return an AsperityLaw, not None"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_law_that_fails_is_named_with_its_function(fault):
+    of, words = FAULTS[fault]
+    register(broken(of=of))
+    try:
+        with pytest.raises(SceneError, match=rf"contact\.asperity = broken: {words}"):
+            solve(gd.preset("roller_slow").replace({"contact.asperity": "broken"}))
+    finally:
+        unregister("broken")

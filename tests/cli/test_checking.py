@@ -5,7 +5,14 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+import xarray as xr
+
+import gearidae as gd
 from gearidae.cli import main
+from gearidae.cli.tables import show_outcomes
+from gearidae.cli.threshold import _rows as threshold_rows
+from gearidae.report.tables import outcome_table
 
 CASE = str(Path(__file__).parents[2] / "cases" / "low_speed.toml")
 
@@ -30,6 +37,7 @@ def test_check_says_that_the_input_is_valid_and_how_far_the_model_holds(capfd):
         "within a factor of about three",
     ):
         assert expected in out
+    assert "Verdicts of runs are a mean over many gears: 5.13e-08 asperities in contact" in out
     assert "Warning:" not in out
 
 
@@ -37,7 +45,7 @@ def test_check_doubts_a_roughness_of_ten_micrometres(capfd):
     assert main(["check", CASE, "--set", "surface.roughness=10 um"]) == 0
     out = words(capfd)
     assert "Warning: surface.roughness = 10 um is larger than mesh.backlash = 200 nm" in out
-    assert re.search(r"Warning: this run is expected to take \d+ h \(", out)
+    assert re.search(r"expected wall time \d+\.\d days", out)
 
 
 def test_check_of_a_roller(capfd):
@@ -47,10 +55,66 @@ def test_check_of_a_roller(capfd):
     assert "inertia" not in out
 
 
-def test_run_announces_a_long_run_before_it(tmp_path, monkeypatch, capfd):
-    """An output that cannot be written ends the run at once, after the announcement."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "there.nc").write_bytes(b"x")
-    settings = ["--set", "run.duration=1e6", "run.samples=11"]
-    assert main(["run", CASE, "-o", "there.nc", *settings]) == 2
-    assert "this run is expected to take 7.4 h" in capfd.readouterr().err
+def test_check_estimates_a_scheduled_drive(capfd):
+    assert main(["check", "start_up"]) == 0
+    out = words(capfd)
+    assert "from the mean torques over the run" in out
+    assert "gear speed 268" in out
+    assert "does not overcome" not in out
+
+
+def test_a_run_says_beside_its_verdict_that_it_is_a_mean(tmp_path, capfd):
+    target = str(tmp_path / "low.nc")
+    assert main(["run", CASE, "-o", target, "--set", "run.duration=1e-3", "run.samples=11"]) == 0
+    assert "The verdict is a mean over many gears: 5.13e-08 asperities in contact" in words(capfd)
+
+
+def test_check_counts_events_beside_samples(tmp_path, capfd):
+    """Within the factor of three that the number of steps is known to."""
+    case = str(Path(CASE).with_name("high_speed.toml"))
+    ds = gd.simulate(gd.load_case(case).replace({"run.duration": "2 ms"}))
+    assert main(["check", case, "--set", "run.duration=2 ms"]) == 0
+    samples, events = re.search(r"([\d.]+) MB, and some ([\d.]+) MB of events", words(capfd)).groups()
+    time = ds.drop_dims("event").nbytes, ds.drop_dims("time").nbytes
+    assert float(samples) == pytest.approx(1e-6 * time[0], rel=0.01, abs=0)
+    assert 1.0 / 3.0 < float(events) / (1e-6 * time[1]) < 3.0
+
+
+def test_check_says_that_a_resistance_is_cut_off(capfd):
+    assert main(["check", CASE, "--set", "load.harmonic={amplitude = 1e-18, frequency = 1e3}"]) == 0
+    assert "Warning: load.harmonic swings by 1 aN m about a dry resistance of 0 N m" in words(capfd)
+
+
+def test_smallest_speed_of_a_gear_at_rest_is_zero(capfd):
+    """It swings about its rest by less than the tolerance resolves beside its largest speed."""
+    scene = gd.preset("teodorescu2009").replace({"drive.torque": 5e-12, "initial.gear_speed": 0.0})
+    ds = gd.simulate(scene.replace({"run.samples": "off"}))
+    assert -1e-6 * float(ds.max_gear_speed) < float(ds.min_gear_speed) < 0.0
+    show_outcomes(ds)
+    assert re.search(r"mesh exits\) 0 262\.7 ", words(capfd))
+    assert ">0<" in outcome_table(ds)
+    turned_back = ds.assign(min_gear_speed=-1e-5 * ds.max_gear_speed)
+    show_outcomes(turned_back)
+    assert " -0.00" in words(capfd)
+
+
+@pytest.mark.parametrize(
+    ("sticks", "passes", "shown"),
+    [
+        (4.123456e-18, 4.123461e-18, "sticks at 4.123456e-18 N m, passes at 4.123461e-18 N m"),
+        (0.574, 0.577, "sticks at 0.574, passes at 0.577"),
+        (0.573828, 0.574219, "sticks at 0.5738, passes at 0.5742"),
+        (4.12e-18, 4.62e-18, "sticks at 4.12e-18 N m, passes at 4.62e-18 N m"),
+    ],
+)
+def test_digits_tell_the_ends_of_a_bracket_apart(sticks, passes, shown):
+    unit = "1" if sticks > 1e-3 else "N m"
+    found = xr.Dataset(
+        {
+            name: ("exits", [value])
+            for name, value in (("limit", passes), ("sticks", sticks), ("passes", passes))
+        },
+        {"exits": [100], "run": [0.0]},
+    )
+    found["limit"].attrs["units"] = unit
+    assert any(shown in remark for _, _, remark in threshold_rows(found, "drive.torque"))

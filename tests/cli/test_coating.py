@@ -79,6 +79,33 @@ def test_assess_a_record_from_a_file(chart, folder, capfd):
     assert capfd.readouterr().out.startswith("no impacts: ")
 
 
+def test_a_laboratorys_record_needs_no_repair(chart, folder, capfd):
+    """Semicolons, decimal commas, two lines above the headings, revolutions per minute, six samples missing."""
+    ds = gd.simulate(gd.preset(CASE).replace({"coating.sam_fraction": 0.72}))
+    rpm = [f"{value:.6f}" for value in ds.gear_speed.values * 60 / (2 * np.pi)]
+    for number in (500, 501, 502, 9000, 20000, 29000):
+        rpm[number] = ""
+    rows = "".join(f"{1e3 * time:.5f};{speed}\n" for time, speed in zip(ds.time.values, rpm, strict=True))
+    heads = "Prüfstand 2\nAbtastrate;100 kHz\nZeit [ms];Drehzahl [1/min]\n"
+    (folder / "rig.csv").write_text(heads + rows.replace(".", ","), encoding="cp1252")
+    given = ["assess", "rig.csv", "--map", chart, "--columns", "Zeit [ms]", "Drehzahl [1/min]"]
+    assert main(given) == 2
+    error = capfd.readouterr().err
+    assert "rig.csv" in error
+    assert "sample 500 (0.005 s) is missing" in error
+    assert "--bridge" in error
+    for more in ([], ["--skip", "2", "--delimiter", ";", "--decimal", ","]):
+        assert main([*given, "--bridge", "3", "--calibration", "1 %", "--offset", "0.01 rad/s", *more]) == 0
+        said, answer = capfd.readouterr().out.splitlines()
+        assert said == "rig.csv: semicolons, decimal commas, 2 lines skipped, 6 samples bridged"
+        assert answer.startswith("clear: SAM fraction 0.72")
+    assert main([*given, "--bridge", "3", "--json"]) == 0
+    assert json.loads(capfd.readouterr().out)["reading"] == said.removeprefix("rig.csv: ")
+    for wrong in (["--calibration", "much"], ["--offset", "1 V"], ["--bridge", "-1"], ["--decimal", "x"]):
+        assert main([*given, *wrong]) == 2
+        assert capfd.readouterr().err.count("\n") == 1
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -49,6 +49,7 @@ def page():
     yield names
     exec(ending, names)
     assert not {"soft", "springs"} & set(law_names())
+    assert "pressed" not in gd.wear.loss_law_names()
 
 
 # -- asperity laws ---------------------------------------------------------------------------------------------------
@@ -128,6 +129,25 @@ def test_the_energy_balance_of_the_motor_closes(page):
     assert balance(run)["drive_work"] > 0.0
 
 
+# -- loss laws -------------------------------------------------------------------------------------------------------
+
+
+def test_the_loss_is_proportional_to_coverage_work_and_pressure(page):
+    law = gd.wear.loss_law("pressed", coefficient="2000 m^2/J", pressure="5 Pa")
+    work, pressure = np.array([1e-8, 3e-8]), np.array([0.1, 0.4])
+    seen = gd.wear.Exposure(np.full(2, 1e3), np.full(2, 1e-9), work, pressure)
+    coverage = np.array([0.5, 0.0])
+    np.testing.assert_allclose(law.rate(coverage, seen), [-0.5 * 2000.0 * 1e-8 * 0.1 / 5.0, 0.0], rtol=1e-14)
+
+
+def test_a_life_is_inverse_to_the_coefficient(page):
+    slow, fast = page["slow"], page["fast"]
+    assert slow.attrs["ending"] == fast.attrs["ending"] == "coverage"
+    # the same windows, scaled: rounding of the integration over passages
+    np.testing.assert_allclose(slow.passages, 2.0 * fast.passages, rtol=1e-9)
+    np.testing.assert_allclose(slow.coverage, fast.coverage, rtol=1e-9)
+
+
 # -- changes of the sources ------------------------------------------------------------------------------------------
 
 
@@ -157,7 +177,7 @@ ratio, approach = 1.6, 0.7
 scene = SimpleNamespace(contact_ratio=ratio, coast_phase=2.0 * approach + 0.5, time_unit=1.0, length_unit=1.0)
 extremes = SimpleNamespace(mesh_exits=0)
 m = SimpleNamespace(scene=scene, state=SimpleNamespace(turns=0.0, extremes=extremes))
-events, count = np.zeros((99, 5)), 0
+events, count = np.zeros((99, 6)), 0
 for sign in (1.0, -1.0):
     mesh_marks.set_marks(m, sign * -0.01)
     first = count
@@ -175,15 +195,15 @@ for sign in (1.0, -1.0):
     np.testing.assert_allclose(found[:, 0] - found[:, 2], approach, atol=1e-9)
 """
 
-DRIVE_TORQUE = """
+DRIVE_POWER = """
 from gearidae.archive.variables import SAMPLES, columns
 from gearidae.records import GEAR_COLUMNS
-assert columns(False)[9] == GEAR_COLUMNS[9] == "drive_torque"
-assert SAMPLES["drive_torque"].units == "N m"
+assert columns(False)[12] == GEAR_COLUMNS[12] == "drive_power"
+assert SAMPLES["drive_power"].units == "W"
 import inspect
 from gearidae.engine.motion import observe
-assert "row[GEAR.drive_torque] = drive" in inspect.getsource(observe.observe)
-assert observe.GEAR.drive_torque == 9
+assert "row[GEAR.drive_power] = " in inspect.getsource(observe.observe)
+assert observe.GEAR.drive_power == 12
 """
 
 
@@ -191,7 +211,7 @@ assert observe.GEAR.drive_torque == 9
     ("is_event", "files", "script"),
     [
         (True, {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
-        (False, {"records/columns.py", "engine/motion/observe.py"}, DRIVE_TORQUE),
+        (False, {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
     ],
     ids=["event", "variable"],
 )

@@ -28,7 +28,7 @@ SHORT = {
 @pytest.mark.parametrize("name", SHORT)
 def test_every_case_runs_the_same_in_both(name, monkeypatch):
     """With IDA's own formulas, iteration and interpolant, as the portable driver has them."""
-    choose_backend("native")  # with its self-test, which has to see the driver as it is
+    choose_backend("native", "auto")  # with its self-test, which has to see the driver as it is
     monkeypatch.setattr(native_driver, "run", partial(native_driver.run, as_ida=True))
     scene = gd.load_case(CASES / f"{name}.toml")
     if name in ("low_speed", "high_speed"):
@@ -57,15 +57,15 @@ def test_every_case_runs_the_same_in_both(name, monkeypatch):
 
 
 def test_auto_prefers_the_native_driver():
-    assert choose_backend("auto") == "native"
+    assert choose_backend("auto", "auto") == "native"
 
 
 def test_auto_falls_back_and_says_why(monkeypatch, caplog):
     monkeypatch.setattr("gearidae.engine.backend.unavailable", lambda: "SUNDIALS is of another kind")
-    assert choose_backend("auto") == "sksundae"
+    assert choose_backend("auto", "auto") == "sksundae"
     assert "SUNDIALS is of another kind" in caplog.text
     with pytest.raises(SceneError, match="another kind"):
-        choose_backend("native")
+        choose_backend("native", "auto")
 
 
 def test_other_builds_of_sundials_are_refused(monkeypatch):

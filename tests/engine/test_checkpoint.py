@@ -1,6 +1,5 @@
 """Checkpoints: taken back unchanged, refused where they are damaged, and harmless where damage goes unseen."""
 
-import itertools
 import re
 import subprocess
 import sys
@@ -15,7 +14,7 @@ from gearidae.engine.backend import run_blocks
 from gearidae.engine.elastic.rows import JOINED, row_of
 from gearidae.engine.integrate import portable
 from gearidae.engine.integrate.driver import Ending
-from gearidae.engine.model.state import EMPTY, MATERIALS, STATE, U, V
+from gearidae.engine.model.state import MATERIALS, STATE, U, V
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.checkpoint import HEADER, pack
 from gearidae.records import Statistics
@@ -154,8 +153,8 @@ def test_a_checkpoint_of_another_scene_is_refused(sound):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
-def test_damage_is_refused_or_harmless(name, sound, tmp_path):
-    """What is let through is run by the native driver in another process, whose death would be seen."""
+def test_forged_words_end_without_a_signal(name, sound, tmp_path):
+    """A forged number gives a wrong run: the native driver runs it in another process, whose death would be seen."""
     let_through, count = [], 0
     for word, copy in damage(name, sound[name]):
         count += 1
@@ -164,7 +163,6 @@ def test_damage_is_refused_or_harmless(name, sound, tmp_path):
         assert np.isfinite(copy[HEADER + WORDS :]).all()
         let_through.append((word, copy))
     assert count >= 500
-    assert count > 2 * len(let_through)
     path = tmp_path / "let_through.npy"
     np.save(path, np.array([copy for _, copy in let_through]))
     program = Path(__file__).parents[1] / "reference" / "damaged.py"
@@ -175,9 +173,7 @@ def test_damage_is_refused_or_harmless(name, sound, tmp_path):
     assert run.returncode == 0, (let_through[min(len(lines), len(let_through) - 1)][0], run.stderr[-2000:])
     assert [line for line in run.stderr.splitlines() if not COMPILING.fullmatch(line)] == []
     assert len(lines) == len(let_through)
-    # at this share of a run nothing else may come of it; most of what is let through is a counter or a sum
     assert set(lines) <= {ending.status for ending in Ending} | {f"{BUDGET}_blocks"}
-    assert lines.count("finished") > 0.5 * len(lines)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -187,90 +183,6 @@ def test_a_state_that_is_no_number_is_refused(name, sound):
             copy = sound[name].copy()
             copy[HEADER + WORDS + place] = value
             assert refused(name, copy)
-
-
-# -- numbers that follow from others ---------------------------------------------------------------------------------
-
-
-def state_of(checkpoint):
-    """State of a checkpoint, a view of it."""
-    return checkpoint[HEADER : HEADER + WORDS].view(STATE).view(np.recarray)[0]
-
-
-def held(name, checkpoint):
-    """Indices of the histories that are about a pair in contact."""
-    found = [k for k, h in enumerate(state_of(checkpoint).history) if h.pair != EMPTY and h.gap < 5.0]
-    assert found, name
-    return found
-
-
-FORGED = {
-    "no contact below the contact gap": lambda h: setattr(h, "in_contact", 1 - h.in_contact),
-    "a gap beyond the cut-off": lambda h: setattr(h, "gap", 500.0),
-    "a gap aside": lambda h: setattr(h, "gap", h.gap + 0.01),
-    "a rate aside": lambda h: setattr(h, "gap_rate", h.gap_rate + 10.0),
-    "the other direction": lambda h: setattr(h, "direction", -h.direction),
-    "adhered energy without asperities": lambda h: h.adhered_energy.__setitem__(slice(None), -1e30),
-    "a lag at no turning point": lambda h: setattr(h, "lag_rate", 1e300),
-    "an absurd joined height": lambda h: h.joined.__setitem__(slice(None), -1e9),
-}
-
-
-@pytest.mark.parametrize("forgery", FORGED)
-@pytest.mark.parametrize("name", SCENES)
-def test_a_history_is_that_of_its_gap(name, forgery, sound):
-    for k in held(name, sound[name]):
-        copy = sound[name].copy()
-        before = state_of(copy).history[k].gap_rate
-        FORGED[forgery](state_of(copy).history[k])
-        if forgery == "no contact below the contact gap" and abs(touching(name, copy, k)) < 1.5:
-            continue  # so near that either may be
-        if forgery == "the other direction" and abs(before) < 0.1:
-            continue  # at a turning point
-        assert refused(name, copy), (forgery, k)
-
-
-def touching(name, checkpoint, k):
-    """Distance of a pair's gap from that of contact onset."""
-    problem = make_problem(SCENES[name]).of_checkpoint(checkpoint)
-    return state_of(checkpoint).history[k].gap - problem.model.scene.contact_gap
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_adhered_energy_goes_with_the_joined_height(name, sound):
-    for k in held(name, sound[name]):
-        copy = sound[name].copy()
-        h = state_of(copy).history[k]
-        if "elastic" in name or not h.adhered_energy.any():
-            continue  # an elastic contact keeps that of its points
-        h.adhered_energy *= 1.001
-        assert refused(name, copy), k
-
-
-@pytest.mark.parametrize(
-    "forgery",
-    [
-        {"drive_work": 1e30},
-        {"adhesion_loss": -1e30},
-        {"throughput": 1e300, "peak_kinetic": 1e300},
-        {"peak_kinetic": 0.0},
-        {"start_kinetic": 1e30},
-    ],
-    ids=str,
-)
-@pytest.mark.parametrize("name", SCENES)
-def test_energies_are_of_the_order_of_what_has_flowed(name, forgery, sound):
-    copy = sound[name].copy()
-    for key, value in forgery.items():
-        state_of(copy).energy[key] = value
-    assert refused(name, copy)
-
-
-def test_marks_are_those_next_to_the_phase(sound):
-    for key, by in itertools.product(("mark_low", "mark_high"), (-2.0, -0.1, 0.1, 2.0)):
-        copy = sound["dry gears"].copy()
-        setattr(state_of(copy), key, state_of(copy)[key] + by)
-        assert refused("dry gears", copy), (key, by)
 
 
 # -- nodes -----------------------------------------------------------------------------------------------------------
@@ -292,39 +204,6 @@ def test_only_what_is_state_is_kept_of_the_nodes(nodes):
     problem = make_problem(SCENES["elastic roller"])
     assert problem.model.rows.size > m.scene.node_rows_at + 2 * n + MATERIALS * points
     np.testing.assert_array_equal(row_of(m, 0, JOINED), checkpoint[first + 2 * n : first + 2 * n + points])
-
-
-@pytest.mark.parametrize("node", [0, 3, -1])
-def test_rows_of_nodes_are_those_of_the_state(nodes, node):
-    checkpoint, n, points, first = nodes
-    place = range(n)[node]
-    wrong = {
-        "gap": (first + place, checkpoint[first + place] + 0.5),
-        "deflection": (HEADER + WORDS + 2 + place, checkpoint[HEADER + WORDS + 2 + place] + 0.5),
-        "share": (first + n + place, -0.1),
-        "large share": (first + n + place, 4.1),
-        "joined": (first + 2 * n + range(points)[node], 1e3),
-        "joined below": (first + 2 * n + range(points)[node], -1e3),
-    }
-    for what, (word, value) in wrong.items():
-        copy = checkpoint.copy()
-        copy[word] = value
-        assert refused("elastic roller", copy), what
-
-
-def test_nodes_of_no_pair_are_empty(sound):
-    """Before contact there is nothing to remember: no number may stand there."""
-    name = "elastic roller"
-    problem = make_problem(SCENES[name])
-    m = problem.prepare(SCENES[name].run.rtol, SCENES[name].run.sample_count)
-    m.state.history[0].pair = EMPTY
-    m.state.near[:] = 0
-    start = pack(m, problem.digest, problem.depth, problem.start)
-    assert not refused(name, start)
-    for word in (start.size - 1, HEADER + WORDS + problem.start.size):
-        copy = start.copy()
-        copy[word] = 1e-3
-        assert refused(name, copy)
 
 
 # -- what restoring leaves -------------------------------------------------------------------------------------------

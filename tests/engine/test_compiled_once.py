@@ -5,13 +5,14 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numba
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typing_extensions import TypeAliasType
 
 from gearidae.compiled import compiled, compiled_once, is_ready, make_ready, ready
 from gearidae.compiled.kinds import signature_of
@@ -91,6 +92,15 @@ def _bare(one: float) -> Floats: ...
 def _inside(one: float) -> tuple[float, Floats]: ...
 
 
+Scalar = TypeVar("Scalar", bound=np.generic)
+Array = TypeAliasType("Array", np.ndarray[Any, np.dtype[Scalar]], type_params=(Scalar,))
+Numbers = TypeAliasType("Numbers", Array[np.float64])
+Pair = TypeAliasType("Pair", tuple[float, int])
+
+
+def _array_behind_an_alias(one: float) -> Numbers: ...
+
+
 @pytest.mark.parametrize(
     ("function", "message"),
     [
@@ -98,12 +108,26 @@ def _inside(one: float) -> tuple[float, Floats]: ...
         (_unnamed, "Named'> in its annotations"),
         (_bare, "must not be an array"),
         (_inside, "must not be an array"),
+        (_array_behind_an_alias, "must not be an array"),
     ],
 )
 def test_annotations_that_are_no_signature_are_refused(function, message):
     with pytest.raises(TypeError, match=message) as refused:
         signature_of(function)
     assert function.__name__ in str(refused.value)
+
+
+def _with_aliases(one: Numbers, two: Array[np.float64]) -> Pair: ...
+
+
+def _with_types(
+    one: np.ndarray[Any, np.dtype[np.float64]], two: np.ndarray[Any, np.dtype[np.float64]]
+) -> tuple[float, int]: ...
+
+
+def test_aliases_of_types_are_what_they_stand_for():
+    """NDArray of numpy 2.5 is an alias that takes a parameter; here on every version of Python and numpy."""
+    assert signature_of(_with_aliases) == signature_of(_with_types)
 
 
 @compiled_once("a part of this test")

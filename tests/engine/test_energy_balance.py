@@ -399,14 +399,14 @@ def test_a_resumed_run_has_the_ledger_of_an_uninterrupted_one():
 
     def take(block, statistics, wall_time):
         if block.checkpoint is not None and not starts:
-            starts.append(Start(block.checkpoint, statistics=statistics, time=block.time))
+            starts.append(Start(checkpoint=block.checkpoint, statistics=statistics, reached=block.time))
 
     whole = engine.follow(scene, take, backend="native")
-    rest = engine.follow(scene, lambda *_: None, backend="native", begin=starts[0])
-    assert 0.0 < starts[0].time < 2e-3
+    rest = engine.follow(scene, lambda *_: None, backend="native", start=starts[0])
+    assert 0.0 < starts[0].reached < 2e-3
     assert rest.balance == whole.balance
-    at_checkpoint = engine.kept_at(scene, starts[0].checkpoint, "native")[0]
-    assert at_checkpoint.time == pytest.approx(starts[0].time, rel=1e-12, abs=0)
+    at_checkpoint = engine.kept_at(scene, starts[0].checkpoint)[0]
+    assert at_checkpoint.time == pytest.approx(starts[0].reached, rel=1e-12, abs=0)
     assert abs(at_checkpoint.residual) <= at_checkpoint.bound(scene.run.rtol, roller=False)
 
 

@@ -356,4 +356,4 @@ def test_forged_exposures_are_refused(worn):
         forged = words.copy()
         forged[-5] = value
         with pytest.raises(gd.SceneError, match="exposures"):
-            gd.engine.kept_at(scene, forged, "native")
+            gd.engine.kept_at(scene, forged)

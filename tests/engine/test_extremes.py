@@ -92,7 +92,7 @@ def test_a_resumed_run_keeps_the_same_extremes():
         scene,
         lambda *_: None,
         backend="native",
-        begin=engine.Start(checkpoint=start.checkpoint, time=start.time),
+        start=engine.Start(checkpoint=start.checkpoint, reached=start.time),
     )
     assert repr(again.extremes) == repr(ended.extremes)  # to the last bit, NaN too
 
@@ -179,3 +179,26 @@ def test_the_force_holds_the_mesh_damping():
     momentum = gears.pinion_inertia * (speed[-1] - speed[0]) / gears.pinion_base_radius
     assert np.abs(momentum) > 0.0
     assert impulse == pytest.approx(momentum, abs=1e-5 * step * np.sum(np.abs(force)))
+
+
+HERTZ = gd.load_case("cases/start_up.toml").replace(
+    {"contact.asperity": "hertz", "contact.model": "asperity"}
+)
+
+
+def test_a_gear_without_adhesion_is_trapped_by_none():
+    """Dry resistance stops it a thousand times within half a pitch."""
+    kept = engine.solve(HERTZ.replace({"run.samples": "off"})).extremes
+    assert kept.reversals > 100
+    assert (kept.turn_backs, kept.time_adhering) == (0, 0.0)
+
+
+def test_a_gear_that_dry_resistance_holds_is_not_trapped_by_adhesion():
+    """Adhesion turns a worn gear back, again and again; with a load it does so until dry resistance holds the gear."""
+    worn = STUCK.replace({"coating.sam_fraction": 0.4, "run.samples": "off"})
+    free, held = (engine.solve(worn.replace({"load.torque": torque})) for torque in (0.0, 2e-16))
+    assert free.extremes.turn_backs > 1
+    assert free.extremes.time_adhering > 0.0
+    stick = held.events.time[held.events.kind == EventKind.STICK][-1]
+    assert held.extremes.turn_backs == 0
+    assert held.extremes.time_adhering < stick < 0.1 * worn.run.duration

@@ -11,8 +11,8 @@ from gearidae.engine.continuing import end_of
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import asperity_guard
 from gearidae.engine.motion.residual import mesh_forces, roller_force
-from gearidae.engine.run_ends import Start
 from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.start import Start
 from gearidae.errors import SceneError
 from gearidae.records import EventKind
 from gearidae.scene import preset
@@ -301,8 +301,8 @@ def test_a_resumed_run_is_equal_to_the_last_bit(backend):
     assert len(kept) == 3
     for checkpoint, time, rest in kept:
         more = []
-        begin = Start(checkpoint=checkpoint, time=time)
-        done = follow(STOPPED, lambda block, *_, more=more: more.append(block), backend=backend, begin=begin)
+        start = Start(checkpoint=checkpoint, reached=time)
+        done = follow(STOPPED, lambda block, *_, more=more: more.append(block), backend=backend, start=start)
         for name in ("rows", "events"):
             ours, theirs = (np.concatenate([getattr(one, name) for one in part]) for part in (more, rest))
             assert np.array_equal(ours, theirs)
@@ -335,7 +335,7 @@ def test_joined_asperities_that_no_run_has_left_are_refused(change, told):
     assert checkpoint[first + 4] > 0.0
     change(checkpoint, first)
     with pytest.raises(SceneError) as refused:
-        kept_at(STOPPED, checkpoint, "native")
+        kept_at(STOPPED, checkpoint)
     assert told in str(refused.value)
 
 
@@ -343,29 +343,29 @@ def test_a_block_of_another_length_is_refused():
     checkpoint = stopped("native")[1][0][0]
     for size in (checkpoint.size - 64, checkpoint.size + 64, checkpoint.size - 1):
         with pytest.raises(SceneError, match="checkpoint"):
-            kept_at(STOPPED, np.resize(checkpoint, size), "native")
+            kept_at(STOPPED, np.resize(checkpoint, size))
 
 
 def test_a_run_goes_on_with_another_coating_and_torque():
     """Nothing but settings: as if it had not ended, to what chaos leaves. Another coating: its energy is booked."""
     first = BARE.replace({"run.duration": 10e-6, "run.samples": 11, "run.rtol": 1e-9})
     end = run(first)
-    origin = end_of(first, end.checkpoint, 0.0)
+    begin = end_of(first, end.checkpoint, 0.0)
     whole = run(first.replace({"run.duration": 15e-6, "run.samples": 16}))
     more = {"run.duration": 5e-6, "run.samples": 6}
-    same = solve(first.replace(more), origin=origin)
+    same = solve(first.replace(more), start=begin)
     np.testing.assert_allclose(same.samples["gear_speed"], whole.samples["gear_speed"][10:], rtol=1e-5)
     assert same.balance.model_change == 0.0
     before = end.samples["asperities_in_contact"][-1]
     for changes in ({"coating.sam_fraction": 1.0}, {"coating.sam_fraction": 0.5}, {"drive.torque": 2e-11}):
-        other = solve(first.replace(more | changes), origin=origin)
+        other = solve(first.replace(more | changes), start=begin)
         assert other.status == "finished"
         if changes.get("coating.sam_fraction") != 0.5:  # a half may leave all that are joined bare
             assert (other.balance.model_change != 0.0) == ("coating.sam_fraction" in changes)
         assert abs(other.balance.residual) < 1e-6 * other.balance.drive_work
         assert other.samples["asperities_in_contact"][0] <= before
     with pytest.raises(SceneError, match=r"contact\.seed"):
-        solve(first.replace(more | {"contact.seed": 1}), origin=origin)
+        solve(first.replace(more | {"contact.seed": 1}), start=begin)
 
 
 def test_the_guard_of_a_fresh_model_is_positive():

@@ -100,7 +100,7 @@ def test_step_control_that_is_not_heeded_is_named_and_idas_formulas_are_taken(
     assert kept["bdf"] == ""
     # what runs is what has passed, and it is said
     scene = gd.preset("teodorescu2009").replace({"contact.model": "asperity"})
-    assert choose_backend("auto") == "native"
+    assert choose_backend("auto", "auto") == "native"
     ds = gd.simulate(scene, t_end=2e-5, samples=21)
     assert (ds.attrs["backend"], ds.attrs["method"]) == ("native", "bdf")
     plain = gd.simulate(scene.replace({"run.method": "bdf"}), t_end=2e-5, samples=21)

@@ -218,8 +218,8 @@ MUTANTS = (
     Mutant(
         "dry resistance that holds twice as much as it should",
         "engine/events/dry_resistance.py",
-        "return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0",
-        "return 2.0 * max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0",
+        "return dry_limit(m, t, y) + 2.0",
+        "return 2.0 * dry_limit(m, t, y) + 2.0",
         ("properties/test_event_times.py",),
     ),
     Mutant(
@@ -309,8 +309,8 @@ MUTANTS = (
     Mutant(
         "a joining loss recorded at the turning point, and taken from the radius's power at the next look",
         "engine/followers/joining.py",
-        "        _book_before(m, coast, pair, loss, length)",
-        "        pass",
+        "            _book_before(m, coast, pair, y[PHASE], losses)",
+        "            pass",
         ("engine/test_energy_balance.py",),
     ),
     Mutant(

@@ -66,6 +66,29 @@ def legend_of(ax):
     return [text.get_text() for text in ax.get_legend().get_texts()]
 
 
+def test_a_picture_of_many_runs_says_how_many_it_shows(sweep):
+    many = sweep_of(LOW, np.linspace(1.0, 0.45, 12).tolist())
+    assert gd.plot.gear_speed(many).get_legend().get_title().get_text() == "7 of 12 runs"
+    assert ", 7 of 12 runs:" in gd.plot.contact_torque(many).get_title(loc="left")
+    assert gd.plot.gear_speed(sweep).get_legend().get_title().get_text() == ""
+
+
+@pytest.mark.parametrize("length", [1, 20, 60])
+def test_legends_of_long_names_stay_on_the_picture(length):
+    names = [f"{number} {'longest ' * length}"[:length] for number in range(10, 17)]
+    scenes = [LOW.replace({"name": name}) for name in names]
+    ds = combine(LOW, {"name": names}, scenes, [solution_of(each) for each in scenes])
+    for draw in (gd.plot.gear_speed, gd.plot.power_spectrum, gd.plot.overview):
+        figure = draw(ds)
+        figure = figure if isinstance(figure, Figure) else figure.get_figure(root=True)
+        figure.draw_without_rendering()
+        width = figure.bbox.width
+        for ax in figure.axes:
+            if ax.get_legend() is not None:
+                box = ax.get_legend().get_window_extent()
+                assert (box.x0 >= 0.0, box.x1 <= width) == (True, True)
+
+
 def test_lines_are_the_samples_in_the_unit_of_the_axis(single):
     ax = gd.plot.transmission_error(single)
     line = ax.get_lines()[0]

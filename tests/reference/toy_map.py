@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearidae.analysis.fitting import Heard
+from gearidae.analysis.fitting import RingSet
 from gearidae.analysis.map_model import AFTER, BEFORE, MapModel
 
 FRACTIONS = np.linspace(0.5, 1.0, 1001)
@@ -37,8 +37,8 @@ def model(torques=None):
     )
 
 
-def heard(fraction, torque=1.0, first=0.0, numbers=range(IMPACTS)):
+def ring_set(fraction, torque=1.0, first=0.0, numbers=range(IMPACTS)):
     """What an undisturbed record of it shows, from its start or from an impact later on."""
     numbers = np.array(list(numbers))
     x = 7.0 + (4.0 + first + numbers) * (1.0 - fraction) + ELASTICITY * np.log(torque)
-    return Heard(numbers, np.exp(x), 0.002 * np.exp(x), float(np.sqrt(torque)), 0.0)
+    return RingSet(numbers, np.exp(x), 0.002 * np.exp(x), float(np.sqrt(torque)), 0.0)

@@ -280,3 +280,13 @@ def test_nothing_is_replaced_unasked(roller, tmp_path):
     assert target.read_text() == "mine"
     assert write_report(roller, target, overwrite=True) == target
     assert "rebounds" in target.read_text(encoding="utf-8")
+
+
+def test_a_running_mean_has_a_report_without_the_teeth():
+    """Its first samples are missing; the histories of the teeth need all of them."""
+    ds = gd.simulate(gd.preset("teodorescu2009_low_speed"), t_end=0.1, samples=5001)
+    assert '<div id="teeth-viewer">' in build_report(ds)
+    assert '<div id="teeth-viewer">' not in build_report(ds.rolling(time=5).mean())
+    ds["gear_angle"][3000] = np.nan
+    with pytest.raises(gd.SceneError, match="gear_angle = nan: sample 3000 is missing"):
+        build_report(ds)

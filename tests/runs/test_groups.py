@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.runs import batch, leaving
+from gearidae.runs import batch, run_result
 from sweeps import without_times
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3})
@@ -78,8 +78,8 @@ def test_one_that_dies_does_not_end_the_others_of_its_group(monkeypatch, expecte
             raise MemoryError("too large")
         return solved(scene, backend, keep, on_progress)
 
-    solved = leaving.solve_and_leave
-    monkeypatch.setattr(leaving, "solve_and_leave", deed)
+    solved = run_result.solve_and_leave
+    monkeypatch.setattr(run_result, "solve_and_leave", deed)
     ds = run(Elsewhere())
     low = ds.sam_fraction.values < 0.6
     assert (ds.status.values[low] == "crashed").all()

@@ -34,7 +34,20 @@ def test_nothing_is_said_of_the_shipped_cases(case):
         (LOW, {"surface.roughness": 10e-6}, "addendum of the teeth, 3.89 um"),
         (LOW, {"surface.asperity_radius": 5e-6}, "surface.asperity_radius = 5 um is larger than the tooth"),
         (LOW, {"surface.asperity_density": 1e11}, "asperities stand 3.16 um apart"),
-        (LOW, {"run.duration": 1e6}, "this run is expected to take 7.4 h"),
+        (
+            LOW,
+            {"load.harmonic": {"amplitude": 1e-18, "frequency": 1e3}},
+            "load.harmonic swings by 1 aN m about a dry resistance of 0 N m: it is cut off",
+        ),
+        (
+            LOW,
+            {
+                "load.torque": 1e-18,
+                "load.schedule": [[0, 3e-18], [0.1, 0]],
+                "load.harmonic": [{"amplitude": -1e-18, "frequency": f} for f in (1e3, 2e3)],
+            },
+            "load.harmonic swings by 2 aN m about a dry resistance of 1 aN m",
+        ),
         (ROLLER, {"surface.roughness": 1e-6}, "higher than roller.radius = 5 um"),
     ],
 )
@@ -43,6 +56,9 @@ def test_what_can_hardly_be_meant_is_said_with_key_and_number(scene, changes, wo
 
 
 def test_the_limits_themselves():
+    assert not doubts(
+        LOW.replace({"load.torque": 1e-18, "load.harmonic": {"amplitude": 1e-18, "frequency": 1e3}})
+    )
     assert not doubts(LOW.replace({"surface.roughness": 0.199e-6, "run.duration": 1e-9}))
 
 

@@ -10,7 +10,7 @@ import pytest
 import gearidae as gd
 from gearidae.runs.estimates import mean_drive_torque
 from gearidae.runs.pair_contact import pair_contact
-from gearidae.runs.run_time import RunTime, run_time
+from gearidae.runs.run_time import run_time
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
@@ -36,22 +36,8 @@ def test_a_run_ten_times_as_long_takes_ten_times_as_long():
 
 def test_rough_as_a_tooth_takes_days():
     """20 s of computing brought this scene to 1.84e-5 s of its 0.3 s: some 90 h in all."""
-    hours = run_time(LOW.replace({"surface.roughness": 10e-6})).seconds / 3600.0
+    hours = run_time(LOW.replace({"surface.roughness": 10e-6, "initial.gap": 36e-9})).seconds / 3600.0
     assert 30.0 < hours < 270.0
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [
-        (0.0079, "0.0079 s"),
-        (119.0, "1.2e+02 s"),
-        (600.0, "10 min"),
-        (288e3, "3.3 days"),
-        (1.3e8, "4.1 years"),
-    ],
-)
-def test_times_are_said_as_people_say_them(seconds, words):
-    assert RunTime(1.0, seconds, 1.0).words() == words
 
 
 @pytest.mark.parametrize("changes", [{"drive.torque": 0.0}, {"drive.torque": 1.0}, {"drive.torque": 1e-39}])

@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +11,18 @@ import pytest
 
 import gearidae as gd
 from gearidae.archive.end_state import end_state_of, packed_state
+from gearidae.archive.run_summary import counted_over
+from gearidae.cli.tables import show_account
+from gearidae.engine.continuing import checkpoint_of_start, end_of
+from gearidae.engine.model.state import EMPTY
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.start import Start
 from gearidae.errors import SceneError
 from gearidae.records import EventKind
+from gearidae.report.tables import account_table
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+START_UP = next(case for case in CASES if case.stem == "start_up")
 DRIVERS = ("native", "sksundae")
 LOW = gd.preset("teodorescu2009_low_speed").replace(
     {"run.duration": 2.0**-8, "run.samples": 65, "coating.sam_fraction": 0.6}
@@ -243,7 +253,7 @@ def test_bad_starts(tmp_path):
 
 
 def test_a_damaged_state_is_refused_or_checked():
-    """Text that is none, words cut short, another layout, another scene, and numbers that no run leaves."""
+    """Text that is none, words cut short, another layout, another scene, and what is no number."""
     first = gd.simulate(LOW)
     words, _ = end_state_of(first)
     text = first.attrs["end_state"]
@@ -258,7 +268,6 @@ def test_a_damaged_state_is_refused_or_checked():
     refused(end_state=packed_state(words[:-3]))
     refused(start_time=float("nan"))
     refused(start_time="x")
-    refused(start_time=1.0)
     refused(scene=json.dumps(LOW.replace({"coating.sam_fraction": 0.7}).to_dict()))
     for place, value in ((0, 1.0), (1, 5.0), (5, 3.0), (6, 9.0)):
         changed = words.copy()
@@ -342,3 +351,125 @@ BAD_STOPS = ["never", "turns", "turns -1", "turns x", "turns 1e99", 5, "turns na
 def test_bad_stops(stop):
     with pytest.raises(SceneError, match=r"run\.stop"):
         LOW.replace({"run.stop": stop})
+
+
+# -- knots that the solver cannot tell from the cut --------------------------------------------------------------------
+
+CUT = LOW.run.duration
+NEAR_THE_CUT = {
+    "before": [(0.0, 0.0), (CUT * (1.0 - 1e-13), 1e-18), (1.5 * CUT, 2e-18)],
+    "after": [(0.0, 0.0), (CUT * (1.0 + 1e-13), 1e-18), (1.5 * CUT, 2e-18)],
+}
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+@pytest.mark.parametrize("key", ["drive.schedule", "load.schedule"])
+@pytest.mark.parametrize("side", NEAR_THE_CUT)
+def test_a_knot_next_to_the_cut_is_passed_once(side, key, interpolation):
+    """The solver leaves such a knot out at the end of the first run; the second enters its segment."""
+    time, value = zip(*NEAR_THE_CUT[side], strict=True)
+    table = {"time": np.array(time), "value": np.array(value), "interpolation": interpolation}
+    scene = LOW.replace({key: table})
+    first = gd.simulate(scene)
+    second = gd.simulate(scene, start=first)
+    assert second.attrs["status"] == "finished"
+    knots = np.concatenate(
+        [ds.event_time[ds.event_kind == EventKind.SCHEDULE_KNOT] for ds in (first, second)]
+    )
+    expected = [1.0, 1.5] if interpolation == "linear" else [1.5]  # a cubic schedule has no knots inside
+    assert knots == pytest.approx(np.array(expected) * CUT, rel=2e-13, abs=0)
+
+
+# -- numbers that are carried over into other units --------------------------------------------------------------------
+
+WORN = LOW.replace(
+    {"coating.sam_fraction": 0.4, "run.exposures": 8, "run.samples": "off", "run.duration": "0.16 s"}
+)
+OF_EACH_RUN = {
+    *("settled_gear_speed", "settled_spread", "speed_fall", "speed_rise", "late_gear_speed", "late_spread"),
+    "last_min_gear_speed",
+}
+OF_THE_TORQUES = {"pitch_work", "speed_work", "torque_work"}  # bounds by the loads that a scene is about
+UNITS = {
+    "ten times the torque": {"drive.torque": 4.5e-17},
+    "a schedule": {"drive.schedule": [(0.0, 1e-17), (1.0, 3e-18)]},
+    "a held speed": {"drive.speed": 6.0, "drive.speed_gain": 1e-17},
+    "dry load": {"load.torque": 2e-20},
+    "another tolerance": {"drive.torque": 4.5e-18, "run.rtol": 1e-8},
+}
+
+
+def kept(scene, words, start):
+    """Extremes, energy balance and the histories' rates (SI) in a checkpoint."""
+    problem = make_problem(scene, start=Start(start, 0.0)).of_checkpoint(words)
+    problem.prepare(scene.run.rtol, scene.run.sample_count)
+    time, y = problem.restored(words)
+    balance, extremes = problem.kept(time, y, np.zeros_like(y))
+    scene_units, histories = problem.model.scene, problem.model.state.history
+    speed = float(scene_units.length_unit / scene_units.time_unit)
+    energy = float(scene_units.force_unit * scene_units.length_unit)
+    used = histories[histories["pair"] != EMPTY]
+    power = energy / float(scene_units.time_unit)
+    scaled = {
+        "gap_rate": speed,
+        "lag": energy,
+        "lag_power": power,
+        "lag_rate": power / float(scene_units.time_unit),
+    }
+    rates = {name: np.sort(used[name]) * unit for name, unit in scaled.items()}
+    numbers = asdict(extremes) | {f"energy {name}": one for name, one in asdict(balance).items()} | rates
+    return {
+        name: one
+        for name, one in numbers.items()
+        if name.removeprefix("energy ") not in OF_EACH_RUN | OF_THE_TORQUES
+    }
+
+
+def test_every_number_of_a_chain_is_the_same_in_other_units():
+    """Torques set the units of time and force: what a run has kept is the same quantity in those of the next."""
+    scene, run = WORN, gd.simulate(WORN)
+    assert float(run.time_adhering) > 0.01
+    for change in UNITS.values():
+        words, start = end_state_of(run)
+        before, at_end = kept(scene, words, start), end_of(scene, words, start)
+        scene = WORN.replace({"run.duration": "1 ms"} | change)
+        after = kept(scene, checkpoint_of_start(scene, at_end), at_end.time)
+        for name, number in before.items():
+            # sums are rounded as sums are: energies over all that was exchanged, times over the time of the chain
+            size = {"energy": before["energy throughput"], "time": at_end.time}.get(
+                re.split("[ _]", name)[0], 0.0
+            )
+            size = max(size, np.max(np.abs(number), initial=0.0))
+            np.testing.assert_allclose(after[name], number, rtol=1e-12, atol=1e-12 * size, err_msg=name)
+        run = gd.simulate(scene, start=run)
+        grown = float(run.time_adhering) - before["time_adhering"]
+        assert -1e-12 <= grown <= 1e-3 + 1e-12
+
+
+def test_rows_of_a_continued_run_say_whether_they_are_of_the_chain(capsys):
+    first = gd.simulate(LOW)
+    second = gd.simulate(LOW.replace({"drive.torque": 9e-18}), start=first)
+    rows = {
+        name: counted_over(name, second.attrs) for name in ("time_at_rest", "time_adhering", "drive_work")
+    }
+    assert rows == {"time_at_rest": "this run", "time_adhering": "the chain", "drive_work": "the chain"}
+    assert counted_over("drive_work", first.attrs) == ""
+    show_account(second)
+    printed = capsys.readouterr().out
+    assert re.search("time to speed.*; this run", printed)
+    assert re.search("drive work.*; the chain", printed)
+    page = account_table(second)
+    assert "lost to adhesion (the chain)" in page
+
+
+def test_time_at_rest_of_a_continued_run_is_its_own():
+    """The gear of a start-up is at rest for its first 3 ms: cut there, each run counts its own part."""
+    scene = gd.load_case(START_UP).replace({"run.duration": "1 ms", "run.samples": "off"})
+    first = gd.simulate(scene)
+    second = gd.simulate(scene.replace({"run.duration": "4 ms"}), start=first)
+    told = [json.loads(run.attrs["account"])["time_at_rest"] for run in (first, second)]
+    slip = float(second.event_time[second.event_kind == EventKind.SLIP][0])
+    assert told[0] == pytest.approx(1e-3, rel=1e-12)
+    assert told[1] == pytest.approx(slip - 1e-3, rel=1e-9)
+    still = gd.simulate(scene, start=first)  # held all the time, without an event of its own
+    assert json.loads(still.attrs["account"])["time_at_rest"] == pytest.approx(1e-3, rel=1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import json
 import os
 import signal
@@ -103,6 +104,19 @@ def test_lists_and_their_entries_can_be_swept():
     ds = gd.sweep(LOW, {"drive.harmonic": [[], [harmonic]]}, samples=11)
     assert ds.harmonic.values.tolist() == [0, 1]
     assert not np.array_equal(ds.gear_speed[0], ds.gear_speed[1])
+
+
+@pytest.mark.parametrize(
+    "over",
+    [
+        {"coating.sam_fraction": range(10**12)},
+        {"coating.sam_fraction": itertools.count()},
+        {"coating.sam_fraction": range(2000), "coating.energy": range(2000)},
+    ],
+)
+def test_a_sweep_of_too_many_runs_is_refused_before_it_is_planned(over):
+    with pytest.raises(gd.SceneError, match="a sweep has 1000000 runs at most"):
+        gd.sweep(LOW, over)
 
 
 def test_numpy_values_and_generators():

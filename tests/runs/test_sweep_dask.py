@@ -11,7 +11,7 @@ import gearidae as gd
 from gearidae.cli import main
 from gearidae.runs import batch
 from gearidae.runs.executors import dask_executor
-from gearidae.runs.leaving import solve_group
+from gearidae.runs.run_result import solve_group
 from sweeps import without_times
 
 distributed = pytest.importorskip("distributed")

@@ -69,7 +69,7 @@ WRONG = [
     ("mesh.damping", 1e10, "must lie in 0..1e+09"),
     ("initial.gear_speed", 1e13, "must lie in -1e+12..1e+12 rad/s"),
     ("initial.gear_speed", 1e-31, "0 or at least 1e-30 in size"),
-    ("initial.gap", 1e-24, "cannot be told beside backlash and roughness"),
+    ("initial.gap", 1e-24, "cannot be resolved beside backlash and roughness"),
     ("run.duration", 1e-300, "must lie in 1e-20..1e+12 s"),
     ("run.duration", 1e13, "must lie in 1e-20..1e+12 s"),
     ("drive.schedule", [[1.0, 1.0], [1.0 + 1e-15, 2.0]], "too close to step between"),
@@ -100,7 +100,7 @@ WRONG = [
     ("drive.schedule", [[0, 1], [0, 2]], "times must strictly increase"),
     ("drive.schedule", [["2 ms", 1], ["1 ms", 2]], "times must strictly increase"),
     ("load.schedule", {}, "must be a list of [time, value] pairs"),
-    ("drive.harmonic", "x", "must be a table {amplitude, frequency, phase}"),
+    ("drive.harmonic", "x", "must be a table {amplitude, frequency or order, phase}"),
     ("mesh.static_error", 5, "must be a table {order, amplitude, phase}"),
     # tables
     ("gears", 5, "must be a table"),
@@ -116,6 +116,28 @@ WRONG = [
     ("initial.gap", "1 um", "flanks would overlap"),
     ("initial.gap", "-0.1 um", "flanks would overlap"),
 ]
+
+
+WRONG_KNOTS: list[Any] = [
+    ("load.schedule", [[0, 1e-12], [1e-3, -1e-12]], "[1][1]", "must lie in 0..1e+09 N m"),
+    ("load.schedule", [["0 s", "-1 pN m"]], "[0][1]", "must lie in 0..1e+09 N m"),
+    ("load.schedule", {"time": [0, 1], "value": [0.0, -1e-12]}, "[1][1]", "must lie in 0..1e+09 N m"),
+    ("drive.schedule", [[0, 1e-12], [NAN, 1e-12]], "[1][0]", "must be a finite number"),
+    ("drive.schedule", [[0, 1e-12], [1e13, 1e-12]], "[1][0]", "must lie in 0..1e+12 s"),
+    ("drive.schedule", [[0, 1e-12], [1e-3, 1e-300]], "[1][1]", "0 or at least 1e-40 in size"),
+    ("drive.schedule", [[0, True]], "[0][1]", "must be a number in N m"),
+    ("drive.schedule", [[0, 10**400]], "[0][1]", "must be a finite number"),
+    ("drive.speed", [[0, 1.0], [1, 1e13]], "", "must lie in -1e+12..1e+12 rad/s"),
+]
+
+
+@pytest.mark.parametrize(("key", "value", "place", "reason"), WRONG_KNOTS)
+def test_wrong_knot_is_named(gears: Scene, key: str, value: Any, place: str, reason: str) -> None:
+    """Plain numbers are checked all at once; what is wrong is named all the same."""
+    with pytest.raises(SceneError) as caught:
+        gears.replace({key: value, "drive.speed_gain": 1e-15} if key == "drive.speed" else {key: value})
+    assert caught.value.key.startswith(f"{key}{place}")
+    assert reason in str(caught.value)
 
 
 @pytest.mark.parametrize(("key", "value", "reason"), WRONG)

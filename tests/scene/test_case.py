@@ -7,9 +7,19 @@ import pytest
 
 from gearidae.errors import SceneError
 from gearidae.scene import dump_case, load_case, preset
+from gearidae.scene.literal import literal
 
 SHIPPED = [
-    *("alternating", "braking", "high_speed", "inspection", "low_speed", "roller_fast", "roller_slow"),
+    *(
+        "alternating",
+        "braking",
+        "high_speed",
+        "inspection",
+        "low_speed",
+        "microengine",
+        "roller_fast",
+        "roller_slow",
+    ),
     *("run_down", "running", "start_up"),
 ]
 
@@ -148,3 +158,40 @@ def test_wrong_lines_are_named(tmp_path: Path, cases: Path, line: str, wrong: st
     with pytest.raises(SceneError) as caught:
         load_case(path)
     assert caught.value.key == key
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a." * 400_000 + "a = 1", "[" + "'a' . " * 100_000 + "a]", 'x = {"a".' + "b." * 100_000 + "b = 1}"],
+)
+def test_key_of_very_many_parts_is_refused_and_not_read(
+    tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """tomllib needs gigabytes and minutes for it."""
+    monkeypatch.setattr("tomllib.loads", lambda text: pytest.fail("it was read"))
+    path = tmp_path / "case.toml"
+    path.write_text(text)
+    with pytest.raises(SceneError, match="a key of more than 32 parts"):
+        load_case(path)
+
+
+def test_many_numbers_and_dots_are_no_long_key(tmp_path: Path, cases: Path) -> None:
+    text = (cases / "low_speed.toml").read_text()
+    knots = ", ".join(f"[0.{i:03}, 1.5e-18]" for i in range(500))
+    path = tmp_path / "case.toml"
+    path.write_text(
+        text.replace("[drive]", f"[drive]\nschedule = [{knots}]  # a.b.c, see gearidae.scene.case")
+    )
+    scene = load_case(path)
+    assert scene.drive is not None
+    assert len(scene.drive.schedule) == 500
+
+
+@pytest.mark.parametrize(
+    "text", ["{" + "a." * 50_000 + "a = 1}", "1" * 5000, "[" * 5000, "{a=" * 300 + "1" + "}" * 300]
+)
+def test_values_that_no_table_holds_are_refused_in_a_line(text: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        preset("teodorescu2009").replace({"drive": literal(text)})
+    assert caught.value.key.startswith("drive")
+    assert len(str(caught.value)) < 250

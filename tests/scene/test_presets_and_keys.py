@@ -12,17 +12,17 @@ from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, load_cas
 # Every key that users' scripts rely on.
 CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
-    "gears": "pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
+    "gears": "density pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
     "face_width",
     "mesh": "backlash tip_relief_radius radius_force damping static_error static_error.order static_error.amplitude "
     "static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
     "provenance",
     "coating": "sam_fraction energy pairing thickness pinion_fraction gear_fraction pinion_table gear_table",
-    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
-    "law.parameters speed speed_gain",
-    "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.phase law law.name "
-    "law.parameters",
+    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
+    "law.name law.parameters speed speed_gain",
+    "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
+    "harmonic.phase law law.name law.parameters",
     "initial": "gear_speed gap mesh_phase",
     "run": "balance exposures duration samples rtol method stop checkpoints",
     "roller": "radius mass width speed height",
@@ -178,6 +178,51 @@ def test_a_wrong_module_is_named(changes: dict[str, Any], message: str) -> None:
     data["gears"] |= changes
     with pytest.raises(SceneError, match=message):
         Scene.from_dict(data)
+
+
+def test_density_gives_the_inertias_of_discs() -> None:
+    """Silicon, pitch circles of 36.943 and 147.77 um: base radius over cos 20 deg."""
+    scene = preset("teodorescu2009")
+    discs = scene.replace({"gears.density": "2330 kg/m^3"})
+    assert discs.gears is not None
+    for inertia, radius in ((discs.gears.pinion_inertia, 34.715e-6), (discs.gears.gear_inertia, 138.86e-6)):
+        pitch = radius / math.cos(math.radians(20.0))
+        assert inertia == pytest.approx(math.pi / 2 * 2330.0 * 2e-6 * pitch**4, rel=1e-12, abs=0)
+    assert "density" not in discs.to_dict()["gears"]
+    data = scene.to_dict()
+    del data["gears"]["pinion_inertia"], data["gears"]["gear_inertia"], data["gears"]["pinion_base_radius"]
+    data["gears"] |= {"density": 2330.0, "module": scene.geometry.module}
+    again = Scene.from_dict(data)
+    assert again.gears is not None
+    assert again.gears.gear_inertia == pytest.approx(discs.gears.gear_inertia, rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"density": 2330.0}, r"gears\.density = 2330\.0: cannot be given beside pinion_inertia"),
+        (
+            {"density": 2330.0, "pinion_inertia": None},
+            r"gears\.density = 2330\.0: cannot be given beside gear_inertia",
+        ),
+        ({"density": "2 g", "pinion_inertia": None, "gear_inertia": None}, r"gears\.density = 2 g: the unit"),
+        (
+            {"density": 0.0, "pinion_inertia": None, "gear_inertia": None},
+            r"gears\.density = 0\.0: must lie in 1",
+        ),
+        ({"pinion_inertia": None}, r"gears\.pinion_inertia"),
+    ],
+)
+def test_density_and_inertias_are_never_given_both(changes: dict[str, Any], message: str) -> None:
+    data = preset("teodorescu2009").to_dict()
+    data["gears"] |= changes
+    with pytest.raises(SceneError, match=message):
+        Scene.from_dict(
+            {**data, "gears": {name: value for name, value in data["gears"].items() if value is not None}}
+        )
+    if changes == {"density": 2330.0}:
+        with pytest.raises(SceneError, match=r"cannot be given beside gears\.gear_inertia"):
+            preset("teodorescu2009").replace({"gears.density": 2330.0, "gears.gear_inertia": 1e-19})
 
 
 def test_a_schedule_is_taken_away_by_an_empty_list() -> None:

@@ -19,7 +19,7 @@ def scene():
 
 
 def test_laws_of_the_package_are_found():
-    assert torque_names() == ("motor",)
+    assert torque_names() == ("microengine", "motor")
     assert torque_law("motor").function(0.0, 3.0, np.array([2.0, 12.0])) == 1.5
 
 
@@ -54,8 +54,11 @@ def test_one_number_needs_no_list(scene):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"name": "moter", "parameters": [1, 2]}, r"drive\.law\.name = moter: must be one of motor"),
-        ({"name": 3}, r"drive\.law\.name = 3: must be one of motor"),
+        (
+            {"name": "moter", "parameters": [1, 2]},
+            r"drive\.law\.name = moter: must be one of microengine, motor",
+        ),
+        ({"name": 3}, r"drive\.law\.name = 3: must be one of microengine, motor"),
         ({"parameters": [1, 2]}, r"drive\.law\.name = \(missing\)"),
         ({"name": "motor"}, r"drive\.law\.parameters = \[\]: the law motor takes 2 numbers"),
         ({"name": "motor", "parameters": [1, 2, 3]}, r"drive\.law\.parameters = .*takes 2 numbers"),
@@ -93,5 +96,107 @@ def test_what_is_no_number_of_parameters_is_refused(count):
 def test_names_are_taken_once():
     with pytest.raises(SceneError, match="motor: is the name of another torque law"):
         gd.register_torque("motor")(lambda t, speed, p: 0.0)
-    with pytest.raises(SceneError, match=r"law\.name = mine: must be one of motor"):
+    with pytest.raises(SceneError, match=r"law\.name = mine: must be one of microengine, motor"):
         gd.unregister_torque("mine")
+
+
+ENGINE = {
+    "name": "microengine",
+    "radius": "5 um",
+    "force": "1 uN",
+    "frequency": [["0 ms", 0.0], ["2 ms", "0.6 kHz"]],
+}
+
+
+def test_named_parameters_have_units_and_defaults(scene, tmp_path):
+    scene = scene.replace({"drive.law": ENGINE})
+    assert scene.drive.law.numbers() == (5e-6, 1e-6, 0.0, 0.0, 0.0, 0.0, 0.0, 2e-3, 600.0)
+    assert Scene.from_dict(scene.to_dict()) == scene
+    file = tmp_path / "case.toml"
+    file.write_text(dump_case(scene), encoding="utf-8")
+    assert load_case(file) == scene
+    changed = scene.replace({"drive.law.force": "2 uN", "drive.law.frequency": "300 Hz"})
+    assert changed.drive.law.numbers() == (5e-6, 2e-6, 0.0, 0.0, 0.0, 0.0, 300.0)
+    assert changed != scene
+
+
+def test_parameters_without_a_unit_take_any(scene):
+    gd.register_torque("named", parameters=("stiffness", "speed", "share"))(lambda t, angle, speed, p: p[0])
+    try:
+        law = {"name": "named", "stiffness": "2 uN/um", "speed": "30 deg/s", "share": 0.5}
+        changed = scene.replace({"load.law": law})
+        assert changed.load.law.numbers() == pytest.approx((2.0, np.pi / 6, 0.5), rel=1e-15, abs=0)
+        for text in ("2 kittens", "a lot", "2 m m m)"):
+            with pytest.raises(SceneError, match=r"load\.law\.speed"):
+                scene.replace({"load.law": law | {"speed": text}})
+    finally:
+        gd.unregister_torque("named")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"force": None}, r"law\.force = \(missing\): is required by the law microengine: amplitude F0"),
+        ({"radius": "5 s"}, r"law\.radius = 5 s: the unit 's' does not fit; .* m"),
+        (
+            {"spring": 2},
+            r"law\.spring = 2: unknown key; did you mean|law\.spring = 2: unknown key; known are",
+        ),
+        (
+            {"parameters": [1.0]},
+            r"law\.parameters = \[1\.0\]: the law microengine has them by name: radius, force",
+        ),
+        ({"radius": [[0, 1], [1, 2]]}, r"law\.radius"),
+        ({"frequency": [[0, 1], [0, 2]]}, r"law\.frequency = .*increas"),
+        ({"frequency": [[0, 1], [1, "2 s"]]}, r"law\.frequency = .*the unit 's' does not fit"),
+        ({"frequency": [[0, 1], [1]]}, r"law\.frequency"),
+        ({"frequency": []}, r"law\.frequency"),
+    ],
+)
+def test_named_parameters_that_do_not_fit(scene, changes, message):
+    given = {name: value for name, value in (ENGINE | changes).items() if value is not None}
+    with pytest.raises(SceneError, match=message) as refused:
+        scene.replace({"drive.law": given})
+    assert "\n" not in str(refused.value)
+
+
+def test_unknown_parameters_are_no_keys(scene):
+    with pytest.raises(SceneError, match=r"drive\.law\.strength = 2: unknown key"):
+        scene.replace({"drive.law": ENGINE}).replace({"drive.law.strength": 2})
+    with pytest.raises(SceneError, match=r"drive\.law\.radius"):
+        scene.replace({"drive.law": MOTOR}).replace({"drive.law.radius": 2})
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        (("a", "a"), "names that differ"),
+        (("name",), "not name and not parameters"),
+        (("a b",), "must be a word"),
+        ("radius", "a list of names"),
+        (-1, "whole number"),
+    ],
+)
+def test_declarations_that_do_not_fit(parameters, message):
+    with pytest.raises(SceneError, match=message):
+        gd.register_torque("never", parameters=parameters)(lambda t, speed, p: 0.0)
+    assert "never" not in torque_names()
+
+
+def test_a_law_takes_three_or_four_arguments():
+    with pytest.raises(SceneError, match="takes 2 arguments; must take t, speed, p or t, angle, speed, p"):
+        gd.register_torque("never")(lambda t, p: 0.0)
+
+
+@pytest.mark.parametrize("given", [{"amplitude": 1e-12}, {"amplitude": 1e-12, "frequency": 1.0, "order": 2}])
+def test_a_harmonic_follows_time_or_angle(scene, given):
+    with pytest.raises(SceneError, match="either the frequency in time or the order"):
+        scene.replace({"drive.harmonic": given})
+
+
+def test_a_harmonic_of_the_angle_survives_every_way_of_writing_a_scene(scene, tmp_path):
+    scene = scene.replace({"drive.harmonic": {"amplitude": 1e-18, "order": 3}})
+    assert Scene.from_dict(scene.to_dict()) == scene
+    file = tmp_path / "case.toml"
+    file.write_text(dump_case(scene), encoding="utf-8")
+    assert load_case(file) == scene

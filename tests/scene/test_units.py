@@ -40,6 +40,21 @@ from gearidae.scene.units import from_text
         ("50 %", "1", 0.5),
         ("50 percent", "1", 0.5),
         ("0 m", "m", 0.0),
+        ("25 degC", "K", 298.15),
+        ("25 °C", "K", 298.15),
+        ("25 \u2103", "K", 298.15),
+        ("77 degF", "K", 298.15),
+        ("-40 degF", "K", 233.15),
+        ("298.15 K", "K", 298.15),
+        ("1 J/degC", "J/K", 1.0),
+        ("1500 1/min", "rad/s", 1500 * 2 * math.pi / 60),
+        ("1500 min^-1", "rad/s", 1500 * 2 * math.pi / 60),
+        ("1500 rpm", "rad/s", 1500 * 2 * math.pi / 60),
+        ("3 1/s", "rad/s", 3.0),
+        ("3 rad s^-1", "rad/s", 3.0),
+        ("3 rad/min", "rad/s", 0.05),
+        ("180 deg/s", "rad/s", math.pi),
+        ("2 kN m s", "N m s/rad", 2e3),
     ],
 )
 def test_reads_exactly(text: str, unit: str, value: float) -> None:
@@ -61,6 +76,22 @@ def test_reads_exactly(text: str, unit: str, value: float) -> None:
         ("100 rpm", "Hz", "does not fit"),
         ("100 rad/s", "Hz", "does not fit"),
         ("100 kHz", "rad/s", "does not fit"),
+        ("100 1/h", "rad/s", "does not fit"),
+        ("100 cps", "rad/s", "does not fit"),
+        ("100 Bq", "rad/s", "does not fit"),
+        ("1 N m/Hz", "N m s/rad", "does not fit"),
+        ("1 N m min", "N m s/rad", "does not fit"),
+        ("1 N m/kHz^2", "N m s^2/rad^2", "does not fit"),
+        ("1 N m s^2/deg", "N m s^2/rad^2", "does not fit"),  # one angle where two are wanted
+        ("2 turn^2", "rad", "does not fit"),
+        ("2 delta_degC", "K", "difference of temperatures"),
+        ("25 degC", "J/K", "does not fit"),
+        ("1 degC", "1", "does not fit"),
+        ("3**2 um", "m", "is not a unit"),
+        ("3^2 um", "m", "is not a unit"),
+        ("3 ** 2 um", "m", "is not a unit"),
+        ("3² um", "m", "is not a unit"),
+        ("3*2 um", "m", "is not a unit"),
         ("3 parsnip", "m", "not a known unit"),
         ("3 dB", "1", "not a known unit"),
         ("3 m +", "m", "is not a unit"),
@@ -86,7 +117,20 @@ def test_refuses(text: str, unit: str, reason: str) -> None:
         from_text(text, unit)
 
 
-@given(st.text(max_size=40), st.sampled_from(["m", "rad", "1", "Hz", "N m s^2/rad^2"]))
+def test_angles_of_gains_and_drags_count() -> None:
+    """To 1e-15: pi is rounded on both ways."""
+    assert from_text("2 N m/rpm", "N m s/rad") == pytest.approx(60 / math.pi, rel=1e-15)
+    assert from_text("1 N m/(turn/s)^2", "N m s^2/rad^2") == pytest.approx(0.25 / math.pi**2, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "kelvin"), [("2 degC", 2.0), ("9 degF", 5.0), ("2 delta_degC", 2.0), ("2 K", 2.0), ("2 °C", 2.0)]
+)
+def test_difference_of_temperatures_has_no_zero(text: str, kelvin: float) -> None:
+    assert from_text(text, "K", difference=True) == kelvin
+
+
+@given(st.text(max_size=40), st.sampled_from(["m", "rad", "1", "Hz", "K", "rad/s", "N m s^2/rad^2"]))
 def test_any_text_is_read_or_refused(text: str, unit: str) -> None:
     try:
         value = from_text(text, unit)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gearidae.studies.cycle_jump import Life, Sticks, jump
+from gearidae.studies.cycle_jump import GearStuck, Life, jump
 
 
 def decay(state):
@@ -46,7 +46,7 @@ def test_where_the_gear_sticks_is_bracketed(bracket):
 
     def rate(state):
         if state.mean() < 0.3:
-            raise Sticks
+            raise GearStuck
         return decay(state)
 
     found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-6, bracket=bracket)
@@ -60,7 +60,7 @@ def test_where_the_gear_sticks_is_bracketed(bracket):
 
 def test_what_sticks_from_the_start_has_no_life():
     def rate(state):
-        raise Sticks
+        raise GearStuck
 
     found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-3)
     assert (found.ending, found.sticks_by, found.passages) == ("sticks", 0.0, [0.0])
@@ -85,7 +85,7 @@ def test_no_rate_is_asked_for_where_nothing_is_left():
     def rate(state):
         asked.append(float(state.mean()))
         if state.mean() < 0.3:
-            raise Sticks
+            raise GearStuck
         return -1e-9 / (state - 0.29) ** 2
 
     found = jump(rate, np.ones(1), passages=1e12, tolerance=0.03)
@@ -124,7 +124,7 @@ class Steps:
     def follow(self, n, state):
         while True:
             if state.mean() < 0.3:
-                raise Sticks(n + 0.05)
+                raise GearStuck(n + 0.05)
             yield n, state
             self.run += 1
             n, state = n + 0.05, state + 0.05 * self.rate(state)
@@ -135,7 +135,7 @@ def test_the_last_passages_are_followed_cycle_by_cycle():
 
     def rate(state):
         if state.mean() < 0.3:
-            raise Sticks
+            raise GearStuck
         return -0.002 / (state - 0.25)
 
     direct = Steps(rate)

@@ -8,7 +8,7 @@ from scipy import stats
 
 import gearidae as gd
 from gearidae.studies.design import DESIGNS, check_design, pick_freeze_design, plain_design
-from gearidae.studies.distributions import Distribution, read_distributions
+from gearidae.studies.distributions import Distribution, read_distribution, read_distributions
 from gearidae.studies.indices import indices_of
 
 LOW = gd.preset("teodorescu2009_low_speed")
@@ -34,6 +34,21 @@ def test_texts_with_units_are_the_distributions_of_scipy(text, frozen):
     np.testing.assert_allclose(found.quantiles(share), frozen.ppf(share), rtol=1e-12)
     values = frozen.ppf(share)
     np.testing.assert_allclose(found.log_density(values), frozen.logpdf(values), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "frozen"),
+    [
+        ("normal(25 degC, 2 degC)", stats.norm(298.15, 2.0)),
+        ("truncnormal(77 degF, 9 degF, 20 degC, 30 degC)", stats.truncnorm(-1.0, 1.0, 298.15, 5.0)),
+        ("uniform(20 degC, 30 degC)", stats.uniform(293.15, 10.0)),
+    ],
+)
+def test_a_spread_of_temperatures_has_no_zero(text, frozen):
+    """Quantiles to 1e-12: sums with 273.15 are rounded."""
+    share = np.linspace(0.01, 0.99, 7)
+    found = read_distribution("temperature", text, "K")
+    np.testing.assert_allclose(found.quantiles(share), frozen.ppf(share), rtol=1e-12)
 
 
 def test_a_lognormal_has_two_thirds_within_its_geometric_deviation():

@@ -62,6 +62,15 @@ def test_parameters_of_the_law_are_drawn(tmp_path):
     xr.testing.assert_equal(gd.studies.open_lives(path).drop_vars("message"), found.drop_vars("message"))
 
 
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_refused_lives_leave_nothing(jobs, tmp_path):
+    with pytest.raises(gd.SceneError, match="fraction"):
+        gd.studies.lives(
+            LOW, LAW, VARY, 2, archive=tmp_path / "out.nc", jobs=jobs, **{**SHORT, "fraction": 2.0}
+        )
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize(
     ("vary", "key", "words"),
     [

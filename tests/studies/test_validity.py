@@ -14,7 +14,7 @@ import gearidae as gd
 from gearidae.contact import line_force
 from gearidae.runs.pair_contact import pair_contact
 from gearidae.runs.validity import validity_attribute, validity_rows
-from gearidae.scene.validity_row import holds_rows, rows_from_json
+from gearidae.scene.validity_row import holds_rows, mean_note, rows_from_json
 
 LOW = gd.preset("teodorescu2009_low_speed")
 HIGH = gd.preset("teodorescu2009")
@@ -28,7 +28,15 @@ ROWS = [
         "tabor_bare",
         "tabor_coated",
     ),
-    *("thermal_motion", "gas_damping", "net_adhesion", "disc_drag", "inertia_pinion", "inertia_gear"),
+    *(
+        "thermal_motion",
+        "gas_damping",
+        "net_adhesion",
+        "memory",
+        "disc_drag",
+        "inertia_pinion",
+        "inertia_gear",
+    ),
 ]
 
 
@@ -97,15 +105,38 @@ def test_net_adhesion_is_the_deepest_valley_of_the_parting_force(fraction):
 
 
 def test_verdicts_follow_the_limits():
-    few, many = LOW, LOW.replace({"drive.torque": 4.5e-8, "surface.asperity_density": 1.5e13})
+    few, many = (
+        LOW,
+        LOW.replace({"drive.torque": 4.5e-6, "surface.asperity_density": 1.5e13, "gears.face_width": 2e-5}),
+    )
     rows, other = gd.studies.validity(few), gd.studies.validity(many)
     assert not rows.holds["expected_asperities"]
     assert "ensemble mean" in rows.verdict["expected_asperities"]
-    assert other.number["expected_asperities"] > 10.0
+    assert other.number["expected_asperities"] > other.bound["expected_asperities"] > 100.0
+    between = gd.studies.validity(LOW.replace({"drive.torque": 4.5e-8, "surface.asperity_density": 1.5e13}))
+    assert 10.0 < between.number["expected_asperities"] < between.bound["expected_asperities"]
+    assert not between.holds["expected_asperities"]
     assert other.holds["expected_asperities"]
     assert not rows.holds["density_product"]
     assert other.holds["density_product"]
     assert other.holds["merging_bare"]
+
+
+def test_memory_travels_with_the_pair():
+    """At f = 0.5 the contact is some 0.4 um wide; 6.59 um of the pinion's flank roll through it."""
+    rows = gd.studies.validity(LOW.replace({"coating.sam_fraction": 0.5}))
+    assert not rows.holds["memory"]
+    assert "(398 nm of 6.59 um)" in rows.verdict["memory"]
+    assert rows.number["memory"] == pytest.approx(0.398 / 6.586, rel=2e-3, abs=0)  # to the digits shown
+    assert "no memory" in gd.studies.validity(LOW.replace({"contact.asperity": "dmt"})).verdict["memory"]
+    assert "memory" not in gd.studies.validity(gd.preset("roller_slow")).index
+
+
+def test_a_line_beside_a_verdict_where_the_mean_law_does_not_hold():
+    assert mean_note(validity_rows(LOW)) == "mean over many gears: 5.13e-08 asperities in contact"
+    many = LOW.replace({"drive.torque": 4.5e-6, "surface.asperity_density": 1.5e13, "gears.face_width": 2e-5})
+    assert mean_note(validity_rows(many)) == ""
+    assert mean_note(validity_rows(LOW.replace({"drive.torque": 0.0}))) == ""
 
 
 @pytest.mark.parametrize(("law", "holds"), [("jkr", False), ("dmt", False), ("hertz", True)])
@@ -117,7 +148,7 @@ def test_the_tabor_parameter_is_judged_by_the_law_that_is_used(law, holds):
 
 def test_without_a_load_nothing_rests():
     rows = gd.studies.validity(LOW.replace({"drive.torque": 0.0}))
-    for name in ("expected_asperities", "thermal_motion", "gas_damping", "net_adhesion"):
+    for name in ("expected_asperities", "thermal_motion", "gas_damping", "net_adhesion", "memory"):
         assert rows.value[name] == "-"
         assert "no resting contact" in rows.verdict[name]
         assert math.isnan(rows.number[name])

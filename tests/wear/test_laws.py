@@ -36,6 +36,7 @@ def test_archard_ends_where_nothing_is_left():
 
 def test_arrhenius_multiplies_a_law():
     law = loss_law("contacts", area=1e-20)
+    assert Arrhenius(law, "1 eV", "50 nm^3", "25 degC").temperature == 298.15
     slowed = Arrhenius(law, "1 eV", "50 nm^3", "300 K")
     k = 1.380649e-23 * 300.0
     barrier = 1.602176634e-19 - np.array([1e6, 2e6]) * 5e-26

@@ -49,5 +49,7 @@ def _rows(found: Assessment) -> Iterator[tuple[str, str]]:
         yield "median gear speed", f"{found.gear_speed:.4g} rad/s"
     if not math.isnan(found.torque):
         yield "estimated drive torque", with_prefix(found.torque, "N m", 4)
-    heard = [with_prefix(each, "Hz", 4) for each in found.frequencies]  # "-" where nothing stands out
-    yield "impact responses", ", ".join(heard) or "none"
+    frequencies = [with_prefix(each, "Hz", 4) for each in found.frequencies]  # "-" where nothing stands out
+    if found.reading:
+        yield "record read with", found.reading
+    yield "impact responses", ", ".join(frequencies) or "none"

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import detrend
 
-from gearidae.analysis.fitting import Fit, Heard, at_places
+from gearidae.analysis.fitting import Fit, RingSet, at_places
 from gearidae.analysis.impacts import angle_of, windows_of
 from gearidae.analysis.map_model import BEFORE, MapModel
 from gearidae.analysis.ringing import HIGHEST, Ring, piece_of
@@ -55,8 +55,11 @@ _PRECISION = 0.005
 """Relative precision to which a ring that is no image is predicted by the map."""
 _OTHER_TORQUES = np.linspace(0.0, 1.0, 5)
 """Shifts by another torque that are tried with a map at one torque, in parts of the largest that the speed allows."""
-_OTHER_SPEED = 0.03
-"""With a map at one torque, a speed that differs by more than this part from the map's is that of another torque."""
+_OTHER_SPEED = 2.0
+"""With a map at one torque, a speed that differs from the map's by more than so many standard uncertainties is that of
+another torque."""
+_SURE = 0.005
+"""Relative standard uncertainty of that difference at least."""
 _FADED = 0.5
 """A ring falls below this part of its amplitude before the next impact; in all runs of the preset, to a hundredth."""
 
@@ -243,13 +246,13 @@ def _strength(piece: Floats, frequency: float) -> float:
     return float(abs((detrend(piece) * taper * turns).sum()) / taper.sum())
 
 
-def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -> str:
-    """Say so if what is heard could be the image of faster ringing.
+def alias(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: float) -> str:
+    """Say so if what shows could be the image of faster ringing.
 
     Parameters
     ----------
     model : MapModel
-    heard : Heard
+    rings : RingSet
     fit : Fit
         That explains the record without images.
     rate : float
@@ -270,17 +273,17 @@ def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -
     highest = model.highest_first if fit.history == "start" else model.highest
     # what shows below HIGHEST of the rate is the image of something above the rest of it
     lowest_image = (1.0 - HIGHEST) * rate
-    if len(heard.numbers) < _FEWEST and lowest_image < min(_BEYOND * highest, cutoff):
+    if len(rings.numbers) < _FEWEST and lowest_image < min(_BEYOND * highest, cutoff):
         return (
-            f"sampled at {rate:.3g} Hz without a low-pass filter, {len(heard.numbers)} impact(s) do not tell ringing "
+            f"sampled at {rate:.3g} Hz without a low-pass filter, {len(rings.numbers)} impact(s) do not tell ringing "
             f"at these frequencies from images of ringing above {lowest_image:.3g} Hz"
         )
-    if model.highest_first > HIGHEST * rate and _at_another_torque(model, heard, fit):
+    if model.highest_first > HIGHEST * rate and _at_another_torque(model, rings, fit):
         return (
             f"sampled at {rate:.3g} Hz without a low-pass filter, and at another torque than the map's by the gear's "
             "speed, the record does not tell ringing from images of faster ringing; a map over drive.torque can"
         )
-    other = _image_of(model, heard, fit, rate, cutoff)
+    other = _image_of(model, rings, fit, rate, cutoff)
     if math.isnan(other):
         return ""
     return (
@@ -289,34 +292,36 @@ def alias(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -
     )
 
 
-def _at_another_torque(model: MapModel, heard: Heard, fit: Fit) -> bool:
+def _at_another_torque(model: MapModel, rings: RingSet, fit: Fit) -> bool:
     """Whether the gear turns at another speed than in a map at one torque, so that all its frequencies are shifted."""
     if model.torques is not None:
         return False
-    return abs(math.log(heard.speed / float(model.speeds[0, fit.best]))) > _OTHER_SPEED
+    return abs(math.log(rings.speed / float(model.speeds[0, fit.best]))) > _OTHER_SPEED * max(
+        rings.calibration, _SURE
+    )
 
 
-def _image_of(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: float) -> float:
+def _image_of(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: float) -> float:
     """Another fraction whose images explain the record best; NaN if none does."""
     torque = float(fit.torques[fit.best])
     sequences = model.at_torque(torque)[0][::_EVERY]
     fractions = model.fractions[::_EVERY]
-    steps = heard.numbers - heard.numbers[0]
+    steps = rings.numbers - rings.numbers[0]
     kept = steps < sequences.shape[1]
     if fit.history == "start":
-        kept &= heard.numbers + BEFORE < sequences.shape[1]
-        predicted = sequences[:, None, BEFORE + heard.numbers[kept]]
+        kept &= rings.numbers + BEFORE < sequences.shape[1]
+        predicted = sequences[:, None, BEFORE + rings.numbers[kept]]
     else:
         places = np.arange((sequences.shape[1] - 1 - int(steps[kept][-1])) * _STEPS + 1) / _STEPS
         predicted = at_places(sequences, places, steps[kept])
     if not kept.any():
         return math.nan
     misfit = np.full(len(fractions), np.inf)
-    for shift in _shifts(model, heard):
+    for shift in _shifts(model, rings):
         each, folded = _misfit_of_images(
             np.exp(predicted + shift[:, None, None]),
-            heard.frequency[kept],
-            heard.uncertainty[kept],
+            rings.frequency[kept],
+            rings.uncertainty[kept],
             rate,
             cutoff,
         )
@@ -327,16 +332,16 @@ def _image_of(model: MapModel, heard: Heard, fit: Fit, rate: float, cutoff: floa
     return float(fractions[best]) if misfit[best] <= fit.chi2[fit.best] + _LIKELY else math.nan
 
 
-def _shifts(model: MapModel, heard: Heard) -> list[Floats]:
+def _shifts(model: MapModel, rings: RingSet) -> list[Floats]:
     """Shifts of the logarithm of the frequencies of each fraction that another torque could cause."""
     if model.torques is not None:
         return [np.zeros(len(model.fractions[::_EVERY]))]
-    largest = np.nan_to_num(np.log(heard.speed / model.speeds[0, ::_EVERY]))
+    largest = np.nan_to_num(np.log(rings.speed / model.speeds[0, ::_EVERY]))
     return [part * largest for part in _OTHER_TORQUES]
 
 
 def _misfit_of_images(
-    ringing: Floats, heard: Floats, uncertainty: Floats, rate: float, cutoff: float
+    ringing: Floats, measured: Floats, uncertainty: Floats, rate: float, cutoff: float
 ) -> tuple[Floats, np.ndarray]:
     """Misfit of what sampled ringing would show, and whether any of it would be an image.
 
@@ -347,14 +352,14 @@ def _misfit_of_images(
     ----------
     ringing : ndarray, shape (n, p, m)
         Frequencies of the contact [Hz]; NaN where unknown.
-    heard, uncertainty : ndarray, shape (m,)
+    measured, uncertainty : ndarray, shape (m,)
         Of the record [Hz].
 
     Returns
     -------
     misfit, folded : ndarray, shape (n, p)
     """
-    direct = uncertainty**2 + (_PRECISION * heard) ** 2
+    direct = uncertainty**2 + (_PRECISION * measured) ** 2
     nearest = np.full(ringing.shape, np.inf)
     image = np.zeros(ringing.shape, dtype=bool)
     for harmonic in range(1, _HARMONICS + 1):
@@ -362,7 +367,7 @@ def _misfit_of_images(
         folds = frequency > 0.5 * rate
         shown = np.abs(frequency - rate * np.round(frequency / rate))
         variance = uncertainty**2 + (_IMAGE * frequency) ** 2
-        each = (shown - heard) ** 2 / variance + np.log(np.maximum(1.0, variance / direct))
+        each = (shown - measured) ** 2 / variance + np.log(np.maximum(1.0, variance / direct))
         # a harmonic stands out as an image only where its fundamental is itself out of sight
         allowed = np.isfinite(each) & (frequency <= cutoff)
         if harmonic > 1:

@@ -24,23 +24,25 @@ stiffness goes with its load).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearidae.analysis.map_model import BEFORE, MapModel
-from gearidae.analysis.signal import Floats
+from gearidae.analysis.signal import CALIBRATION, Floats
 
-__all__ = ["COMMON", "SPEED_RANGE", "WITHIN", "Fit", "Heard", "at_places", "first_explanation"]
+__all__ = ["COMMON", "SPEED_RANGE", "WITHIN", "Fit", "RingSet", "at_places", "first_explanation"]
 
 COMMON = 0.012
-"""Relative uncertainty that all impacts share: windows a little early or late, and a speed off by half a per cent."""
+"""Relative uncertainty that all impacts share: windows a little early or late, and a speed off by half a per cent. It
+grows with that of the speed."""
 _MODEL = 0.005
 """Relative uncertainty of each of the map's frequencies, from interpolation."""
-_SPEED = 0.015
-"""Relative uncertainty of the gear's speed: a sensor's calibration."""
-_LATE = 0.006
-"""Relative uncertainty per impact since the first: a speed off by 1.5 % puts each window later than the one before."""
+_LATE = 0.4
+"""Relative uncertainty per impact since the first, in parts of that of the speed: if it is off, each window lies later
+than the one before."""
+_SURE = 1e-3
+"""Relative uncertainty of the speed at least."""
 _UNEVEN = 0.3
 """Uncertainty of one impact's shift by another torque, in parts of the shift in the speed."""
 WITHIN = 3.84
@@ -61,7 +63,7 @@ _TORQUES = np.linspace(-2.5, 2.5, 11)
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
+class RingSet:
     """What of a record is compared with a map.
 
     Attributes
@@ -74,6 +76,8 @@ class Heard:
         Median speed of the gear [rad/s].
     unsteady : float
         By how much its mean speed changes from the first half of the record to the second, in parts of itself.
+    calibration : float
+        Relative uncertainty of the speed: the sensor's.
     """
 
     numbers: np.ndarray
@@ -81,10 +85,17 @@ class Heard:
     uncertainty: Floats
     speed: float
     unsteady: float
+    calibration: float = CALIBRATION
 
-    def without_first(self) -> Heard:
+    @property
+    def common(self) -> float:
+        """Relative uncertainty of the frequencies that all impacts share."""
+        return COMMON * max(1.0, self.calibration / CALIBRATION)
+
+    def without_first(self) -> RingSet:
         """The same without the first impact that rings."""
-        return Heard(self.numbers[1:], self.frequency[1:], self.uncertainty[1:], self.speed, self.unsteady)
+        later = {name: getattr(self, name)[1:] for name in ("numbers", "frequency", "uncertainty")}
+        return replace(self, **later)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,13 +135,13 @@ class Fit:
         return np.asarray(self.fractions[self.chi2 <= self.chi2[self.best] + WITHIN])
 
 
-def first_explanation(model: MapModel, heard: Heard, history: str, *, may_be_start: bool = True) -> Fit:
+def first_explanation(model: MapModel, rings: RingSet, history: str, *, may_be_start: bool = True) -> Fit:
     """Fit of the likeliest supposition about the record's history that explains it.
 
     Parameters
     ----------
     model : MapModel
-    heard : Heard
+    rings : RingSet
     history : {'auto', 'start', 'unknown'}
     may_be_start : bool, optional
         Whether ``auto`` considers that the record begins with the map's start.
@@ -141,14 +152,14 @@ def first_explanation(model: MapModel, heard: Heard, history: str, *, may_be_sta
         If none explains the record, that of the likeliest supposition.
     """
     if history != "auto":
-        return _fit(model, heard, free=history == "unknown")
-    fit = _fit(model, heard, free=True)
+        return _fit(model, rings, free=history == "unknown")
+    fit = _fit(model, rings, free=True)
     if may_be_start:
-        fit = _either(_fit(model, heard, free=False), fit)
-    if fit.explains or len(heard.numbers) <= _FEWEST_LEFT:
+        fit = _either(_fit(model, rings, free=False), fit)
+    if fit.explains or len(rings.numbers) <= _FEWEST_LEFT:
         return fit
     # a start of another kind shows in the first impact alone
-    without = _fit(model, heard.without_first(), free=True)
+    without = _fit(model, rings.without_first(), free=True)
     return without if without.explains else fit
 
 
@@ -165,12 +176,12 @@ def _either(start: Fit, unknown: Fit) -> Fit:
     )
 
 
-def _fit(model: MapModel, heard: Heard, *, free: bool) -> Fit:
+def _fit(model: MapModel, rings: RingSet, *, free: bool) -> Fit:
     """Fit over all torques that the speed allows."""
     if model.torques is None:
-        return _fit_at_known_torque(model, heard, free=free)
-    spread = math.hypot(_SPEED, heard.unsteady)
-    likeliest = model.torque_at(heard.speed)
+        return _fit_at_known_torque(model, rings, free=free)
+    spread = math.hypot(max(rings.calibration, _SURE), rings.unsteady)
+    likeliest = model.torque_at(rings.speed)
     best = Fit(
         model.fractions, np.full(len(model.fractions), np.inf), 1, "", np.full(len(model.fractions), np.nan)
     )
@@ -179,8 +190,8 @@ def _fit(model: MapModel, heard: Heard, *, free: bool) -> Fit:
         torque = likeliest * math.exp(2.0 * spread * deviation)
         torque = float(np.clip(torque, model.torques[0], model.torques[-1]))
         sequences, own, speeds = model.at_torque(torque)
-        chi2, impacts = _chi_square_of(sequences, heard, np.zeros_like(speeds), own, free=free)
-        chi2 = chi2 + (np.log(heard.speed / speeds) / spread) ** 2
+        chi2, impacts = _chi_square_of(sequences, rings, np.zeros_like(speeds), own, free=free)
+        chi2 = chi2 + (np.log(rings.speed / speeds) / spread) ** 2
         better = chi2 < best.chi2
         best = Fit(
             model.fractions,
@@ -192,42 +203,42 @@ def _fit(model: MapModel, heard: Heard, *, free: bool) -> Fit:
     return best
 
 
-def _fit_at_known_torque(model: MapModel, heard: Heard, *, free: bool) -> Fit:
+def _fit_at_known_torque(model: MapModel, rings: RingSet, *, free: bool) -> Fit:
     """Fit to a map at one torque, whose shift by another torque is bounded by the speed."""
     sequences, speeds = model.sequences[0], model.speeds[0]
-    shift = np.nan_to_num(np.log(heard.speed / speeds))
+    shift = np.nan_to_num(np.log(rings.speed / speeds))
     # far from the map's speed nothing is to be explained by a shift: it is another machine
     shift = np.where(np.abs(shift) <= math.log1p(SPEED_RANGE), shift, 0.0)
-    drifting = math.copysign(heard.unsteady, float(np.median(shift)) or 1.0)
+    drifting = math.copysign(rings.unsteady, float(np.median(shift)) or 1.0)
     uneven = _UNEVEN * abs(float(np.median(shift)) + drifting)
-    own = np.hypot(model.spread[0], math.hypot(uneven, heard.unsteady))
-    chi2, impacts = _chi_square_of(sequences, heard, shift, own, free=free)
+    own = np.hypot(model.spread[0], math.hypot(uneven, rings.unsteady))
+    chi2, impacts = _chi_square_of(sequences, rings, shift, own, free=free)
     history = "unknown" if free else "start"
     return Fit(model.fractions, chi2, impacts, history, np.full(len(chi2), np.nan))
 
 
 def _chi_square_of(
-    sequences: Floats, heard: Heard, shift: Floats, own: Floats, *, free: bool
+    sequences: Floats, rings: RingSet, shift: Floats, own: Floats, *, free: bool
 ) -> tuple[Floats, int]:
     """Chi-square of every fraction, and the number of impacts compared.
 
     Impact n is compared with the map's n, or with its n + n0 with the best n0. `own` is the relative uncertainty of
     what each fraction predicts for one impact, beside `_MODEL`.
     """
-    numbers, x = heard.numbers, np.log(heard.frequency)
-    variance = (heard.uncertainty / heard.frequency) ** 2 + _MODEL**2 + own[:, None] ** 2
-    variance = variance + (_LATE * (numbers - numbers[0])) ** 2
+    numbers, x = rings.numbers, np.log(rings.frequency)
+    variance = (rings.uncertainty / rings.frequency) ** 2 + _MODEL**2 + own[:, None] ** 2
+    variance = variance + (_LATE * rings.calibration * (numbers - numbers[0])) ** 2
     if not free:
         kept = numbers + BEFORE < sequences.shape[1]
         model = sequences[:, BEFORE + numbers[kept]]
-        chi2 = _chi_square(x[kept] - model, 1.0 / variance[:, kept], shift)
+        chi2 = _chi_square(x[kept] - model, 1.0 / variance[:, kept], shift, rings.common)
         return chi2, max(1, int(kept.sum()))
     steps = numbers - numbers[0]
     kept = steps < sequences.shape[1]  # of a long record the first impacts are the ones that tell
     steps, x, variance = steps[kept], x[kept], variance[:, kept]
     furthest = sequences.shape[1] - 1 - int(steps[-1])
     model = at_places(sequences, np.arange(furthest * _STEPS + 1) / _STEPS, steps)
-    chi2 = _chi_square(x - model, 1.0 / variance[:, None, :], shift[:, None])
+    chi2 = _chi_square(x - model, 1.0 / variance[:, None, :], shift[:, None], rings.common)
     return np.asarray(chi2.min(axis=1)), len(steps)
 
 
@@ -253,7 +264,7 @@ def at_places(sequences: Floats, places: Floats, steps: np.ndarray) -> Floats:
     return np.asarray(np.where(part > 0.0, left + part * (right - left), left))
 
 
-def _chi_square(deviation: Floats, weight: Floats, shift: Floats) -> Floats:
+def _chi_square(deviation: Floats, weight: Floats, shift: Floats, common: float) -> Floats:
     """Sum over the impacts (last axis), the best shift and the best common error taken out.
 
     Infinite where the map holds nothing.
@@ -264,5 +275,5 @@ def _chi_square(deviation: Floats, weight: Floats, shift: Floats) -> Floats:
     mean = np.sum(weight * deviation, axis=-1) / total
     mean_left = mean - np.clip(mean, np.minimum(shift, 0.0), np.maximum(shift, 0.0))
     about_mean = np.sum(weight * (deviation - mean[..., None]) ** 2, axis=-1)
-    chi2 = about_mean + mean_left**2 / (1.0 / total + COMMON**2)
+    chi2 = about_mean + mean_left**2 / (1.0 / total + common**2)
     return np.asarray(np.where(np.isnan(chi2), np.inf, chi2))

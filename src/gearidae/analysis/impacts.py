@@ -9,7 +9,7 @@ that known spacing, of which only the place is sought.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -19,7 +19,7 @@ from scipy.ndimage import uniform_filter1d
 from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal, signals, stack
 from gearidae.errors import SceneError
 
-__all__ = ["LEAD", "WIDTH", "angle_of", "impact_windows", "lowest_frequency", "windows_of"]
+__all__ = ["LEAD", "WIDTH", "angle_of", "impact_windows", "lowest_frequency", "unlike_pitch", "windows_of"]
 
 LEAD = 0.02
 """A window begins this much before its impact, in pitches."""
@@ -39,6 +39,15 @@ _REACH = 0.12
 """The comb compares the oscillation this far before and after each place, in pitches."""
 _FAINTEST = 0.03
 """Bursts below this part of the strongest do not count in placing the comb."""
+_CLEARLY = 0.2
+"""Another spacing than the pitch must explain the bursts better by this, in the mean logarithm of their growth."""
+_FURTHEST = 0.12
+"""Largest error of calibration that is sought."""
+_FEWEST_BURSTS = 3
+"""With fewer, their spacing says too little."""
+_FIRST_BURSTS = 8
+_DRIFT = 0.02
+"""Pitches by which the last impact moves from one spacing that is tried to the next."""
 
 
 def impact_windows(
@@ -68,7 +77,7 @@ def impact_windows(
         If there is no gear speed, or nothing tells the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
-    found = [windows_of(each, check_width(width)) for each in batch.signals]
+    found = [windows_of(each.forward(), check_width(width)) for each in batch.signals]
     names = {
         "impact_time": "time of the mesh impact",
         "window_start": "start of the impact's window",
@@ -173,21 +182,119 @@ def _window(
 
 def _comb(signal: Signal, angle: Floats, pitch: float) -> Floats:
     """Angles of the impacts: where in the pitch the oscillation grows most from just before to just after."""
+    bursts = _bursts(signal, angle, pitch)
+    if bursts is None:
+        return np.empty(0)
+    spacing, score = 1.0, bursts.score(1.0)[0]
+    if signal.calibration > 0.0:
+        other, higher = bursts.best(1.0 - signal.calibration, 1.0 + signal.calibration)
+        spacing = other if higher > score + _CLEARLY else 1.0
+    found = bursts.score(spacing)[1] + spacing * pitch * np.arange(bursts.pitches + 1)
+    return np.asarray(found[found <= angle[-1]], dtype=np.float64)
+
+
+def unlike_pitch(signal: Signal) -> float:
+    """Distance of the bursts of oscillation where it is not the gear's pitch, as a wrong calibration makes it.
+
+    Parameters
+    ----------
+    signal : Signal
+        Gear speed, with the gear's teeth.
+
+    Returns
+    -------
+    float
+        In pitches; 1 where a pitch within the calibration's uncertainty explains the bursts as well, or too few of them
+        are in the record.
+    """
+    pitch = 2.0 * math.pi / (signal.gear_teeth or 1)
+    signal = _until_stop(signal, pitch)
+    bursts = _bursts(signal, np.maximum.accumulate(angle_of(signal)), pitch) if len(signal.values) else None
+    if bursts is None or signal.calibration >= _FURTHEST:
+        return 1.0
+    spacing, score = bursts.best(1.0 - _FURTHEST, 1.0 + _FURTHEST)
+    expected = bursts.best(1.0 - signal.calibration, 1.0 + signal.calibration)[1]
+    told = bursts.score(spacing)[2] >= _FEWEST_BURSTS and score > expected + _CLEARLY
+    return spacing if told else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Bursts:
+    """Oscillation over the angle, in which impacts are sought.
+
+    Attributes
+    ----------
+    angle : ndarray, shape (n,)
+        Turned since the first sample [rad].
+    energy : ndarray, shape (n,)
+        Integral of the squared oscillation until then.
+    pitch : float
+        [rad].
+    """
+
+    angle: Floats
+    energy: Floats
+    pitch: float
+
+    @property
+    def pitches(self) -> int:
+        """Pitches in the record, the last one begun."""
+        return math.ceil(float(self.angle[-1]) / self.pitch)
+
+    def score(self, spacing: float, most: int | None = None) -> tuple[float, float, int]:
+        """Growth of the oscillation at impacts of one spacing.
+
+        Parameters
+        ----------
+        spacing : float
+            In pitches.
+        most : int, optional
+            How many of the impacts to take, from the first one on; all by default.
+
+        Returns
+        -------
+        score : float
+            Mean logarithm of the growth at the best place of the first impact.
+        place : float
+            That place [rad].
+        impacts : int
+            How many of them are whole.
+        """
+        pitch, last = self.pitch, float(self.angle[-1])
+        places = spacing * pitch * np.arange(_COMB) / _COMB
+        at = places[:, None] + spacing * pitch * np.arange((most or self.pitches) + 1)[None, :]
+        whole = (at >= _REACH * pitch) & (at <= last - _REACH * pitch)
+        until, before, after = (
+            np.interp(at + shift * pitch, self.angle, self.energy) for shift in (0.0, -_REACH, _REACH)
+        )
+        faint = _FAINTEST * np.max(after - until, where=whole, initial=0.0) + np.finfo(float).tiny
+        growth = np.log((after - until + faint) / (until - before + faint))
+        # a place near the ends of the record has fewer teeth: the mean, not the sum, compares them fairly
+        counts = np.maximum(1, whole.sum(axis=1))
+        score = np.where(whole.any(axis=1), np.sum(growth, axis=1, where=whole) / counts, -np.inf)
+        best = int(score.argmax())
+        return float(score[best]), float(places[best]), int(whole[best].sum())
+
+    def best(self, low: float, high: float) -> tuple[float, float]:
+        """Spacing from `low` to `high` [pitches] at which the growth is largest, and its score.
+
+        The more impacts, the more finely the spacing shows: it is sought with a few of them, then nearby with more.
+        """
+        middle, half, most = 0.5 * (low + high), 0.5 * (high - low), _FIRST_BURSTS
+        while True:
+            step = _DRIFT / min(most, self.pitches + 1)
+            spacings = middle + half * np.linspace(-1.0, 1.0, 2 * math.ceil(half / step) + 1)
+            scores = [self.score(float(spacing), most)[0] for spacing in spacings]
+            middle = float(spacings[int(np.argmax(scores))])
+            if most > self.pitches:
+                return middle, max(scores)
+            half, most = 2.0 * step, 4 * most
+
+
+def _bursts(signal: Signal, angle: Floats, pitch: float) -> _Bursts | None:
+    """Oscillation faster than the change of speed from tooth to tooth; None if the record is too short for it."""
     cutoff = lowest_frequency(signal.values, round(2.0 * math.pi / pitch))
     if angle[-1] < 2.0 * _REACH * pitch or not 0.0 < cutoff < 0.4 * signal.rate:
-        return np.empty(0)
+        return None
     fast = dsp.sosfiltfilt(dsp.butter(2, cutoff, "highpass", fs=signal.rate, output="sos"), signal.values)
-    energy = np.concatenate([[0.0], np.cumsum(fast[1:] ** 2) * signal.interval])
-    places = pitch * np.arange(_COMB) / _COMB
-    teeth = np.arange(math.ceil(angle[-1] / pitch) + 1)
-    at = places[:, None] + pitch * teeth[None, :]
-    whole = (at >= _REACH * pitch) & (at <= angle[-1] - _REACH * pitch)
-    until, before, after = (np.interp(at + shift * pitch, angle, energy) for shift in (0.0, -_REACH, _REACH))
-    faint = _FAINTEST * np.max(after - until, where=whole, initial=0.0) + np.finfo(float).tiny
-    growth = np.log((after - until + faint) / (until - before + faint))
-    # a place near the ends of the record has fewer teeth: the mean, not the sum, compares them fairly
-    counts = np.maximum(1, whole.sum(axis=1))
-    score = np.where(whole.any(axis=1), np.sum(growth, axis=1, where=whole) / counts, -np.inf)
-    best = places[int(score.argmax())]
-    found = best + pitch * teeth
-    return np.asarray(found[found <= angle[-1]], dtype=np.float64)
+    return _Bursts(angle, np.concatenate([[0.0], np.cumsum(fast[1:] ** 2) * signal.interval]), pitch)

@@ -2,244 +2,259 @@
 
 from __future__ import annotations
 
-import csv
 import os
-import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.analysis.record_columns import Column, find_columns, has_columns
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
+from gearidae.scene.group import shorten
+from gearidae.scene.table_head import open_table
+from gearidae.scene.text_table import check_regular
 
-__all__ = ["read_signal"]
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Reading", "read_signal"]
 
 Floats = NDArray[np.float64]
 
-_HEADING = re.compile(r"\s*([^\[\](]+?)\s*[\[(]\s*(.*?)\s*[\])]\s*")
 _SI = {"time": "s", "gear_speed": "rad s-1"}
-_NAMES = {"t": "time", "time": "time", "speed": "gear_speed", "gear_speed": "gear_speed"}
+_SETTINGS = ("columns", "skip", "delimiter", "decimal", "bridge")
+_DELIMITERS = {
+    "tab": "\t",
+    "tabs": "\t",
+    "\\t": "\t",
+    "semicolon": ";",
+    "comma": ",",
+    "blank": "",
+    "blanks": "",
+    " ": "",
+}
 _LARGEST = 2**30
 """Files larger than this [bytes] are refused: a record of a minute at 100 kHz has a tenth of it."""
 
 
-def read_signal(path: str | os.PathLike[str]) -> xr.Dataset:
+class Reading(TypedDict, total=False):
+    """How to read a record; see `read_signal`."""
+
+    columns: Sequence[str] | None
+    skip: int | None
+    delimiter: str | None
+    decimal: str | None
+    bridge: int
+
+
+def read_signal(
+    signal: str | os.PathLike[str] | pd.DataFrame,
+    *,
+    columns: Sequence[str] | None = None,
+    skip: int | None = None,
+    delimiter: str | None = None,
+    decimal: str | None = None,
+    bridge: int = 0,
+) -> xr.Dataset:
     """Read a record of the gear's speed.
 
     Parameters
     ----------
-    path : path-like
-        A CSV file whose first line names two columns and their units, ``time [s], gear_speed [rad/s]`` (other columns
-        are ignored, lines that begin with ``#`` too; separated by comma, semicolon or tab). The names may also stand in
-        a comment before the numbers, as ``numpy.savetxt(..., header="time [s], gear_speed [rad/s]")`` writes them; the
-        numbers below may then be separated by blanks. Or a netCDF file with the variables ``time`` and ``gear_speed``
-        and their attributes ``units``.
+    signal : path-like or DataFrame
+        A text file with a line of headings that name the columns and their units, ``time [s], gear_speed [rad/s]``; a
+        table with such columns; or a netCDF file with the variables ``time`` and ``gear_speed`` and their attributes
+        ``units``. In text, the headings may stand below other lines, their units in the line below them, or both in a
+        remark (after ``#``) as ``numpy.savetxt`` writes them. Other columns are ignored.
+    columns : pair of str, optional
+        Headings of time and speed, with the units where the headings have none; variables of a netCDF file. By default
+        the columns called ``time`` (or ``t``) and ``gear_speed`` (or ``speed``), or else the only ones with a unit of
+        time and of angular speed.
+    skip : int, optional
+        Lines above that of the headings, which is recognised by the columns otherwise.
+    delimiter : str, optional
+        What separates the cells: ``;``, ``,``, ``tab``, ``blanks`` or another character; recognised by default.
+    decimal : {'.', ','}, optional
+        Decimal sign; recognised by default.
+    bridge : int, optional
+        Missing samples in a row that are interpolated. A longer gap is an error; what is missing at the end is not part
+        of the record.
 
     Returns
     -------
     Dataset
-        ``gear_speed`` [rad/s] along ``time`` [s]; events and scene if the file is an archive.
+        ``gear_speed`` [rad/s] along ``time`` [s]; events and scene if the file is an archive. The attribute ``reading``
+        says in words what was recognised: separator, decimal sign, skipped lines, columns, interpolated samples.
 
     Raises
     ------
     SceneError
-        If the file cannot be read, lacks a column or a unit, or holds what is no number or an uneven time.
+        If the record cannot be read, lacks a column or a unit, or holds what is no number or an uneven time.
     """
-    source = Path(path)
+    table = {"skip": skip, "delimiter": delimiter, "decimal": decimal}
+    name = signal if isinstance(signal, str | os.PathLike) else type(signal).__name__
     try:
-        with source.open("rb") as file:
-            head = file.read(8)
-            size = file.seek(0, os.SEEK_END)
-    except OSError as error:
-        raise SceneError("signal", path, f"cannot be read ({error.strerror})") from error
-    if size > _LARGEST:
-        raise SceneError("signal", path, f"is larger than {_LARGEST >> 20} MB")
-    binary = head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF"))
-    ds = _from_netcdf(source) if binary else _from_csv(source)
-    signals(ds)  # refuses an uneven time and the like while the file can be named
+        wanted, most = _checked(columns, bridge), int(bridge)
+        if not isinstance(signal, str | os.PathLike):
+            _refuse(table, "a DataFrame")
+            ds = _from_frame(signal, wanted)
+        elif _is_netcdf(Path(signal)):
+            _refuse(table, "a netCDF file")
+            ds = _from_netcdf(Path(signal), wanted)
+        else:
+            ds = _from_text(Path(signal), wanted, table)
+        ds = _bridged(ds, most)
+        signals(ds)  # refuses an uneven time and the like while the file can be named
+    except SceneError as error:
+        if error.key in _SETTINGS:
+            raise
+        raise SceneError("signal", name, f"{error.key} = {error.value}: {error.allowed}") from None
+    except (OSError, ValueError) as error:
+        raise SceneError("signal", name, str(error)) from None
     return ds
 
 
-def _from_netcdf(source: Path) -> xr.Dataset:
+def _checked(columns: Sequence[str] | None, bridge: int) -> tuple[str, str] | None:
+    """Refuse settings that are none."""
+    if isinstance(bridge, bool) or not isinstance(bridge, int) or bridge < 0:
+        raise SceneError("bridge", shorten(bridge), "must be a whole number of samples, 0 or more")
+    if columns is None:
+        return None
+    if isinstance(columns, str) or len(columns) != 2 or not all(isinstance(name, str) for name in columns):
+        raise SceneError(
+            "columns", shorten(columns), "must be two headings, that of the time and that of the speed"
+        )
+    return columns[0].strip(), columns[1].strip()
+
+
+def _refuse(table: Mapping[str, object], what: str) -> None:
+    for name, value in table.items():
+        if value is not None:
+            raise SceneError(name, shorten(value), f"is for text files; this is {what}")
+
+
+def _is_netcdf(source: Path) -> bool:
+    check_regular(source, _LARGEST)
+    with source.open("rb") as file:
+        return file.read(8).startswith((b"\x89HDF\r\n\x1a\n", b"CDF"))
+
+
+def _from_netcdf(source: Path, wanted: tuple[str, str] | None) -> xr.Dataset:
     check_heaps("signal", source)
     try:
         ds = loaded(source)
     except Exception as error:
-        raise SceneError("signal", source, f"is damaged or not a netCDF file ({error})") from error
-    for name in _SI:
-        if name not in ds.variables:
-            raise SceneError("signal", source, f"lacks the variable {name}")
+        raise ValueError(f"is damaged or not a netCDF file ({error})") from error
+    for name, asked in zip(_SI, wanted or _SI, strict=True):
+        if asked not in ds.variables:
+            raise ValueError(f"lacks the variable {asked}")
+        ds = ds if asked == name else ds.rename({asked: name})
         if "units" not in ds[name].attrs:
-            raise SceneError("signal", source, f"does not state the units of {name} (attribute units)")
-    return ds
-
-
-def _from_csv(source: Path) -> xr.Dataset:
-    try:
-        head = _read_head(source)
-        columns = _columns(source, head.headings)
-        numbers = _numbers(source, head, [column for column, _ in columns.values()])
-        if numbers is None:
-            numbers = _numbers_by_line(source, head, columns)
-    except (OSError, UnicodeDecodeError) as error:
-        raise SceneError("signal", source, f"is neither text nor netCDF ({error})") from error
-    values = {
-        name: to_si(
-            xr.DataArray(numbers[:, place], attrs={"units": unit}), _SI[name], f"{source.name}: {name}"
+            raise ValueError(f"does not state the units of {name} (attribute units)")
+    in_si = {
+        name: (
+            ds[name].dims,
+            to_si(ds[name], units, f"{source.name}: {name}"),
+            {**ds[name].attrs, "units": units},
         )
-        for place, (name, (_, unit)) in enumerate(columns.items())
+        for name, units in _SI.items()
+        if str(ds[name].attrs["units"]) != units
     }
+    return ds.assign_coords({"time": in_si.pop("time")} if "time" in in_si else {}).assign(in_si)
+
+
+def _from_frame(frame: Any, wanted: tuple[str, str] | None) -> xr.Dataset:
+    if not (hasattr(frame, "columns") and hasattr(frame, "reset_index")):
+        raise ValueError("must be a file, a DataFrame, a Dataset or a DataArray")
+    if frame.index.name is not None:
+        frame = frame.reset_index()
+    found = find_columns([str(name) for name in frame.columns], wanted)
+    try:
+        columns = [frame.iloc[:, each.place].to_numpy(np.float64, na_value=np.nan) for each in found]
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"must hold numbers ({error})") from None
+    return _dataset(columns, found, ())
+
+
+def _from_text(source: Path, wanted: tuple[str, str] | None, given: Mapping[str, Any]) -> xr.Dataset:
+    table = open_table(
+        source,
+        largest=_LARGEST,
+        names=lambda headings: has_columns(headings, wanted),
+        delimiter=_character(given["delimiter"]),
+        decimal=_decimal(given["decimal"]),
+        skip=_lines(given["skip"]),
+        unit_row=True,
+    )
+    found = find_columns(table.headings, wanted)
+    numbers = table.numbers([each.place for each in found], holes=True)
+    return _dataset(list(numbers.T), found, table.recognised)
+
+
+def _dataset(columns: Sequence[Floats], found: Sequence[Column], said: Sequence[str]) -> xr.Dataset:
+    """Put columns into SI units; say which they are where their names do not."""
+    time, speed = (
+        to_si(xr.DataArray(values, attrs={"units": each.unit}), unit, each.heading)
+        for values, each, unit in zip(columns, found, _SI.values(), strict=True)
+    )
+    said = [*said, *(f"{each.heading!r} taken for the {each.meaning}" for each in found if each.recognised)]
     return xr.Dataset(
-        {"gear_speed": ("time", values["gear_speed"], {"units": _SI["gear_speed"]})},
-        coords={"time": ("time", values["time"], {"units": "s"})},
+        {"gear_speed": ("time", speed, {"units": _SI["gear_speed"]})},
+        coords={"time": ("time", time, {"units": "s"})},
+        attrs={"reading": ", ".join(said)},
     )
 
 
-class _Head(NamedTuple):
-    """What the beginning of a file tells.
-
-    Attributes
-    ----------
-    headings : list of str
-        Of the columns.
-    separator : str
-        Between the numbers; empty for blanks.
-    line, place : int
-        Number of lines before the first row of numbers, and its place in the file [bytes].
-    """
-
-    headings: list[str]
-    separator: str
-    line: int
-    place: int
+def _bridged(ds: xr.Dataset, most: int) -> xr.Dataset:
+    """Interpolate gaps of at most so many samples; say how many samples that are."""
+    if most == 0 or ds["gear_speed"].dims != ("time",):
+        return ds
+    times, first = _filled(ds["time"].values, most)
+    speeds, second = _filled(ds["gear_speed"].values, most)
+    if not first + second:
+        return ds
+    count = "1 sample" if first + second == 1 else f"{first + second} samples"
+    said = ", ".join(filter(None, [ds.attrs.get("reading", ""), f"{count} bridged"]))
+    ds = ds.assign_coords(time=("time", times, ds["time"].attrs))
+    return ds.assign(gear_speed=("time", speeds, ds["gear_speed"].attrs)).assign_attrs(reading=said)
 
 
-def _read_head(source: Path) -> _Head:
-    """Find headings and first row of numbers; headings may stand in a comment, as `numpy.savetxt` writes them.
-
-    Raises
-    ------
-    SceneError
-        If there is nothing in the file.
-    """
-    heading, remark, separator = "", "", ","
-    line = place = 0
-    with source.open("rb") as file:
-        for raw in file:
-            text = raw.decode("utf-8-sig" if line == 0 else "utf-8").strip()
-            if text.startswith("#"):
-                remark = text.lstrip("# ") if not heading and _names(text.lstrip("# ")) else remark
-            elif text and not heading and not (remark and _is_row(text)):
-                heading, separator = text, _separator(text)
-            elif text:
-                heading, separator = heading or remark, _separator(text) if not heading else separator
-                break
-            line, place = line + 1, place + len(raw)
-    if not heading:
-        raise SceneError("signal", source, "is empty")
-    return _Head(_headings(heading), separator, line, place)
+def _filled(values: Floats, most: int) -> tuple[Floats, int]:
+    """Values with short gaps interpolated, and how many they are."""
+    edges = np.flatnonzero(np.diff(np.isnan(values), prepend=False, append=False))
+    gaps = zip(edges[::2], edges[1::2], strict=True)
+    inside = [np.arange(a, b) for a, b in gaps if a > 0 and b < len(values) and b - a <= most]
+    if not inside:
+        return values, 0
+    missing, known = np.concatenate(inside), np.flatnonzero(~np.isnan(values))
+    filled = values.copy()
+    filled[missing] = np.interp(missing, known, values[known])
+    return filled, len(missing)
 
 
-def _separator(text: str) -> str:
-    """Separator of the cells of a line; empty if they are separated by blanks."""
-    best = max(",;\t", key=text.count)
-    return best if best in text else ""
+def _character(delimiter: str | None) -> str | None:
+    if delimiter is None:
+        return None
+    found = _DELIMITERS.get(delimiter.lower(), delimiter) if isinstance(delimiter, str) else "?"
+    if len(found) > 1 or found.isalnum() or found in ('"', ".", "?", "#", "\n", "\r"):
+        raise SceneError(
+            "delimiter", shorten(delimiter), "must be one character, such as ';', or tab or blanks"
+        )
+    return found
 
 
-def _headings(text: str) -> list[str]:
-    """Cells of the line of headings, which may contain blanks before their unit."""
-    separator = _separator(text)
-    if separator:
-        return next(csv.reader([text], delimiter=separator))
-    found = re.findall(r"[^\[\]()]+[\[(][^\])]*[\])]", text)
-    return found if len(found) > 1 else [text]
+def _decimal(decimal: str | None) -> str | None:
+    if decimal not in (None, ".", ","):
+        raise SceneError("decimal", shorten(decimal), "must be '.' or ','")
+    return decimal
 
 
-def _names(text: str) -> bool:
-    """Whether a comment names the columns that are read."""
-    bare = (match[1] if (match := _HEADING.fullmatch(one)) else one for one in _headings(text))
-    return set(_SI) <= {_NAMES.get(one.strip().lower().replace(" ", "_")) for one in bare}
-
-
-def _is_row(text: str) -> bool:
-    """Whether a line holds numbers."""
-    try:
-        return all(float(cell) is not None for cell in text.split(_separator(text) or None))
-    except ValueError:
-        return False
-
-
-def _numbers(source: Path, head: _Head, wanted: list[int]) -> Floats | None:
-    """Read all rows at once; None if a row is not as it should be, which `_numbers_by_line` then looks for."""
-    with source.open("rb") as file:
-        file.seek(head.place)
-        try:
-            table = pd.read_csv(
-                file,
-                sep=head.separator or r"\s+",
-                header=None,
-                usecols=wanted,
-                dtype=np.float64,
-                na_filter=False,
-                engine="c",
-            )
-        except ValueError:  # pandas' own errors are of this kind
-            return None
-    numbers = np.column_stack([table[column].to_numpy() for column in wanted])
-    return numbers if np.isfinite(numbers).all() else None
-
-
-def _numbers_by_line(source: Path, head: _Head, columns: dict[str, tuple[int, str]]) -> Floats:
-    """Read row by row, and name the first that is wrong.
-
-    Raises
-    ------
-    SceneError
-        If one is.
-    """
-    rows: list[list[float]] = []
-    with source.open(encoding="utf-8-sig") as file:
-        for number, line in enumerate(file, 1):
-            if number <= head.line or not line.strip() or line.lstrip().startswith("#"):
-                continue
-            cells = line.split(head.separator or None)
-            row = []
-            for name, (column, _) in columns.items():
-                found = cells[column].strip() if column < len(cells) else "nothing"
-                try:
-                    row.append(float(cells[column]))
-                except (ValueError, IndexError):
-                    raise SceneError(
-                        "signal", source, f"line {number}: {name} is {found[:40]!r}, not a number"
-                    ) from None
-            if not np.isfinite(row).all():
-                raise SceneError("signal", source, f"line {number}: every number must be finite")
-            rows.append(row)
-    return np.array(rows).reshape(-1, len(columns))
-
-
-def _columns(source: Path, headings: list[str]) -> dict[str, tuple[int, str]]:
-    """Place and unit of the time and the speed among the headings."""
-    example = "the first line must name the columns and their units, such as: time [s], gear_speed [rad/s]"
-    found: dict[str, tuple[int, str]] = {}
-    for column, heading in enumerate(headings):
-        match = _HEADING.fullmatch(heading)
-        bare = match[1] if match else heading.strip()
-        name = _NAMES.get(bare.strip().lower().replace(" ", "_"))
-        if name is None:
-            continue
-        if match is None or not match[2]:
-            raise SceneError("signal", source, f"{bare!r} states no unit; {example}")
-        if name in found:
-            raise SceneError("signal", source, f"has two columns for {name}")
-        found[name] = (column, match[2])
-    missing = [name for name in _SI if name not in found]
-    if missing:
-        raise SceneError("signal", source, f"has no column {' nor '.join(missing)}; {example}")
-    return {name: found[name] for name in _SI}
+def _lines(skip: int | None) -> int | None:
+    if skip is not None and (isinstance(skip, bool) or not isinstance(skip, int) or skip < 0):
+        raise SceneError("skip", shorten(skip), "must be a whole number of lines, 0 or more")
+    return skip

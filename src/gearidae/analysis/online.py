@@ -8,9 +8,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from gearidae.analysis.assessment import Assessment, check_settings, judge
+from gearidae.analysis.assessment import Assessment, judge
 from gearidae.analysis.map_model import map_model
-from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal, signals
+from gearidae.analysis.sensor import check_sensor
+from gearidae.analysis.signal import CALIBRATION, FEWEST_SAMPLES, Floats, Signal, signals
 from gearidae.errors import SceneError
 
 __all__ = ["OnlineAssessment"]
@@ -29,7 +30,7 @@ class OnlineAssessment:
     ----------
     map : Dataset
         From `coating_map`.
-    history, anti_alias_filter : optional
+    history, anti_alias_filter, calibration, offset : optional
         As for `assess`.
 
     Raises
@@ -52,10 +53,11 @@ class OnlineAssessment:
         *,
         history: str = "auto",
         anti_alias_filter: float | None = None,
+        calibration: float | str = CALIBRATION,
+        offset: float | str = 0.0,
     ) -> None:
         self._model = map_model(map)
-        self._cutoff = check_settings(history, anti_alias_filter)
-        self._history = history
+        self._sensor = check_sensor(history, anti_alias_filter, calibration, offset)
         self._times: list[Floats] = []
         self._speeds: list[Floats] = []
         self._last = -math.inf
@@ -74,9 +76,7 @@ class OnlineAssessment:
         """Assessment of all that has been fed; the same as `assess` gives for it."""
         if self._stale:
             record = self._record()
-            self._estimate = (
-                _NOTHING if record is None else judge(record, self._model, self._history, self._cutoff)
-            )
+            self._estimate = _NOTHING if record is None else judge(record, self._model, self._sensor)
             self._stale = False
         return self._estimate
 

@@ -170,7 +170,7 @@ def impact_frequencies(
         If there is no gear speed, or nothing tells the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
-    found = [rings_of(each, check_width(width)) for each in batch.signals]
+    found = [rings_of(each.forward(), check_width(width)) for each in batch.signals]
     columns: dict[str, tuple[str, dict[str, Any]]] = {
         "frequency": ("frequency of the impact response", {"units": "Hz"}),
         "uncertainty": ("standard uncertainty of the frequency", {"units": "Hz"}),
@@ -220,7 +220,7 @@ def impact_spectrum(
         If there is no gear speed, or nothing tells the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
-    windows = [windows_of(each, check_width(width)) for each in batch.signals]
+    windows = [windows_of(each.forward(), check_width(width)) for each in batch.signals]
     pieces = [
         [piece_of(each, start, stop) for _, start, stop in rows]
         for each, rows in zip(batch.signals, windows, strict=True)

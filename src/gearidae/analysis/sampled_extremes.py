@@ -10,11 +10,12 @@ import xarray as xr
 
 from gearidae.archive.pieces import first_above, pieces, reached, spread
 from gearidae.archive.select import is_roller, scene_of
-from gearidae.records import Extremes
+from gearidae.records import RUN_PARTS, Extremes
 
 __all__ = ["extremes_of_samples"]
 
-_START_UP, _LAST, _HELD_WITHIN = 0.05, 0.95, 0.5
+_START_UP, _HALF, _LAST = RUN_PARTS
+_HELD_WITHIN = 0.5
 
 
 def extremes_of_samples(run: xr.Dataset) -> Extremes | None:
@@ -43,7 +44,7 @@ def _of_gear(run: xr.Dataset, end: int) -> dict[str, float]:
     speed = run["gear_speed"]
     whole = spread(speed, 0, end)
     settled = spread(speed, int(_START_UP * end), end)
-    late = spread(speed, end // 2, end)
+    late = spread(speed, int(_HALF * end), end)
     fall, rise = _fall_and_rise(speed, int(_START_UP * end), end)
     return {
         "min_gear_speed": whole.low,

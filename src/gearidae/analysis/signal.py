@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,12 +17,14 @@ from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene.units import from_text
 
-__all__ = ["FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
+__all__ = ["CALIBRATION", "FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
 
 Floats = NDArray[np.float64]
 
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""
+CALIBRATION = 0.015
+"""Relative uncertainty of a speed of whose sensor nothing is known."""
 _UNEVEN = 0.1
 """Largest departure of a sample's time from the uniform grid, in sampling intervals."""
 _EXPONENT = re.compile(r"(?<=[A-Za-z])(-?\d)")
@@ -44,6 +46,8 @@ class Signal:
         Times at which tooth pairs left the mesh on the drive flank [s]; None if no events are known.
     gear_teeth : int or None
         Teeth of the gear, if the scene is known.
+    calibration : float
+        Relative uncertainty of the values, which all of them share [1].
     """
 
     start: float
@@ -51,6 +55,7 @@ class Signal:
     values: Floats
     exits: Floats | None = None
     gear_teeth: int | None = None
+    calibration: float = CALIBRATION
 
     @property
     def time(self) -> Floats:
@@ -61,6 +66,16 @@ class Signal:
     def rate(self) -> float:
         """Sampling rate [Hz]."""
         return 1.0 / self.interval
+
+    def forward(self) -> Signal:
+        """Return the record of a gear that turns forward: with the sign reversed where a sensor counts the other way.
+
+        A gear that sticks turns back by less than a pitch. Where events are known, so is the direction.
+        """
+        angle = np.cumsum(self.values) * self.interval
+        pitch = 2.0 * np.pi / (self.gear_teeth or 1)
+        backward = len(angle) and angle[-1] < -pitch and angle.max() < pitch
+        return replace(self, values=-self.values) if backward and self.exits is None else self
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +125,7 @@ def signals(
     Raises
     ------
     SceneError
-        If the variable or its time is missing, or the time is not uniform.
+        If the variable or its time is missing, the time is not uniform, or a sample within a record is missing.
     """
     if not isinstance(data, xr.Dataset | xr.DataArray):
         raise SceneError("signal", type(data).__name__, "must be an xarray Dataset or DataArray")
@@ -127,8 +142,11 @@ def signals(
     name = variable if array.name is None else str(array.name)
     units = SAMPLES[name].units if name in SAMPLES else str(array.attrs.get("units", "1"))
     array = array.transpose(..., "time")
-    start, interval = _uniform(to_si(array["time"], "s", "time"))
-    samples = to_si(array, units, name)
+    time, samples = to_si(array["time"], "s", "time"), to_si(array, units, name)
+    start, interval = _uniform(time)
+    # a running mean has nothing for the first samples
+    late = int(np.isfinite(samples).reshape(-1, samples.shape[-1]).any(axis=0).argmax())
+    start, samples = start + late * interval, samples[..., late:]
     dims = tuple(str(dim) for dim in array.dims[:-1])
     teeth = gear_teeth if gear_teeth is not None else _gear_teeth(data.attrs)
     exits = _exits_of(data, array, dims)
@@ -139,7 +157,7 @@ def signals(
         shape=samples.shape[:-1],
         coords={str(key): value for key, value in array.coords.items() if "time" not in value.dims},
         signals=tuple(
-            Signal(start, interval, _finite(samples[place]), exits(place), teeth)
+            Signal(start, interval, _until_end(samples[place], name, time, late), exits(place), teeth)
             for place in np.ndindex(samples.shape[:-1])
         ),
     )
@@ -223,7 +241,8 @@ def _uniform(time: Floats) -> tuple[float, float]:
     if len(time) < FEWEST_SAMPLES:
         raise SceneError("time", f"({len(time)} samples)", f"a record needs {FEWEST_SAMPLES} samples or more")
     if not np.isfinite(time).all():
-        raise SceneError("time", "(nan)", "must be finite numbers")
+        missing = int((~np.isfinite(time)).argmax())
+        raise SceneError("time", time[missing], f"sample {missing} has no time: every sample needs one")
     interval = (time[-1] - time[0]) / (len(time) - 1)
     if not interval > 0.0:
         raise SceneError("time", f"{time[0]:g}..{time[-1]:g} s", "must increase")
@@ -236,10 +255,19 @@ def _uniform(time: Floats) -> tuple[float, float]:
     return float(time[0]), float(interval)
 
 
-def _finite(values: Floats) -> Floats:
-    """Cut a record at its first missing sample."""
-    missing = ~np.isfinite(values)
-    return values[: int(missing.argmax())] if missing.any() else values
+def _until_end(values: Floats, name: str, time: Floats, late: int) -> Floats:
+    """Cut a record, whose first sample is number `late`, behind its last; refuse one in which others are missing."""
+    present = np.isfinite(values)
+    end = len(values) - int(present[::-1].argmax()) if present.any() else 0
+    if not present[:end].all():
+        first, count = int(present.argmin()), int((~present[:end]).sum())
+        raise SceneError(
+            name,
+            values[first],
+            f"sample {first + late} ({time[first + late]:.9g} s) is missing, within the record ({count} in all): "
+            "interpolate them (bridge=..., --bridge of a file; .interpolate_na('time')), or take a part without any",
+        )
+    return values[:end]
 
 
 def _gear_teeth(attrs: Mapping[Any, Any]) -> int | None:

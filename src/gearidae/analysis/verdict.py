@@ -20,11 +20,11 @@ from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of
 from gearidae.archive.verdict import IRREGULAR_ABOVE, gear_verdict, in_touch, is_scheduled, roller_verdict
-from gearidae.records import EventKind
+from gearidae.records import RUN_PARTS, EventKind
 
 __all__ = ["IRREGULAR_ABOVE", "START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
 
-START_UP = 0.05
+START_UP = RUN_PARTS[0]
 """Share of the run in which the teeth may still bounce from how they were set down."""
 
 
@@ -77,6 +77,10 @@ class GearOutcome(Shown):
     mesh_exits: int
     window: float
     imbalance: float = math.nan
+
+    def resolved_min_speed(self, rtol: float) -> float:
+        """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
+        return 0.0 if abs(self.min_speed) <= rtol * self.max_speed else self.min_speed
 
     @property
     def words(self) -> str:

@@ -2,8 +2,9 @@
 
 from gearidae.archive.dataset import combine, dimension_names, reached, to_dataset
 from gearidae.archive.growing import GrowingArchive
-from gearidae.archive.netcdf import check_target, open_archive, save
+from gearidae.archive.netcdf import open_archive, save
 from gearidae.archive.provenance import SCHEMA_VERSION
+from gearidae.archive.target import check_target
 from gearidae.archive.variables import Variable
 
 __all__ = [

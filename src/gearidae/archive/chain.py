@@ -17,12 +17,10 @@ from gearidae.archive.select import run_scene
 from gearidae.archive.single import single_run
 from gearidae.archive.variables import RUN
 from gearidae.errors import SceneError
-from gearidae.scene.differences import first_difference
+from gearidae.scene.differences import MAY_CHANGE, first_difference
 
 __all__ = ["chained"]
 
-_MAY_DIFFER = ("name", "run", "drive", "load", "coating", "initial")
-"""What may change from run to run of a chain; what starts from another run's end has no start of its own."""
 _CONTINUOUS = ("gear_speed", "pinion_speed", "gear_angle", "transmission_error", "height", "speed")
 """What cannot jump where one run goes on from another."""
 _SEAM = 1e3
@@ -53,7 +51,7 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     scenes = [run_scene(part) for part in parts]
     singles = [single_run(part) for part in parts]
     for number, scene in enumerate(scenes[1:], 1):
-        found = first_difference(scenes[0], scene, ignored=_MAY_DIFFER)
+        found = first_difference(scenes[0].to_dict(), scene.to_dict(), ignored=MAY_CHANGE)
         if found is not None:
             raise SceneError(
                 found[0], found[2], f"of {part_name(number)} must be {found[1]}, as in the first"

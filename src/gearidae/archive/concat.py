@@ -18,12 +18,13 @@ from gearidae.archive.joint import history_of, part_name, software_of
 from gearidae.archive.keep import kept_in
 from gearidae.archive.select import run_value, runs, scene_of
 from gearidae.archive.single import single_run
-from gearidae.archive.stack import Axis, held, stack
+from gearidae.archive.stack import Axis, stack
 from gearidae.archive.variables import ENERGY_BALANCE, EXPOSURES, EXTREMES, RUN, VERDICT
 from gearidae.errors import SceneError
 from gearidae.records import Events, Solution, Statistics
 from gearidae.scene import Scene, describe_keys
 from gearidae.scene.differences import first_difference
+from gearidae.scene.keys import scene_value
 
 __all__ = ["concat"]
 
@@ -115,7 +116,7 @@ def _key_of(parts: Sequence[xr.Dataset], dim: str) -> str:
 
 def _value(part: xr.Dataset, key: str) -> Any:
     try:
-        return held(Scene.from_dict(scene_of(part)), key)
+        return scene_value(Scene.from_dict(scene_of(part)), key)
     except (AttributeError, LookupError, TypeError):
         return None
 
@@ -176,7 +177,7 @@ def _order(axes: Sequence[Axis], scenes: Sequence[Scene]) -> list[int]:
         index = []
         for axis in axes:
             leader = next(iter(axis))
-            value = held(scene, leader)
+            value = scene_value(scene, leader)
             if value not in axis[leader]:
                 raise SceneError(leader, value, "is not among the values of the datasets")
             index.append(axis[leader].index(value))
@@ -187,7 +188,7 @@ def _order(axes: Sequence[Axis], scenes: Sequence[Scene]) -> list[int]:
 def _refuse_differences(scenes: Sequence[Scene], swept: Sequence[str]) -> None:
     """Name the first key in which runs differ that is not swept."""
     for scene in scenes[1:]:
-        found = first_difference(scenes[0], scene, ignored=("name", *swept))
+        found = first_difference(scenes[0].to_dict(), scene.to_dict(), ignored=("name", *swept))
         if found is not None:
             key, ours, theirs = found
             raise SceneError(

@@ -28,7 +28,6 @@ from gearidae.archive.growing_layout import COPIED, lay_out
 from gearidae.archive.integrity import with_checksums
 from gearidae.archive.journal import HEADER, Checkpoint, newest
 from gearidae.archive.library import opened
-from gearidae.archive.lock import WriterLock, take_or_refuse
 from gearidae.archive.variables import EVENTS, POPULATION_EVENTS
 from gearidae.records import Block, Statistics
 
@@ -44,7 +43,7 @@ _EVENT_COLUMNS = ("event_time", "event_kind", "event_pair", "event_flank", "even
 
 
 class GrowingArchive:
-    """The archive of a run under way, open for writing.
+    """The archive of a run under way, open for writing; `gearidae.archive.target.claims_target` keeps others away.
 
     Parameters
     ----------
@@ -52,8 +51,6 @@ class GrowingArchive:
         The file, made by `create`.
     template : xarray.Dataset
         What the run's dataset will be, without samples and events.
-    held : WriterLock, optional
-        The right to write it, if the caller has that already.
 
     Attributes
     ----------
@@ -62,15 +59,12 @@ class GrowingArchive:
 
     Raises
     ------
-    SceneError
-        If another process is writing it.
     DiskError
         If it cannot be opened or is damaged.
     """
 
-    def __init__(self, path: Path, template: xr.Dataset, held: WriterLock | None = None) -> None:
+    def __init__(self, path: Path, template: xr.Dataset) -> None:
         self.path = path
-        self._held = held or take_or_refuse(path)
         self._template = template
         self._columns = [
             str(name) for name, variable in template.data_vars.items() if variable.dims == ("time",)
@@ -79,12 +73,8 @@ class GrowingArchive:
         self._checkpointed = time.monotonic()
         self._sequence = 0
         self.samples = self.events = 0
-        try:
-            with disk_errors():
-                self._descriptor = self._open(path)
-        except BaseException:
-            self._held.release()
-            raise
+        with disk_errors():
+            self._descriptor = self._open(path)
 
     @classmethod
     def create(cls, path: Path, template: xr.Dataset, samples: int, duration: float, words: int) -> Self:
@@ -107,10 +97,7 @@ class GrowingArchive:
         ------
         DiskError
             If the disk does not take it; nothing is left behind then.
-        SceneError
-            If another process is writing that file.
         """
-        held = take_or_refuse(path)
         sizes = {
             "time": samples,
             "event": max(samples, EVENT_ROOM),
@@ -118,18 +105,14 @@ class GrowingArchive:
             "checkpoint_word": HEADER + words,
         }
         part = _part(path)
-        try:
-            with disk_errors():
-                try:
-                    lay_out(part, template, sizes, duration)
-                    part.replace(path)
-                finally:
-                    part.unlink(missing_ok=True)
-                sync(path.parent)
-        except BaseException:
-            held.release()
-            raise
-        return cls(path, template, held)
+        with disk_errors():
+            try:
+                lay_out(part, template, sizes, duration)
+                part.replace(path)
+            finally:
+                part.unlink(missing_ok=True)
+            sync(path.parent)
+        return cls(path, template)
 
     def __enter__(self) -> Self:
         return self
@@ -138,11 +121,7 @@ class GrowingArchive:
         self.close()
 
     def close(self) -> None:
-        """Let go of the file."""
-        self._close_file()
-        self._held.release()
-
-    def _close_file(self) -> None:
+        """Close the file."""
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1
@@ -232,12 +211,11 @@ class GrowingArchive:
             part.unlink(missing_ok=True)
             try:
                 self._compact(template, part)
-                self._close_file()  # Windows replaces no file that is open
+                self.close()  # Windows replaces no file that is open
                 part.replace(self.path)
             finally:
                 part.unlink(missing_ok=True)
             sync(self.path.parent)
-        self.close()
 
     def _compact(self, template: xr.Dataset, part: Path) -> None:
         define(with_checksums(template), part, {"time": self.samples, "event": self.events})
@@ -292,7 +270,7 @@ class GrowingArchive:
             duration = float(last.max(initial=begin)) - begin
             lay_out(part, self._template, self._sizes | {dimension: room}, duration)
             self._copy_all(part)
-            self._close_file()  # Windows replaces no file that is open
+            self.close()  # Windows replaces no file that is open
             try:
                 part.replace(self.path)
             finally:

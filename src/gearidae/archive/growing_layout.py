@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
 from gearidae.archive.definition import define
@@ -16,7 +15,7 @@ from gearidae.archive.disk import sync
 from gearidae.archive.end_state import packed_state
 from gearidae.archive.journal import COUNTERS, newest
 from gearidae.archive.library import opened
-from gearidae.records import first_sample
+from gearidae.records import sample_times
 
 __all__ = ["COPIED", "is_growing", "lay_out", "trimmed"]
 
@@ -66,13 +65,9 @@ def lay_out(path: Path, template: xr.Dataset, sizes: Mapping[str, int], duration
     path.unlink(missing_ok=True)
     define(template, path, sizes, _COUNTERS)
     total, begin = sizes["time"], float(template.attrs.get("start_time", 0.0))
-    first = first_sample(begin, begin + duration, total)
     with opened(path, "a") as file:
         for start in range(0, total, COPIED):
-            number = np.arange(start, min(start + COPIED, total), dtype=np.float64)
-            times = (first + number) * (duration / (total - 1))  # as `sample_times` has it, to the last bit
-            times[number == 0] = begin
-            times[number == total - 1] = begin + duration
+            times = sample_times(begin, duration, total, range(start, min(start + COPIED, total)))
             file["time"][start : start + times.size] = times
         file["checkpoint"][:] = 0.0
     sync(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import sys
@@ -11,18 +12,28 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import netCDF4
 import xarray as xr
 
-__all__ = ["LIBRARY", "await_lock", "loaded", "opened", "uninterrupted"]
+__all__ = ["LIBRARY", "await_lock", "check_size", "loaded", "opened", "uninterrupted"]
 
 _PATIENCE: Final = 5.0
 """Time [s] for which a file's lock is waited for."""
 
 LIBRARY: Final = threading.RLock()
 """To be held while netCDF's library is used, which may end the program if two threads do so at once."""
+if hasattr(os, "register_at_fork"):
+    # a process that is forked while a thread writes would find the lock taken for ever, and the library half changed
+    os.register_at_fork(
+        before=LIBRARY.acquire, after_in_parent=LIBRARY.release, after_in_child=LIBRARY.release
+    )
+
+_MOST_SHRUNK: Final = 1032
+"""Bytes that one byte in a file can stand for: deflate, which HDF5 compresses by, shrinks nothing further."""
+_ALWAYS_READ: Final = 128 * 2**20
+"""Bytes that a file may declare in any case."""
 
 
 @contextmanager
@@ -73,8 +84,38 @@ def loaded(path: Path) -> xr.Dataset:
     """
     with uninterrupted():
         await_lock(path)
+        with netCDF4.Dataset(path) as declared:
+            check_size(declared, path)
         with xr.open_dataset(path, decode_times=False) as file:
             return file.load()
+
+
+def check_size(file: netCDF4.Dataset, path: Path) -> None:
+    """Refuse a file that declares more than it can hold: what is missing in it would be made up in memory.
+
+    Parameters
+    ----------
+    file : netCDF4.Dataset
+        As it has been opened.
+    path : Path
+
+    Raises
+    ------
+    ValueError
+        If it does.
+    """
+    size = path.stat().st_size
+    declared = sum(map(_declared, file.variables.values()))
+    if declared > max(_MOST_SHRUNK * size, _ALWAYS_READ):
+        raise ValueError(f"it declares {declared / 1e9:.3g} GB and has {size / 1e6:.3g} MB")
+
+
+def _declared(variable: Any) -> int:
+    """Bytes that a variable takes in memory, or one of its chunks if that is larger."""
+    chunks = variable.chunking()
+    pieces = chunks if isinstance(chunks, list) else variable.shape
+    count: int = max(math.prod(variable.shape), math.prod(pieces))
+    return count * int(getattr(variable.dtype, "itemsize", 8))
 
 
 def await_lock(path: Path) -> None:

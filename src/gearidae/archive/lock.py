@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import os
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final, Self
 
@@ -18,7 +19,7 @@ from filelock import FileLock, Timeout, lock_descriptor
 
 from gearidae.errors import SceneError
 
-__all__ = ["WriterLock", "is_locked", "take_or_refuse"]
+__all__ = ["WriterLock", "claimed", "is_locked"]
 
 _PATIENCE: Final = 0.5
 """Time [s] for which a writer tries: whoever asks whether there is one holds the lock for some microseconds, and for as
@@ -70,8 +71,16 @@ class WriterLock:
         held.release()
 
 
-def take_or_refuse(archive: Path) -> WriterLock:
-    """Mark an archive as being written.
+@contextmanager
+def claimed(archive: Path, name: str = "archive") -> Iterator[None]:
+    """Mark an archive as being written until the block is left.
+
+    Parameters
+    ----------
+    archive : Path
+        It need not exist yet; its folder must.
+    name : str, optional
+        How the error calls it.
 
     Raises
     ------
@@ -80,8 +89,11 @@ def take_or_refuse(archive: Path) -> WriterLock:
     """
     held = WriterLock.take(archive)
     if held is None:
-        raise SceneError("archive", archive, "is being written by another run")
-    return held
+        raise SceneError(name, archive, "is being written by another run")
+    try:
+        yield
+    finally:
+        held.release()
 
 
 def is_locked(archive: Path) -> bool:

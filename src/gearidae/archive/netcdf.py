@@ -12,62 +12,28 @@ import xarray as xr
 
 from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, chunked
-from gearidae.archive.disk import part_beside, sync
+from gearidae.archive.disk import disk_errors
 from gearidae.archive.growing_layout import is_growing, trimmed
 from gearidae.archive.heaps import check_heaps
 from gearidae.archive.integrity import CheckedStore, verify, with_checksums
 from gearidae.archive.keep import kept_in
-from gearidae.archive.library import await_lock, uninterrupted
+from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
 from gearidae.archive.provenance import SCHEMA_VERSION
+from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
 from gearidae.archive.variables import EVENTS, columns
 from gearidae.errors import SceneError
+from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES
 from gearidae.scene import Scene
 
-__all__ = ["check_target", "open_archive", "save"]
+__all__ = ["open_archive", "save"]
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _JUDGED = ("verdict", "impacts")
 """What archives of runs that kept parts only have had from the first."""
 _LAZY_ABOVE = 128 * 2**20
 """Archives larger than this [bytes in memory] are read piece by piece as they are used."""
-
-
-def check_target(path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
-    """Make sure, before anything is computed, that an archive can be written.
-
-    Parameters
-    ----------
-    path : path-like
-        Where the archive is to go.
-    overwrite : bool, optional
-        Whether a file that is there may be replaced.
-
-    Returns
-    -------
-    Path
-        The file to write, links followed.
-
-    Raises
-    ------
-    SceneError
-        If the file exists and may not be replaced, or its folder is missing or cannot be written to.
-    """
-    target = _as_path(path)
-    if target.is_dir():
-        raise SceneError("archive", path, "is a folder: name a file")
-    if target.exists() and not overwrite:
-        raise SceneError(
-            "archive",
-            path,
-            "exists already: name another with -o (archive=), or allow --overwrite (overwrite=True)",
-        )
-    if not target.parent.is_dir():
-        raise SceneError("archive", path, f"there is no folder {target.parent}")
-    if not os.access(target.parent, os.W_OK | os.X_OK):
-        raise SceneError("archive", path, f"the folder {target.parent} cannot be written to")
-    return Path(os.path.realpath(target))
 
 
 @uninterrupted()
@@ -96,20 +62,11 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
     SceneError
         If the target is refused (see `check_target`) or the disk does not take the data.
     """
-    target = check_target(path, overwrite=overwrite)
-    part = part_beside(target)
-    try:
+    with whole_file(path, overwrite=overwrite) as part, disk_errors():
         with_checksums(ds.drop_encoding()).to_netcdf(
             part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds)
         )
-        sync(part)
-        part.replace(target)
-        sync(target.parent)
-    except (OSError, RuntimeError) as error:  # netCDF4 reports a full disk as either
-        raise SceneError("archive", path, f"could not be written ({error})") from error
-    finally:
-        part.unlink(missing_ok=True)
-    return target
+    return Path(os.path.realpath(path))
 
 
 @uninterrupted()
@@ -135,7 +92,9 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         If the file is missing, unreadable, damaged, not an archive of gearidae, or of a layout this version
         does not know. Nothing in the file is ever executed.
     """
-    source = _as_path(path)
+    source = as_path(path)
+    if source.exists() and not (source.is_file() or source.is_dir()):
+        raise SceneError("archive", path, "is no file that can be read")
     try:
         with source.open("rb") as file:
             signature = file.read(len(_HDF5_SIGNATURE))
@@ -174,6 +133,7 @@ def _opened(source: Path) -> xr.Dataset:
     await_lock(source)
     store = CheckedStore.open(str(source))  # type: ignore[no-untyped-call]
     try:
+        check_size(store.ds, source)
         variables = store.ds.variables
         if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= _LAZY_ABOVE:
             return xr.open_dataset(store, decode_times=False)
@@ -189,13 +149,6 @@ def _opened(source: Path) -> xr.Dataset:
     except BaseException:
         store.close()
         raise
-
-
-def _as_path(path: str | os.PathLike[str]) -> Path:
-    try:
-        return Path(path)
-    except TypeError as error:
-        raise SceneError("archive", path, "must be a file name") from error
 
 
 def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
@@ -217,8 +170,9 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 
 
 def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
-    """Variables that an archive has at least."""
-    sampled = columns(is_roller="roller" in scene)
+    """Variables that an archive has at least, of whichever version."""
+    later = {one.name for one in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if one.since}
+    sampled = tuple(name for name in columns(is_roller="roller" in scene) if name not in later)
     if "keep" not in ds.attrs:
         return ("time", *sampled, *EVENTS)
     try:

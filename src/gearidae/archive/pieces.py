@@ -75,12 +75,12 @@ def spread(array: xr.DataArray, start: int = 0, stop: int | None = None) -> Spre
 
 
 def reached(array: xr.DataArray) -> int:
-    """Samples of a run up to where it ended, from where on they are missing."""
-    for place, values in pieces(array):
-        missing = ~np.isfinite(values)
-        if missing.any():
-            return place + int(missing.argmax())
-    return int(array.size)
+    """Samples of a run up to its last one; the first ones may be missing, as in a running mean."""
+    for place in reversed(range(0, array.size, PIECE)):
+        present = np.isfinite(array.variable[place : place + PIECE].values)
+        if present.any():
+            return place + len(present) - int(present[::-1].argmax())
+    return 0
 
 
 def first_above(array: xr.DataArray, level: float) -> int:

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -25,7 +25,7 @@ from gearidae.archive.select import is_roller, scene_of
 from gearidae.records import EventKind, Extremes
 from gearidae.scene import Scene
 
-__all__ = ["Account", "account", "account_of", "with_account"]
+__all__ = ["Account", "account", "account_of", "counted_over", "with_account"]
 
 Floats = NDArray[np.float64]
 Read = Callable[[str, slice], NDArray[Any]]
@@ -34,6 +34,8 @@ PIECE = 2**18
 """Samples, or events, looked at together."""
 AT_SPEED = 0.95
 """Share of its largest sampled speed from which a gear counts as up to speed."""
+OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "time_at_rest", "impacts"})
+"""Rows of the account that begin with a run that goes on from another; everything else goes on over the chain."""
 _HELD_WITHIN = 0.5
 """Tooth pitches that a gear held by adhesion stays within."""
 _COLUMNS = (
@@ -49,6 +51,8 @@ _COLUMNS = (
 @dataclass(frozen=True, slots=True)
 class Account:
     """What one run of a gear pair did; times in s, work and energies in J, NaN for what was not sampled.
+
+    Of a run that goes on from another, `OF_ONE_RUN` names what is of this run alone.
 
     Attributes
     ----------
@@ -147,10 +151,25 @@ def account(ds: xr.Dataset) -> Account | None:
         lambda name, cut: ds[name][cut].values,
         ds.sizes["time"],
         ds.sizes["event"],
-        end,
+        (float(ds.attrs.get("start_time", 0.0)), end),
         balance_of(ds),
         extremes_of(ds),
     )
+
+
+def counted_over(name: str, attributes: Mapping[Hashable, Any]) -> str:
+    """Say what a row of the account or of the energy balance is counted over; nothing of a run with its own beginning.
+
+    Parameters
+    ----------
+    name : str
+        Of an attribute of `Account`, or a term of the balance.
+    attributes : mapping
+        Of the run's dataset.
+    """
+    if "start_time" not in attributes:
+        return ""
+    return "this run" if name in OF_ONE_RUN else "the chain"
 
 
 def account_of(
@@ -158,7 +177,7 @@ def account_of(
     read: Read,
     samples: int,
     events: int,
-    end: float,
+    span: tuple[float, float],
     balance: Mapping[str, float] | None = None,
     extremes: Extremes | None = None,
 ) -> Account:
@@ -172,8 +191,8 @@ def account_of(
         Returns the values of a variable, named as in a dataset, in a slice.
     samples, events : int
         How many there are.
-    end : float
-        Time that the run is known to have reached [s], besides that of samples and events.
+    span : tuple of two floats
+        When the run began [s], and the time that it is known to have reached besides that of samples and events.
     balance : mapping, optional
         The run's energy balance, from `gearidae.archive.energy.balance_of`.
     extremes : Extremes, optional
@@ -183,7 +202,8 @@ def account_of(
     -------
     Account
     """
-    incidents = _Events(scene)
+    start, end = span
+    incidents = _Events(scene, start)
     for piece in _pieces(read, events, ("event_time", "event_kind")):
         incidents.add(piece["event_time"], piece["event_kind"])
     fine = _Samples(scene)
@@ -194,7 +214,8 @@ def account_of(
     if extremes is not None:
         top = extremes.max_gear_speed
         force, force_time = _largest_force(extremes)
-    at_rest, resting = incidents.rest(end, moved=top > 0.0)
+    still = extremes.final_speed == 0.0 if extremes is not None else top == 0.0
+    at_rest, resting = incidents.rest(end, still=still)
     adhering, clinging = fine.adhering()
     if extremes is not None:
         adhering, clinging = extremes.time_adhering, extremes.turn_backs > 1
@@ -259,11 +280,10 @@ def _time_to_speed(read: Read, samples: int, top: float) -> float:
 class _Events:
     """Counts of events, and the intervals between stick and slip."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, start: float) -> None:
         assert scene.load is not None
-        assert scene.initial is not None
         self.counts = dict.fromkeys(EventKind, 0)
-        self._may_rest = scene.load.is_dry and scene.initial.gear_speed == 0.0
+        self._dry, self._start = scene.load.is_dry, start
         self._since: float | None = None  # when the gear came to rest
         self._total = 0.0
         self.time = 0.0  # of the last event
@@ -277,15 +297,15 @@ class _Events:
                 self._since = float(time[k])
             else:
                 # the first slip of a gear that was at rest from the start has no stick before it
-                self._total += float(time[k]) - (self._since or 0.0)
+                self._total += float(time[k]) - (self._start if self._since is None else self._since)
                 self._since = None
 
-    def rest(self, end: float, *, moved: bool) -> tuple[float, bool]:
-        """Time at rest, and whether it lasts."""
+    def rest(self, end: float, *, still: bool) -> tuple[float, bool]:
+        """Time at rest, and whether it lasts; `still` says that the gear is exactly at rest at the end."""
         if self._since is not None:
             return self._total + end - self._since, True
-        if self._may_rest and not moved and not self.counts[EventKind.SLIP]:
-            return end, True
+        if self._dry and still and not self.counts[EventKind.SLIP]:
+            return end - self._start, True
         return self._total, False
 
 

@@ -139,7 +139,7 @@ def run_scene(run: xr.Dataset) -> Scene:
 
 
 def motion_samples(run: xr.Dataset) -> int:
-    """Return how many samples of the motion a run has.
+    """Return how many samples of the motion a run has; none where the first ones are missing, as in a running mean.
 
     Parameters
     ----------
@@ -151,6 +151,8 @@ def motion_samples(run: xr.Dataset) -> int:
     int
     """
     samples = reached(run["transmission_error"])
+    if samples and not np.isfinite(run["transmission_error"].variable[0].values):
+        return 0
     for name in ("gear_angle", "gear_speed", "pinion_speed", "mesh_force"):
         if samples and not np.isfinite(run[name].variable[samples - 1].values):
             samples = min(samples, reached(run[name]))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["Axis", "held", "stack", "swept_values", "zipped_keys"]
+__all__ = ["Axis", "stack", "swept_values", "zipped_keys"]
 
 Axis = dict[str, list[Any]]
 """Values of the keys that are walked together along one dimension; the first key labels it."""
@@ -79,13 +79,3 @@ def swept_values(axes: Sequence[Axis]) -> str:
 def zipped_keys(axes: Sequence[Axis]) -> str:
     """Name the keys that are walked together, as the attribute ``zipped`` does; empty without any."""
     return ", ".join(itertools.chain(*(axis for axis in axes if len(axis) > 1)))
-
-
-def held(scene: Scene, key: str) -> Any:
-    """Value of a dotted key in SI units, as plain data."""
-    value: Any = scene.to_dict()
-    for part in key.split("."):
-        if isinstance(value, list) and not part.isdigit():
-            value = value[0]  # a list of one may go without its number
-        value = value[int(part)] if isinstance(value, list) else value.get(part)
-    return value

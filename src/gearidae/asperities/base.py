@@ -1,12 +1,12 @@
-r"""What the law of one asperity consists of; a file of this folder holds one law.
+r"""Base class of the law of one asperity; each file of this folder contains one law.
 
-**Units.** Lengths are over some length l, whichever, and loads over the Hertz load at a compression of l,
-:math:`\tfrac43 E^*\sqrt\beta\,l^{3/2}`. In these units Hertz's law is :math:`P = \Delta^{3/2}`, and a law is written
-once for metres, for roughnesses, and for the length by which adhesion deforms a tip.
+**Units.** Lengths are in units of any length l, and loads in units of the Hertz load at a compression of l,
+:math:`\tfrac43 E^*\sqrt\beta\,l^{3/2}`. In these units Hertz's law is :math:`P = \Delta^{3/2}`, and one law serves
+for metres, for roughnesses, and for the length by which adhesion deforms a tip.
 
 **Displacement.** Positive in compression, zero where the undeformed tip would just touch. An asperity that approaches
-*joins* at the displacement ``-join``; when it is drawn away it stretches to ``-detach`` and lets go, with
-``detach >= join >= 0``. Where the two differ there is hysteresis, and each cycle costs the ``loss``.
+*joins* at the displacement ``-join``; on separation it stretches to ``-detach`` and detaches, with
+``detach >= join >= 0``. If the two differ there is hysteresis, and each cycle loses the energy ``loss``.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ _X, _W = np.polynomial.legendre.leggauss(48)
 
 
 class AsperityLaw(ABC):
-    """Load of one asperity over its displacement, with the distances at which it joins and lets go.
+    """Load of one asperity over its displacement, with the distances at which it joins and detaches.
 
-    A law is a frozen dataclass: two that are equal share their tables. What it must give are a `name`, `of`, `detach`,
-    `pull_off` and `load`; the rest follows from these, and is replaced where a closed form is at hand.
+    A law is a frozen dataclass: equal laws share their tables. It must define `name`, `of`, `detach`,
+    `pull_off` and `load`; the rest follows from these, and is overridden where a closed form is known.
     """
 
     name: ClassVar[str]
-    """What ``contact.asperity`` calls it."""
+    """Name of the law in ``contact.asperity``."""
 
     @classmethod
     @abstractmethod
@@ -58,7 +58,7 @@ class AsperityLaw(ABC):
     @property
     @abstractmethod
     def detach(self) -> float:
-        """Distance at which a stretched asperity lets go, d_off; 0 if it does not stretch."""
+        """Distance at which a stretched asperity detaches, d_off; 0 if it does not stretch."""
 
     @property
     def join(self) -> float:
@@ -72,7 +72,7 @@ class AsperityLaw(ABC):
 
     @property
     def pieces(self) -> int:
-        """Even pieces in ``sqrt((displacement + detach) / (detach - join))``, of degree seven, that the load wants."""
+        """Number of equal pieces, of degree seven, in ``sqrt((displacement + detach) / (detach - join))``."""
         return 4
 
     @property

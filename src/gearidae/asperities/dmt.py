@@ -30,7 +30,7 @@ class Dmt(AsperityLaw):
     Attributes
     ----------
     jkr_limit : float
-        Stretch limit that a JKR asperity of the same tip has: what measures adhesion against stiffness.
+        Stretch limit of a JKR asperity with the same tip: a measure of adhesion relative to stiffness.
     """
 
     name: ClassVar[str] = "dmt"

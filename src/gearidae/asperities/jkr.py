@@ -1,4 +1,4 @@
-r"""An asperity that adheres, stretches and lets go (Johnson, Kendall and Roberts).
+r"""An asperity that adheres, stretches and detaches (Johnson, Kendall and Roberts).
 
 Scaled by the pull-off load :math:`P_c` and the stretch limit :math:`\delta_c`, every JKR asperity obeys one law.
 With s the square root of the scaled contact radius, load and displacement are polynomials,
@@ -10,7 +10,7 @@ With s the square root of the scaled contact radius, load and displacement are p
 
 and with :math:`t = s / 18^{-1/6}` simpler still: :math:`\delta/\delta_c = (t^4 - 4t)/3` and
 :math:`P/P_c = t^3 (t^3 - 6)/9`. The branch that is stable under given displacement is :math:`t \ge 1`; it ends in a
-fold at :math:`\delta = -\delta_c`, where the asperity lets go. An approaching asperity joins when it touches.
+fold at :math:`\delta = -\delta_c`, where the asperity detaches. An approaching asperity joins when it touches.
 
 Displacements are positive in compression, loads are positive when they push the bodies apart.
 

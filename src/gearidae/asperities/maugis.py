@@ -96,9 +96,7 @@ def _landmarks(zone: float) -> tuple[float, float, float, float]:
     touch = 2.0 / (4.0 / 3.0 * zone**2 * (HALF_PI - 1.0) + math.sqrt(_zone_square(zone)))
     fold = 8.0 * zone / (3.0 * math.pi)
     apart = 0.5 * touch**2 - fold * touch - 2.0 / (math.pi * zone)
-    if (
-        fold < touch
-    ):  # lets go without touching; the pull is largest where the tip touches already, or on the way
+    if fold < touch:  # detaches without touching; the pull is largest where the tip touches, or before
         end, least = Z_TOUCH, -0.5 * fold**2 - 2.0 / (math.pi * zone)
     else:
         end = _rising(lambda z: branch_at(z, zone)[2], Z_TOUCH)

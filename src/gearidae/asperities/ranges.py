@@ -1,6 +1,6 @@
 """Ranges in gap and stretch of the tabulated force law, and the check that asperities stay within.
 
-They stand apart from the code that compiles the law, so that a scene can be checked without it.
+They are separate from the code that compiles the law, so that a scene can be checked without numba.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def check_reach(law: AsperityLaw, roughness: float) -> None:
     law : AsperityLaw
         In units of the roughness.
     roughness : float
-        What the message names [m].
+        Its roughness, which the message names [m].
 
     Raises
     ------
@@ -40,7 +40,7 @@ def check_reach(law: AsperityLaw, roughness: float) -> None:
         If asperities join beyond `JOIN_HIGH` or detach beyond `STRETCH_HIGH` roughnesses.
     """
     for what, reach, limit in (("stretch", law.detach, STRETCH_HIGH), ("join over", law.join, JOIN_HIGH)):
-        if not reach <= limit:  # also of a law that gives none
+        if not reach <= limit:  # also if a law returns NaN
             raise SceneError(
                 "surface.roughness",
                 roughness,

@@ -1,7 +1,7 @@
-"""The asperity laws by their names: what ``contact.asperity`` may say.
+"""The asperity laws by their names: the values of ``contact.asperity``.
 
-Every file of this folder that registers a law is found by itself. A law from elsewhere is registered in each process
-that uses it, before scenes are made that name it.
+Every file of this folder that registers a law is found automatically. Each process that uses a law from elsewhere has
+to register it before it makes scenes that name it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _LAWS: Final = Registry[type[AsperityLaw]]("gearidae.asperities", "contact.asper
 
 
 def register(law: Law) -> Law:
-    """Make a law known by its name; a decorator of its class.
+    """Register a law by its name; a decorator of its class.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def register(law: Law) -> Law:
 
 
 def unregister(name: str) -> None:
-    """Take a law out again.
+    """Remove a law.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def unregister(name: str) -> None:
 
 
 def law_names() -> tuple[str, ...]:
-    """Return the names of all laws, in the order of the alphabet."""
+    """Return the names of all laws in alphabetical order."""
     return _LAWS.names()
 
 
@@ -84,9 +84,20 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
     Raises
     ------
     SceneError
-        If there is no such law.
+        If there is no such law, or it fails.
     """
-    return _LAWS.find(name).of(tip, unit)
+    law = _LAWS.find(name)
+    try:
+        made = law.of(tip, unit)
+    except SceneError:
+        raise
+    except Exception as error:  # a law is the user's own code
+        raise SceneError("contact.asperity", name, f"{law.__qualname__}.of fails: {error!r}") from error
+    if not isinstance(made, AsperityLaw):
+        raise SceneError(
+            "contact.asperity", name, f"{law.__qualname__}.of must return an AsperityLaw, not {made!r}"
+        )
+    return made
 
 
 def law_of(name: str, surface: Surface) -> AsperityLaw:

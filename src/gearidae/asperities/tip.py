@@ -1,4 +1,4 @@
-"""One asperity tip of a rough surface: its elastic constants, its adhesion, and which law of contact suits it.
+"""One asperity tip of a rough surface: its elastic constants, its adhesion, and the suitable contact law.
 
 References
 ----------
@@ -23,11 +23,11 @@ __all__ = [
 ]
 
 INTERACTION_RANGE: Final = 0.165e-9
-"""Range of adhesive forces between silicon surfaces [m], where a surface names no ``interaction_range`` of its own."""
+"""Range of adhesive forces between silicon surfaces [m], for a surface without an ``interaction_range``."""
 
 
 class Surface(Protocol):
-    """What the contact laws need to know of one of two like rough surfaces (SI units)."""
+    """Properties of one of two like rough surfaces that the contact laws use (SI units)."""
 
     @property
     def youngs_modulus(self) -> float:
@@ -69,8 +69,8 @@ class Asperity:
     pull_off : float
         JKR pull-off load, ``1.5 pi beta dgamma`` [N].
     stretch_limit : float
-        Stretch at which a JKR asperity lets go, ``(9 beta P_c / (4 E*))**(2/3) / (3 beta)`` [m]: the length by which
-        adhesion deforms a tip, under whatever law.
+        Stretch at which a JKR asperity detaches, ``(9 beta P_c / (4 E*))**(2/3) / (3 beta)`` [m]: the length by which
+        adhesion deforms a tip, under any law.
     interaction_range : float, optional
         Range eps of the adhesive forces, the equilibrium spacing of two atoms [m]; for laws that have one.
     """
@@ -107,7 +107,7 @@ def contact_modulus(youngs_modulus: float, poisson_ratio: float) -> float:
 
 
 def asperity_of(surface: Surface) -> Asperity:
-    """Return the asperity that two surfaces of this kind touch with.
+    """Return the asperity of the contact between two such surfaces.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def asperity_of(surface: Surface) -> Asperity:
     Returns
     -------
     Asperity
-        Pull-off load and stretch limit are zero where the surface energy is.
+        Pull-off load and stretch limit are zero if the surface energy is.
     """
     modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
     radius = surface.asperity_radius
@@ -129,7 +129,7 @@ def asperity_of(surface: Surface) -> Asperity:
 def make_tip(
     modulus: float, radius: float, adhesion: float, interaction_range: float = INTERACTION_RANGE
 ) -> Asperity:
-    """Return a tip with the two figures that follow from its others.
+    """Return a tip with its pull-off load and its stretch limit.
 
     Parameters
     ----------
@@ -181,8 +181,8 @@ def tabor_regime(mu: float) -> Literal["jkr", "transition", "dmt"]:
     Returns
     -------
     {"jkr", "transition", "dmt"}
-        JKR from 5 up and DMT up to 0.1, as in Johnson and Greenwood's adhesion map; the transition between. The map's
-        bounds have one digit, and `mu` is compared with them at that: JKR begins at 4.5, DMT ends below 0.15.
+        JKR from 5 up and DMT up to 0.1, as in Johnson and Greenwood's adhesion map; the transition between. The bounds
+        of the map have one digit, and `mu` is rounded to it: JKR begins at 4.5, DMT ends below 0.15.
 
     References
     ----------

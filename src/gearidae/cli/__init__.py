@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 
 from gearidae.cli.codes import INTERRUPTED
+from gearidae.cli.streams import mend_streams
 
 __all__ = ["main"]
 
@@ -23,6 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 done, 2 bad input, 3 solver failure, 130 interrupted.
     """
+    mend_streams()
     try:
         from gearidae.cli.command_line import run_command_line
     except KeyboardInterrupt:  # loading it takes a third of a second

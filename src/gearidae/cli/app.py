@@ -9,6 +9,7 @@ from cyclopts import App, Parameter
 
 import gearidae
 from gearidae.cli import completing
+from gearidae.cli.output import Terminal
 
 __all__ = ["app"]
 
@@ -18,6 +19,7 @@ app = App(
     version=f"gearidae {gearidae.__version__}",
     default_parameter=Parameter(negative=()),
     suppress_keyboard_interrupt=False,  # `main` reports what is kept
+    console=Terminal(),
 )
 app.meta.suppress_keyboard_interrupt = False
 
@@ -182,7 +184,7 @@ def report(
 @app.command
 def assess(
     signal: Annotated[
-        Path, Parameter(help="Gear speed over time: CSV (time [s], gear_speed [rad/s]) or netCDF.")
+        Path, Parameter(help="Gear speed over time: text (time [s], gear_speed [rad/s]) or netCDF.")
     ],
     *,
     map: Annotated[  # noqa: A002
@@ -200,6 +202,26 @@ def assess(
         Parameter(
             help="Cut-off frequency of a low-pass filter before the sampling, such as 4 kHz. Default: no filter."
         ),
+    ] = None,
+    calibration: Annotated[
+        str | None, Parameter(help="Relative uncertainty of the speed that the sensor tells. Default: 1.5 %.")
+    ] = None,
+    offset: Annotated[
+        str | None, Parameter(help="Uncertainty of the sensor's zero, such as '0.06 rad/s'. Default: 0.")
+    ] = None,
+    columns: Annotated[
+        tuple[str, str] | None,
+        Parameter(
+            help="Headings of time and speed, such as 'Zeit [ms]' 'Drehzahl [1/min]'. Default: recognised."
+        ),
+    ] = None,
+    skip: Annotated[int | None, Parameter(help="Lines above the headings. Default: recognised.")] = None,
+    delimiter: Annotated[
+        str | None, Parameter(help="Between the cells: a character, tab or blanks. Default: recognised.")
+    ] = None,
+    decimal: Annotated[str | None, Parameter(help="Decimal sign: . or , Default: recognised.")] = None,
+    bridge: Annotated[
+        int | None, Parameter(help="Missing samples in a row to interpolate. Default: 0.")
     ] = None,
     select: Annotated[
         list[str] | None,
@@ -223,9 +245,13 @@ def assess(
     """
     from gearidae.cli.coating import assess_signal
 
-    return assess_signal(
-        signal, map, history, anti_alias_filter, select=select or [], line=line or [], as_json=as_json
-    )
+    sensor = {
+        "history": history, "anti_alias_filter": anti_alias_filter, "calibration": calibration, "offset": offset
+    }  # fmt: skip
+    reading = {
+        "columns": columns, "skip": skip, "delimiter": delimiter, "decimal": decimal, "bridge": bridge
+    }  # fmt: skip
+    return assess_signal(signal, map, sensor, reading, select=select or [], line=line or [], as_json=as_json)
 
 
 @app.command
@@ -236,10 +262,12 @@ def surface(
     *,
     size: Annotated[
         str | None,
-        Parameter(help="Extent of the map: that of its rows, or of columns and rows, such as '2 um, 1 um'."),
+        Parameter(
+            help="Extent of the map, if the file does not say it: of its rows, or columns and rows: '2 um, 1 um'."
+        ),
     ] = None,
     unit: Annotated[
-        str | None, Parameter(help="Unit of the heights in .npy and text files. Default: m.")
+        str | None, Parameter(help="Unit of the heights, if the file does not say it. Default: m.")
     ] = None,
     cutoff: Annotated[
         str | None, Parameter(help="Cut-off wavelength, such as 50 nm: shorter waves are left out.")
@@ -248,6 +276,9 @@ def surface(
         Literal["summits", "moments"], Parameter(help="Where the asperities are taken from.")
     ] = "summits",
     both_flanks: Annotated[bool, Parameter(help="Combine the roughness of two such flanks.")] = False,
+    align_rows: Annotated[
+        bool, Parameter(help="Shift lines of the scan that drift or noise has offset against each other.")
+    ] = False,
     into: Annotated[
         Path | None,
         Parameter(
@@ -271,7 +302,7 @@ def surface(
     """
     from gearidae.cli.surface import Choices, analyse_scan
 
-    choices = Choices(size, unit, cutoff, by, both_flanks, None if into is None else str(into))
+    choices = Choices(size, unit, cutoff, by, both_flanks, align_rows, None if into is None else str(into))
     return analyse_scan(scan, choices, output, picture, overwrite=overwrite)
 
 

@@ -6,15 +6,19 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from gearidae.archive.variables import EVENTS, columns
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.tables import show_rows
 from gearidae.cli.validity_table import show_validity
+from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
-from gearidae.scene.validity_row import contact_subject
+from gearidae.scene.validity_row import contact_subject, mean_note
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -46,7 +50,10 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     """
     scene = read_scene(case, settings)
     show_rows(_rows(scene))
-    show_validity(validity_rows(scene), about=contact_subject(roller=scene.roller is not None))
+    rows = validity_rows(scene)
+    show_validity(rows, about=contact_subject(roller=scene.roller is not None))
+    if note := mean_note(rows):
+        say(f"Verdicts of runs are a {note}")
     for doubt in doubts(scene):
         say(f"Warning: {doubt}")
     return DONE
@@ -79,10 +86,10 @@ def _estimates(scene: Scene) -> Rows:
     from gearidae.studies.equilibrium import natural_frequency
 
     assert scene.gears is not None
-    yield "Estimates", "", "from the constant torques, without sticking"
+    yield "Estimates", "", "from the mean torques over the run, without sticking"
     speed = steady_speed(scene)
     if speed == 0.0:
-        yield "gear speed", "0 rad/s", "the drive torque does not overcome the dry resistance"
+        yield "gear speed", "0 rad/s", "the mean drive torque does not overcome the dry resistance"
     elif math.isinf(speed):
         yield "gear speed", "unbounded", "no limit: load.drag is 0"
     else:
@@ -153,17 +160,16 @@ def _coating(scene: Scene) -> Rows:
 
 def _run(scene: Scene) -> Rows:
     run = scene.run
-    columns = 3 if scene.roller is not None else 9
     yield "Run", "", ""
-    yield (
-        "duration",
-        f"{run.duration * 1e3:g} ms",
-        f"{run.sample_count} samples, {columns * run.sample_count * 8e-6:.3g} MB",
-    )
-    yield "relative tolerance", f"{run.rtol:g}", ""
+    yield "duration", f"{run.duration * 1e3:g} ms", ""
     expected = run_time(scene)
+    numbers = 1 + len(columns(scene.roller is not None, scene.contact.model))  # with the time
+    event = sum(np.dtype(variable.dtype).itemsize for variable in EVENTS.values())
+    sizes = 8e-6 * numbers * run.sample_count, 1e-6 * event * expected.events
+    yield "samples", f"{run.sample_count}", f"{sizes[0]:.3g} MB, and some {sizes[1]:.1g} MB of events"
+    yield "relative tolerance", f"{run.rtol:g}", ""
     yield (
         "expected wall time",
-        expected.words(),
+        in_words(expected.seconds),
         f"{expected.steps:.2g} steps, within a factor of about three",
     )

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -98,8 +98,8 @@ def map_case(
 def assess_signal(
     signal: Path,
     chart: Path,
-    history: str,
-    anti_alias_filter: str | None,
+    sensor: Mapping[str, str | None],
+    reading: Mapping[str, Any],
     *,
     select: Sequence[str],
     line: Sequence[str],
@@ -110,13 +110,14 @@ def assess_signal(
     Parameters
     ----------
     signal : Path
-        CSV or netCDF file.
+        Text or netCDF file.
     chart : Path
         Coating map.
-    history : str
-        ``auto``, ``start`` or ``unknown``.
-    anti_alias_filter : str or None
-        Cut-off frequency of a filter before the sampling, in hertz or with a unit.
+    sensor : mapping of str to str
+        What is known of the record: ``history``, ``anti_alias_filter`` in hertz or with a unit, ``calibration`` and
+        ``offset``; None where nothing is.
+    reading : mapping of str to object
+        How to read it, as for `gearidae.analysis.read_signal`; None where it is to be recognised.
     select, line : sequence of str
         ``dimension=value``: which run of a file with several, and which line of a map with several.
     as_json : bool, optional
@@ -127,16 +128,26 @@ def assess_signal(
     int
         Exit code: `DONE`, also where the signal cannot tell; that is an answer.
     """
-    cutoff = None if anti_alias_filter is None else quantity("--anti-alias-filter", anti_alias_filter, "Hz")
+    known: dict[str, Any] = {name: value for name, value in sensor.items() if value is not None}
+    if "anti_alias_filter" in known:
+        known["anti_alias_filter"] = quantity("--anti-alias-filter", known["anti_alias_filter"], "Hz")
+    for name, unit in (("calibration", "1"), ("offset", "rad/s")):
+        if name in known:
+            known[name] = quantity(f"--{name}", known[name], unit)
     mapped = gd.analysis.open_map(chart)
-    record = gd.analysis.read_signal(signal)
+    record = gd.analysis.read_signal(
+        signal, **{name: value for name, value in reading.items() if value is not None}
+    )
     record = selected(record, select, "--select", _dims(record["gear_speed"], "time"))
     mapped = selected(mapped, line, "--line", _dims(mapped["characteristic_frequency"], "sam_fraction"))
-    found = gd.analysis.assess(record, mapped, history=history, anti_alias_filter=cutoff)
+    found = gd.analysis.assess(record, mapped, **known)
     if as_json:
-        say_json({**asdict(found), "uncertainty": found.uncertainty, "conclusive": found.conclusive})
-    else:
-        say(f"{found.verdict}: {found.explanation}")
+        derived = {"uncertainty": found.uncertainty, "conclusive": found.conclusive}
+        say_json({**asdict(found), **derived})
+        return DONE
+    if found.reading:
+        say(f"{signal}: {found.reading}")
+    say(f"{found.verdict}: {found.explanation}")
     return DONE
 
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from cyclopts import CycloptsError
 
 from gearidae.cli.codes import BAD_INPUT, DONE, INTERRUPTED, UNFINISHED
 from gearidae.cli.interrupts import interrupts_kept
+from gearidae.cli.output import complain
 from gearidae.cli.session import app
+from gearidae.cli.streams import stop_output
 from gearidae.cli.values import spread
 from gearidae.errors import GearidaeError, SceneError
 
@@ -20,9 +25,16 @@ __all__ = ["run_command_line"]
 def run_command_line(arguments: Sequence[str] | None) -> int:
     """Run a command; arguments and exit code are those of `gearidae.cli.main`."""
     tokens = spread(sys.argv[1:] if arguments is None else arguments)
+    # a user's settings of matplotlib may be of another version, and name a backend that is not installed
+    os.environ["MPLBACKEND"] = "agg"
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    with interrupts_kept(), _warnings_as_lines():
+        return _run(tokens)
+
+
+def _run(tokens: Sequence[str]) -> int:
     try:
-        with interrupts_kept():
-            code = app.meta(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+        code = app.meta(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         return _complain(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
     except SceneError as error:
@@ -32,8 +44,7 @@ def run_command_line(arguments: Sequence[str] | None) -> int:
     except KeyboardInterrupt as interrupt:
         return _complain(f"interrupted{''.join(f'; {note}' for note in interrupt.args)}", INTERRUPTED)
     except BrokenPipeError:
-        # The reader of the output has closed (a pager, head); without this, Python prints an error at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        stop_output()
         return DONE
     except OSError as error:
         # A disk that is full where compiled code is kept, say; of the user's own files the commands say more.
@@ -42,5 +53,13 @@ def run_command_line(arguments: Sequence[str] | None) -> int:
 
 
 def _complain(message: str, code: int) -> int:
-    sys.stderr.write(f"gearidae: {' '.join(message.split())}\n")
+    complain(message)
     return code
+
+
+@contextmanager
+def _warnings_as_lines() -> Iterator[None]:
+    """Print a warning, such as of a damaged run, as a message to the user: without a line of code."""
+    with warnings.catch_warnings(action="always", category=UserWarning):
+        warnings.showwarning = lambda message, *_: complain(str(message))
+        yield

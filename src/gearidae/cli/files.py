@@ -10,6 +10,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive.select import is_roller, scene_of, swept_dims
+from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import archive_facts, say_json
 from gearidae.cli.output import say
@@ -50,17 +51,12 @@ def write_case(name: str, preset: str) -> int:
     if path.stem.startswith("."):
         raise SceneError("init", name, "must be a name")
     text = dump_case(gd.preset(preset).replace({"name": path.stem}))
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(f"# {path.name}: run it with: gearidae run {path.name}\n")
-            file.write(
-                "# Quantities are SI numbers or texts with a unit; a missing key takes its default.\n\n"
-            )
-            file.write(text)
-    except FileExistsError:
-        raise SceneError("init", path, "exists already: choose another name") from None
-    except OSError as error:
-        raise SceneError("init", path, f"cannot be written ({error.strerror})") from error
+    with whole_file(path, name="init", remedy="choose another name") as part:
+        part.write_text(
+            f"# {path.name}: run it with: gearidae run {path.name}\n"
+            f"# Quantities are SI numbers or texts with a unit; a missing key takes its default.\n\n{text}",
+            encoding="utf-8",
+        )
     say(f"Wrote {path}")
     return DONE
 

@@ -4,17 +4,40 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 
-from rich.console import Console, RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
+from rich.segment import Segment
 
-__all__ = ["complain", "hushed", "is_quiet", "say", "show"]
+from gearidae.cli.streams import stop_output
+from gearidae.printable import printable
+
+__all__ = ["Terminal", "complain", "hushed", "is_quiet", "say", "show"]
 
 _WIDTH_OF_FILES = 120
 """Columns to lay tables out for when the output is not a terminal."""
 
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
+
+
+class Terminal(Console):
+    """A console whose reader may close it (a pager, ``head``): what it does not want is dropped."""
+
+    def on_broken_pipe(self) -> None:
+        """End the output, and not the program."""
+        stop_output()
+
+
+class _Plain:
+    """Something to print, without the escape sequences in texts of files."""
+
+    def __init__(self, content: RenderableType) -> None:
+        self._content = content
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        for segment in console.render(self._content, options):
+            yield segment if segment.control else Segment(printable(segment.text), segment.style)
 
 
 @contextmanager
@@ -33,19 +56,35 @@ def is_quiet() -> bool:
 
 
 def say(text: str) -> None:
-    """Print a line of results as it is, without wrapping."""
-    if is_quiet():
-        return
-    sys.stdout.write(f"{text}\n")
+    """Print a line of results, without wrapping."""
+    _write(f"{printable(text)}\n")
 
 
 def show(table: RenderableType) -> None:
     """Print a table."""
-    if is_quiet():
-        return
-    Console(width=None if sys.stdout.isatty() else _WIDTH_OF_FILES, highlight=False).print(table)
+    console = Terminal(
+        width=None if sys.stdout.isatty() else _WIDTH_OF_FILES, highlight=False, markup=False, emoji=False
+    )
+    with console.capture() as drawn:
+        console.print(_Plain(table))
+    _write(drawn.get())
 
 
 def complain(message: str) -> None:
     """Print one line to standard error, under the program's name."""
-    sys.stderr.write(f"gearidae: {' '.join(message.split())}\n")
+    with suppress(OSError):  # nobody can be told that nobody can be told
+        sys.stderr.write(f"gearidae: {printable(' '.join(message.split()))}\n")
+
+
+def _write(text: str) -> None:
+    """Print to standard output; a reader that has closed it wants no more."""
+    if is_quiet():
+        return
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        stop_output()
+    except OSError:  # a full disk
+        stop_output()
+        raise

@@ -18,6 +18,7 @@ from gearidae.cli.selection import selected
 from gearidae.cli.values import default_output, quantity
 from gearidae.errors import SceneError
 from gearidae.plot.files import MOVING
+from gearidae.plot.picture import usual_style
 from gearidae.scene.group import did_you_mean
 
 __all__ = ["draw", "picture_names"]
@@ -30,6 +31,7 @@ def picture_names() -> list[str]:
     return [name for name in gd.plot.__all__ if name not in _FUNCTIONS_OF_FILES]
 
 
+@usual_style()
 def draw(
     archive: Path,
     picture: str | None,

@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import gearidae as gd
+from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
-from gearidae.errors import SceneError
 
 __all__ = ["write_schema"]
 
@@ -37,12 +37,7 @@ def write_schema(output: Path | None, *, overwrite: bool) -> int:
     if output is None:
         say(text)
         return DONE
-    try:
-        with output.open("w" if overwrite else "x", encoding="utf-8") as file:
-            file.write(text + "\n")
-    except FileExistsError:
-        raise SceneError("schema", output, "exists already: allow --overwrite") from None
-    except OSError as error:
-        raise SceneError("schema", output, f"cannot be written ({error.strerror})") from error
+    with whole_file(output, overwrite=overwrite, name="schema", remedy="allow --overwrite") as part:
+        part.write_text(text + "\n", encoding="utf-8")
     say(f"Schema: {output}")
     return DONE

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import platform
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,14 +17,15 @@ import gearidae
 from gearidae.cli import life_commands, study_commands  # noqa: F401, which declare more commands
 from gearidae.cli.app import app
 from gearidae.cli.examples import EXAMPLES
-from gearidae.cli.output import hushed
+from gearidae.cli.output import complain, hushed
 from gearidae.errors import GearidaeError, SceneError
+from gearidae.printable import printable
 
 __all__ = ["app", "session"]
 
 _WRITERS = (
     "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "report",
-    "run", "sweep",
+    "run", "sweep", "threshold",
 )  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
@@ -91,19 +93,46 @@ def _run(tokens: tuple[str, ...]) -> object:
     return code
 
 
+class _Plain(logging.Formatter):
+    """Writes records without the escape sequences in texts of files."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Write a record as text."""
+        return printable(super().format(record))
+
+
+class _LogFile(logging.FileHandler):
+    """A log file whose disk may be full: that is said once, and the command goes on."""
+
+    _lost = False
+
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802
+        """Say that the log ends here."""
+        if not self._lost:
+            self._lost = True
+            complain(f"the log {self.baseFilename} cannot be written: {sys.exc_info()[1]}")
+
+    def close(self) -> None:
+        """Close the file; what is left to be written may not fit either."""
+        try:
+            super().close()
+        except OSError:
+            self.handleError(logging.makeLogRecord({}))
+
+
 @contextmanager
 def _logging(level: int, path: Path | None) -> Iterator[None]:
     """Send the package's log to standard error and, in full, to a file, for as long as a command runs."""
     terminal = logging.StreamHandler()
     terminal.setLevel(level)
-    terminal.setFormatter(logging.Formatter("%(message)s"))
+    terminal.setFormatter(_Plain("%(message)s"))
     handlers: list[logging.Handler] = [terminal]
     if path is not None:
         try:
-            file = logging.FileHandler(path, encoding="utf-8")
+            file = _LogFile(path, encoding="utf-8")
         except OSError as error:
             raise SceneError("--log", path, f"cannot be written ({error.strerror})") from error
-        file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+        file.setFormatter(_Plain("%(asctime)s %(levelname)s %(name)s: %(message)s"))
         handlers.append(file)
     before = log.level
     log.setLevel(logging.DEBUG if path is not None else level)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -126,9 +125,7 @@ def sweep_case(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    # a warning of a sweep, such as a damaged run, is a message to the user: print it without a line of code
-    with warnings.catch_warnings(action="always", category=UserWarning), dask_executor(dask) as executor:
-        warnings.showwarning = lambda message, *_: complain(str(message))
+    with dask_executor(dask) as executor:
         ds = gd.sweep(
             scene,
             values,

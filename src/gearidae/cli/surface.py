@@ -7,11 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import gearidae as gd
+from gearidae.archive.target import check_target, whole_file
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.surface_table import show_surface
 from gearidae.errors import SceneError
+from gearidae.scene.prefixes import with_prefix
+from gearidae.surfaces.files import read_lines
 
 __all__ = ["Choices", "analyse_scan"]
 
@@ -32,6 +35,8 @@ class Choices:
         ``summits`` or ``moments``.
     both_flanks : bool
         Whether both flanks are as rough.
+    align_rows : bool
+        Whether to align the lines of the scan.
     case : str or None
         Case file or preset whose surface is to be replaced; None for a table ``[surface]`` alone.
     """
@@ -41,6 +46,7 @@ class Choices:
     cutoff: str | None
     by: str
     both_flanks: bool
+    align_rows: bool
     case: str | None
 
 
@@ -76,24 +82,29 @@ def analyse_scan(
     if choices.case is not None and output is None:
         raise SceneError("--case", choices.case, "needs -o, the case file to write")
     for target in (output, picture):
-        if target is not None and target.exists() and not overwrite:
-            raise SceneError("output", target, "exists already: name another, or allow --overwrite")
-    heights, own_size = gd.surfaces.read_scan(scan, choices.unit)
+        if target is not None:
+            check_target(target, overwrite=overwrite, name="output")
+    heights, own_size = read_lines(scan, choices.unit)
     found = gd.surface_from(
         heights,
         _size(choices.size, own_size),
         choices.cutoff,
         by=choices.by,
         both_flanks=choices.both_flanks,
+        align_rows=choices.align_rows,
         source=scan.name,
     )
     text = None if output is None else _text(found, choices.case)
     show_surface(found)
     if picture is not None:
-        gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)
+        from gearidae.plot.picture import usual_style
+
+        with usual_style():
+            gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)
         say(f"Picture: {picture}")
     if output is not None and text is not None:
-        _write(output, text, overwrite=overwrite)
+        with whole_file(output, overwrite=overwrite, name="output") as part:
+            part.write_text(text, encoding="utf-8")
         say(f"{'Surface' if choices.case is None else 'Case'}: {output}")
     elif choices.cutoff is None:
         say("The numbers depend on the cut-off wavelength: choose one with --cutoff.")
@@ -105,6 +116,9 @@ def _size(given: str | None, own: tuple[float, float] | None) -> str | tuple[flo
         parts = [part.strip() for part in given.split(",")]
         if len(parts) > 2:
             raise SceneError("--size", given, "must be one length or two")
+        if own is not None:
+            stated = ", ".join(with_prefix(length, "m", 4) for length in own)
+            say(f"Note: the file states an extent of {stated}; --size replaces it.")
         return parts[0] if len(parts) == 1 else (parts[0], parts[1])
     if own is None:
         raise SceneError("--size", "(none)", "is needed: this file does not tell its extent, such as 2 um")
@@ -123,13 +137,3 @@ def _comments(fragment: str) -> Iterator[str]:
     for line in fragment.splitlines(keepends=True):
         if line.startswith("#"):
             yield line
-
-
-def _write(target: Path, text: str, *, overwrite: bool) -> None:
-    try:
-        with target.open("w" if overwrite else "x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise SceneError("output", target, "exists already: name another, or allow --overwrite") from None
-    except OSError as error:
-        raise SceneError("output", target, f"cannot be written ({error.strerror})") from error

@@ -59,6 +59,8 @@ def show_surface(found: MeasuredSurface) -> None:
     show(table)
     for remark in found.remarks:
         say(f"Note: {remark}")
+    if found.cutoff is not None:
+        say(found.planes)
 
 
 def _cells(row: xr.Dataset, mark: str) -> list[str]:

@@ -14,9 +14,11 @@ from rich.text import Text
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes, imbalance
-from gearidae.archive.select import swept_dims
-from gearidae.cli.output import complain, show
+from gearidae.archive.run_summary import counted_over
+from gearidae.archive.select import scene_of, swept_dims
+from gearidae.cli.output import complain, say, show
 from gearidae.scene.prefixes import with_prefix
+from gearidae.scene.validity_row import ATTRIBUTE, holds_rows, mean_note, rows_from_json
 
 __all__ = ["label_text", "name_failures", "show_account", "show_outcomes", "show_rows"]
 
@@ -48,6 +50,7 @@ def show_outcomes(ds: xr.Dataset) -> None:
         A single run or a sweep.
     """
     judged = outcomes(ds)
+    rtol = scene_of(ds)["run"]["rtol"]
     dims = swept_dims(ds)
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
     table = Table(box=box.SIMPLE, pad_edge=False)
@@ -57,9 +60,12 @@ def show_outcomes(ds: xr.Dataset) -> None:
         else:
             table.add_column(heading, justify="right", no_wrap=True)
     for outcome in judged:
-        cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome)
+        cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome, rtol)
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
     show(table)
+    kept = ds.attrs.get(ATTRIBUTE)
+    if isinstance(kept, str) and holds_rows(kept) and (note := mean_note(rows_from_json(kept))):
+        say(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")
 
 
 def show_account(ds: xr.Dataset) -> None:
@@ -71,16 +77,26 @@ def show_account(ds: xr.Dataset) -> None:
         A single run; of a roller, only the energy balance is printed. Nothing is printed for a sweep.
     """
     if "account" in ds.attrs:
-        show_rows(_account_rows(json.loads(ds.attrs["account"])))
+        show_rows(_with_reach(ds, _account_rows(json.loads(ds.attrs["account"]))))
     if numbers := balance_in_attributes(ds):
-        show_rows(_balance_rows(numbers))
+        show_rows(_with_reach(ds, _balance_rows(numbers)))
 
 
-def _balance_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
-    yield "Energy balance", "", ""
+Row = tuple[str, str, str]
+
+
+def _with_reach(ds: xr.Dataset, rows: Iterable[tuple[str, Row]]) -> Iterable[Row]:
+    """Add to each named row of a run that goes on from another what it is counted over."""
+    for name, (words, value, remark) in rows:
+        over = counted_over(name, ds.attrs) if name else ""
+        yield words, value, "; ".join(filter(None, (remark, over)))
+
+
+def _balance_rows(kept: dict[str, float]) -> Iterable[tuple[str, Row]]:
+    yield "", ("Energy balance", "", "")
     for name, remark in _BALANCE_ROWS:
         if kept[name] != 0.0:
-            yield name.replace("_", " "), with_prefix(kept[name], "J", 5), remark
+            yield name, (name.replace("_", " "), with_prefix(kept[name], "J", 5), remark)
     bound = with_prefix(kept["residual_bound"], "J", 2)
     out_by = imbalance(kept["residual"], kept["residual_bound"])
     remark = (
@@ -88,25 +104,25 @@ def _balance_rows(kept: dict[str, float]) -> Iterable[tuple[str, str, str]]:
         if out_by > 1.0
         else f"bound {bound}"
     )
-    yield "residual", with_prefix(kept["residual"], "J", 2), remark
+    yield "residual", ("residual", with_prefix(kept["residual"], "J", 2), remark)
 
 
-def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, str, str]]:
+def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, Row]]:
+    def row(name: str, words: str, unit: str, remark: str) -> tuple[str, Row]:
+        return name, (words, number(name, unit), remark)
+
     def number(name: str, unit: str) -> str:
         return "-" if told[name] is None else with_prefix(told[name], unit, 4)
 
-    yield "Run summary", "", ""
-    yield "time to speed", number("time_to_speed", "s"), "first sample with 95 % of the largest"
+    yield "", ("Run summary", "", "")
+    yield row("time_to_speed", "time to speed", "s", "first sample with 95 % of the largest")
     held = f"held by {told['held_by']} at the end" if told["held_by"] else ""
     times = "once" if told["sticks"] == 1 else f"{told['sticks']} times"
-    yield (
-        "time at rest",
-        number("time_at_rest", "s"),
-        f"held by dry resistance, stuck {times}; {held}".rstrip("; "),
-    )
-    yield "time trapped by adhesion", number("time_adhering", "s"), "rocking within half a pitch"
+    stuck = f"held by dry resistance, stuck {times}; {held}".rstrip("; ")
+    yield row("time_at_rest", "time at rest", "s", stuck)
+    yield row("time_adhering", "time trapped by adhesion", "s", "rocking within half a pitch")
     if told["largest_force"] is not None:
-        yield "largest force", number("largest_force", "N"), f"at {number('largest_force_time', 's')}"
+        yield row("largest_force", "largest force", "N", f"at {number('largest_force_time', 's')}")
 
 
 def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:
@@ -150,10 +166,10 @@ def label_text(label: Mapping[str, Any]) -> str:
     return ", ".join(f"{dim} = {_plain(value)}" for dim, value in label.items())
 
 
-def _gear_cells(outcome: GearOutcome) -> Sequence[str]:
+def _gear_cells(outcome: GearOutcome, rtol: float) -> Sequence[str]:
     return (
         _verdict(outcome),
-        _number(outcome.min_speed),
+        _number(outcome.resolved_min_speed(rtol)),
         _number(outcome.max_speed),
         str(outcome.impacts),
         f"{outcome.wall_time:.2f}",

@@ -89,6 +89,12 @@ def _rows(found: xr.Dataset, key: str) -> Iterator[tuple[str, str, str]]:
         if np.isnan(one["limit"]):
             yield waited, "-", "no run has stuck so early"
             continue
-        bracket = f"sticks at {float(one['sticks']):.4g}{unit}, passes at {float(one['passes']):.4g}{unit}"
-        yield waited, f"{float(one['limit']):.4g}{unit}", bracket
+        limit, sticks, passes = _apart(*(float(one[name]) for name in ("limit", "sticks", "passes")))
+        yield waited, f"{limit}{unit}", f"sticks at {sticks}{unit}, passes at {passes}{unit}"
     yield "runs", str(found.sizes["run"]), ""
+
+
+def _apart(limit: float, sticks: float, passes: float) -> Iterator[str]:
+    """Write a limit and the ends of its bracket with as many digits as tell the ends apart, four at least."""
+    digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
+    return (f"{value:.{digits}g}" for value in (limit, sticks, passes))

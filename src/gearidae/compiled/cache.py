@@ -13,7 +13,7 @@ import sys
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -24,7 +24,7 @@ from llvmlite import binding
 from numba.core import caching
 from platformdirs import user_cache_path
 
-__all__ = ["CAN_BE_ASKED", "PLAIN", "cache_folder", "is_cached", "own_cache"]
+__all__ = ["HAS_LOCATOR_HOOK", "PLAIN", "cache_folder", "is_cached", "own_cache"]
 
 log = logging.getLogger(__name__)
 
@@ -99,7 +99,7 @@ _declaring = threading.RLock()
 _declared: _Declared | None = None  # nothing of ours
 
 
-class _Place(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
+class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
     """Tells numba where the compiled code of one function is kept.
 
     Of sources that are named the folder's name says all; a file from elsewhere, an extension, is looked at besides.
@@ -123,6 +123,11 @@ class _Place(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
         """Folder of the function's module."""
         return str(self._folder)
 
+    def ensure_cache_path(self) -> None:
+        """Make the folder; where that fails, so will saving, which is said there."""
+        with suppress(OSError):
+            self._folder.mkdir(parents=True, exist_ok=True)
+
     def get_source_stamp(self) -> str:
         """What has to be the same for kept code to be fresh."""
         return self._stamp
@@ -132,7 +137,7 @@ class _Place(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
         return self._which
 
     @classmethod
-    def from_function(cls, function: Callable[..., Any], file: str) -> _Place | None:
+    def from_function(cls, function: Callable[..., Any], file: str) -> CacheLocator | None:
         """Return the place of a function that is declared here, and of no other."""
         if _declared is None or not Path(file).exists():
             return None
@@ -140,26 +145,56 @@ class _Place(getattr(caching, "_CacheLocator", object)):  # type: ignore[misc]
 
 
 # numba asks the first of these that answers; its own name folders after the sources' absolute paths
-CAN_BE_ASKED: Final = hasattr(caching, "_CacheLocator") and hasattr(
+HAS_LOCATOR_HOOK: Final = hasattr(caching, "_CacheLocator") and hasattr(
     caching.CompileResultCacheImpl, "_locator_classes"
 )
-if CAN_BE_ASKED:
+if HAS_LOCATOR_HOOK:
     _impl: Any = caching.CompileResultCacheImpl
-    _impl._locator_classes = [_Place, *_impl._locator_classes]
+    _impl._locator_classes = [CacheLocator, *_impl._locator_classes]
+
+
+class CacheFile(getattr(caching, "IndexDataCacheFile", object)):  # type: ignore[misc]
+    """Files of one function's compiled code. Where they are damaged or the disk is full, the function is compiled."""
+
+    def load(self, key: Any) -> Any:
+        """Return the code of a signature; None if there is none that can be read."""
+        try:
+            return super().load(key)
+        except (
+            Exception
+        ) as error:  # of an index or data cut off by a power failure, unpickling may raise anything
+            _say_once("compiled code in %s is damaged and is made anew (%s)", type(error).__name__)
+            with suppress(OSError):
+                Path(self._index_path).unlink()
+            return None
+
+    def save(self, key: Any, data: Any) -> None:
+        """Keep the code of a signature, if there is room."""
+        try:
+            super().save(key, data)
+        except OSError as error:
+            _say_once("compiled code cannot be kept in %s (%s)", error.strerror or str(error))
+
+
+@cache
+def _say_once(message: str, reason: str) -> None:
+    log.warning(message, cache_folder().parent, reason)
 
 
 @contextmanager
 def own_cache(sources: tuple[Path, ...], form: str) -> Iterator[None]:
-    """Have numba ask `_Place` while a function is being declared in a form, by one thread at a time.
+    """Have numba use `CacheLocator` and `CacheFile` while a function is declared in a form, by one thread at a time.
 
     A numba that cannot be made to ask keeps the code in the same folder, and shares it with nobody.
     """
     global _declared
     config: Any = numba.config
+    numbas: Any = caching
     with _declaring:
-        before = _declared, config.CACHE_DIR
+        before = _declared, config.CACHE_DIR, getattr(caching, "IndexDataCacheFile", None)
         _declared, config.CACHE_DIR = _Declared(sources, form), str(cache_folder(sources))
+        numbas.IndexDataCacheFile = CacheFile
         try:
             yield
         finally:
-            _declared, config.CACHE_DIR = before
+            _declared, config.CACHE_DIR, numbas.IndexDataCacheFile = before

@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast, overload
 
 import numba
 
-from gearidae.compiled.cache import CAN_BE_ASKED, is_cached, own_cache
+from gearidae.compiled.cache import HAS_LOCATOR_HOOK, is_cached, own_cache
 from gearidae.compiled.options import numba_options
 
 __all__ = ["Function", "compiled", "compiled_callback"]
@@ -81,7 +81,7 @@ def compiled(
         called = linked = _declare(function, sources, options, "called")
         if not hasattr(called, "_numba_type_"):
             return cast("F", called)
-        if CAN_BE_ASKED and "no_cpython_wrapper" in numba_options():
+        if HAS_LOCATOR_HOOK and "no_cpython_wrapper" in numba_options():
             linked = _declare(function, sources, options | {"no_cpython_wrapper": True}, "linked")
         return cast("F", Function(function, linked, called))
 

@@ -62,12 +62,23 @@ def signature_of(function: Callable[..., Any]) -> Any:
     return _kind(function, answer)(*(_kind(function, one) for one in hints.values()))
 
 
+def _without_alias(annotation: Any) -> Any:
+    """Return the type that an alias stands for: `NDArray` is a class of numpy's up to 2.4, and an alias from 2.5 on."""
+    alias = get_origin(annotation) or annotation
+    if not hasattr(alias, "__value__"):
+        return annotation
+    arguments = get_args(annotation)
+    return _without_alias(alias.__value__[arguments] if arguments else alias.__value__)
+
+
 def _is_array(annotation: Any) -> bool:
+    annotation = _without_alias(annotation)
     origin, inside = get_origin(annotation), get_args(annotation)
     return origin is np.ndarray or (origin is tuple and any(map(_is_array, inside)))
 
 
 def _kind(function: Callable[..., Any], annotation: Any) -> Any:
+    annotation = _without_alias(annotation)
     if annotation in _KINDS:
         return _KINDS[annotation]
     if get_origin(annotation) is np.ndarray:

@@ -37,7 +37,7 @@ _slots: Final[list[ctypes.c_int64]] = []
 """All there have ever been: compiled code may look at them for as long as the process lives."""
 
 
-class Once:
+class AddressedFunction:
     """A function that is compiled once; Python calls a form of its own, see `Function`."""
 
     def __init__(self, form: Function, part: str, makes_arrays: bool) -> None:
@@ -115,6 +115,6 @@ def compiled_once(part: str, *, makes_arrays: bool = False) -> Callable[[F], F]:
         form = compiled(makes_arrays=makes_arrays)(function)
         if not isinstance(form, Function):  # a numba that compiles nothing, or does not know our functions
             return form
-        return cast("F", Once(form, part, makes_arrays))
+        return cast("F", AddressedFunction(form, part, makes_arrays))
 
     return declare

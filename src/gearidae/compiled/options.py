@@ -16,7 +16,7 @@ import numba
 
 from gearidae.compiled.cache import PLAIN, cache_folder, is_cached
 
-__all__ = ["numba_options"]
+__all__ = ["compiles", "numba_options"]
 
 log = logging.getLogger(__name__)
 
@@ -26,6 +26,12 @@ _UNDOCUMENTED: Final[dict[str, Any]] = {
     "no_cfunc_wrapper": True,
     "no_cpython_wrapper": True,
 }
+
+
+def compiles() -> bool:
+    """Whether numba compiles, which ``NUMBA_DISABLE_JIT`` keeps it from."""
+    config: Any = numba.config
+    return not config.DISABLE_JIT
 
 
 @cache

@@ -13,18 +13,23 @@ K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301-313, do
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.asperities import law_of
 from gearidae.asperities.tip import Surface, asperity_of
+from gearidae.contact.heights import heights_of
 from gearidae.contact.psi import psi, psi_derivatives
 
-__all__ = ["density_product", "expected_asperities", "force_scatter", "half_spacing", "zero_load_radius"]
-
-_X, _W = np.polynomial.legendre.leggauss(200)
-_REACH = 12.0  # roughnesses above the gap beyond which no asperity stands
+__all__ = [
+    "asperities_for_mean",
+    "density_product",
+    "expected_asperities",
+    "half_spacing",
+    "mean_square_place",
+    "zero_load_radius",
+]
 
 
 def expected_asperities(gap: ArrayLike, radius: float, width: float, surface: Surface) -> NDArray[np.float64]:
@@ -55,33 +60,62 @@ def expected_asperities(gap: ArrayLike, radius: float, width: float, surface: Su
     return surface.asperity_density * width * math.sqrt(2.0 * radius * surface.roughness) * above
 
 
-def force_scatter(gap: float, surface: Surface, asperity: str = "jkr") -> float:
-    r"""How much the force of one pair of teeth scatters about the mean of many, approaching.
+def mean_square_place(gap: float, radius: float, surface: Surface) -> float:
+    r"""Mean square distance from the middle at which the asperities of an approaching contact touch.
 
     Parameters
     ----------
-    gap : float
-        Smallest mean gap g between the rigid shapes [m].
-    surface : Surface
-        Elastic constants, energy, tip radius and roughness (SI).
-    asperity : str, optional
-        Name of the asperity law.
+    gap, radius, surface
+        As for `expected_asperities`.
 
     Returns
     -------
     float
-        :math:`\kappa = \sqrt{\int P^2 \psi \int \psi} \,/\, |\int P \psi|`, integrals over the displacement from 0
-        on [1]: with n asperities in contact the standard deviation over the mean is :math:`\kappa / \sqrt n`, as places
-        and heights are independent and n is Poisson's.
+        :math:`\tfrac23 R \sigma (\psi(G)/n_0 - G)` [m^2] with :math:`n_0 = \int_G^\infty \psi`, from the same equation
+        of psi; :math:`R\sigma/G` far out.
     """
-    law = law_of(asperity, surface)
-    root = (
-        0.5 * math.sqrt(_REACH) * (_X + 1.0)
-    )  # in the root of the displacement the load of a tip that touches is smooth
-    displacement = root**2
-    load = law.load(displacement)
-    weight = _W * root * psi(gap / surface.roughness + displacement)
-    return math.sqrt(float(weight @ load**2) * float(weight.sum())) / abs(float(weight @ load))
+    at = gap / surface.roughness
+    density, slope = psi_derivatives(np.asarray(at), 1)
+    above = -2.0 * (slope + at * density)
+    return 2.0 / 3.0 * radius * surface.roughness * (float(density / above) - at)
+
+
+def asperities_for_mean(gap: float, parts: Iterable[tuple[Surface, float, float]], asperity: str) -> float:
+    r"""Number of asperities from which on the force of one contact is its mean over many surfaces to a tenth.
+
+    The force of n asperities drawn at random scatters by :math:`\kappa/\sqrt n` of its mean (one standard deviation),
+
+    .. math::
+
+        \kappa^2 = \frac{\int P^2 \psi\,\mathrm{d}\Delta \int \psi\,\mathrm{d}\Delta}
+                        {\left(\int P \psi\,\mathrm{d}\Delta\right)^2},
+
+    integrals over the displacements of the asperities that have joined on approach. Loads of both signs nearly cancel
+    where adhesion is strong, so that kappa is large there.
+
+    Parameters
+    ----------
+    gap : float
+        Smallest mean gap between the rigid shapes [m].
+    parts : iterable of (Surface, float, float)
+        Surface, share and gap offset [m] of each material of the interface; all have one roughness and density.
+    asperity : str
+        Name of the law of one asperity.
+
+    Returns
+    -------
+    float
+        ``(10 kappa)^2``; infinite where the mean force vanishes.
+    """
+    count = mean = square = 0.0
+    for surface, share, offset in parts:
+        heights, at = heights_of(surface, asperity), (gap + offset) / surface.roughness
+        density, slope = psi_derivatives(np.asarray(at - heights.law.join), 1)
+        load, load_square = heights.moments(psi, at)
+        count -= share * 2.0 * float(slope + (at - heights.law.join) * density)
+        mean += share * heights.unit_load * load
+        square += share * heights.unit_load**2 * load_square
+    return 100.0 * count * square / mean**2 if mean != 0.0 else math.inf
 
 
 def density_product(surface: Surface) -> float:

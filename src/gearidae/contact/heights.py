@@ -83,6 +83,28 @@ class Heights:
             total[part] = self._integral(kernel, flat_gap[part], flat_stretch[part], decays_left)
         return total.reshape(gap.shape)
 
+    def moments(self, kernel: Kernel, gap: float) -> tuple[float, float]:
+        """Integrate load times kernel, and its square times kernel, over the asperities of an approaching contact.
+
+        Parameters
+        ----------
+        kernel : callable
+            As for `integral`.
+        gap : float
+            In roughnesses.
+
+        Returns
+        -------
+        load, square : float
+            In units of `unit_load` and its square. To 1e-6 for gaps down to -20 roughnesses, where one panel of the
+            quadrature spans the kernel; each of the integral of the absolute value.
+        """
+        lower = -self.law.join
+        upper = math.sqrt(max(gap + lower, 0.0) ** 2 + 2.0 * _EFOLDINGS) - gap
+        displacement, load = self.law.nodes(lower, upper, _X, _W)
+        weighted = load * kernel(gap + displacement)
+        return float(weighted.sum()), float((weighted * self.law.load(displacement)).sum())
+
     def edge_load(self, stretch: Array) -> Array:
         """Load of the asperity that is stretched most, in units of `unit_load`."""
         return self.law.load(-stretch)

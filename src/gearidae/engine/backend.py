@@ -10,13 +10,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.compiled import compiles
 from gearidae.engine.changeover import change_over, deepen, lighten
-from gearidae.engine.continuing import Origin, checkpoint_of_start, knots_at_start, problem_from
+from gearidae.engine.continuing import checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.integrate.driver import Block, Ending
-from gearidae.engine.run_ends import Ended, OnBlock, Start
+from gearidae.engine.run_ends import Ended, OnBlock
 from gearidae.engine.setup.problem import Problem
+from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import (
@@ -32,7 +34,6 @@ from gearidae.scene import Scene
 
 __all__ = [
     "Ended",
-    "Start",
     "choose_backend",
     "follow",
     "kept_at",
@@ -45,7 +46,7 @@ __all__ = [
 log = logging.getLogger(__name__)
 
 
-def choose_backend(backend: str = "auto", method: str = "auto") -> str:
+def choose_backend(backend: str, method: str) -> str:
     """Name the driver that will run.
 
     Parameters
@@ -58,8 +59,11 @@ def choose_backend(backend: str = "auto", method: str = "auto") -> str:
     Raises
     ------
     SceneError
-        If the native driver is asked for and cannot work here, or the name is unknown.
+        If the native driver is asked for and cannot work here, the name is unknown, or numba has been told to compile
+        nothing.
     """
+    if not compiles():
+        raise SceneError("NUMBA_DISABLE_JIT", 1, "must not be set: the solver runs compiled only")
     if backend not in ("auto", "native", "sksundae"):
         raise SceneError("backend", backend, "must be auto, native or sksundae")
     if backend == "sksundae":
@@ -163,7 +167,7 @@ def follow(
     *,
     backend: str = "auto",
     on_progress: Callable[[float, int], None] | None = None,
-    begin: Start | None = None,
+    start: Start = AT_ONCE,
     on_block: OnBlock | None = None,
 ) -> Ended:
     """Run a scene and hand every block of output to `take` as soon as it is there.
@@ -176,8 +180,8 @@ def follow(
     backend : {"auto", "native", "sksundae"}, optional
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
-    begin : Start, optional
-        Checkpoint to resume from, or end of another run to go on from; by default the run starts at time 0.
+    start : Start, optional
+        Where the run begins, or is resumed; by default it begins at time 0.
     on_block : callable, optional
         Told every block of output, after `take`; what returns True ends the run there, with the status ``stopped``.
 
@@ -192,8 +196,8 @@ def follow(
         If the scene is beyond what the engine can do.
     """
     name = choose_backend(backend, scene.run.method)
-    begin = begin or Start()
-    statistics, reached, seen = replace(begin.statistics), begin.time, begin.events
+    statistics, seen = replace(start.statistics), start.events
+    reached = start.time if start.checkpoint is None else start.reached
     status = message = ""
     balance: EnergyBalance | None = None
     extremes: Extremes | None = None
@@ -202,13 +206,13 @@ def follow(
     started = time.perf_counter()
     try:
         load_driver(name)
-        problem = problem_from(scene, begin.origin)
+        problem = problem_from(scene, start)
         ready_driver(name, problem)
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
-        resume, at_start = begin.checkpoint, np.empty((0, EVENT_NUMBERS))
-        if resume is None and begin.origin is not None:
-            resume = checkpoint_of_start(scene, begin.origin)
+        resume, at_start = start.checkpoint, np.empty((0, EVENT_NUMBERS))
+        if resume is None and start.scene is not None:
+            resume = checkpoint_of_start(scene, start)
             at_start = knots_at_start(problem)
         for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
             if len(at_start):
@@ -216,7 +220,7 @@ def follow(
                     np.concatenate([at_start, block.events]),
                     np.empty((0, EVENT_NUMBERS)),
                 )
-            take(block, statistics, begin.wall_time + time.perf_counter() - started)
+            take(block, statistics, start.wall_time + time.perf_counter() - started)
             reached = block.time
             balance, extremes = block.balance or balance, block.extremes or extremes
             seen += len(block.events)
@@ -229,7 +233,7 @@ def follow(
         status, message = statistics.ending.status, statistics.message
     except KeyboardInterrupt:
         status, message = "interrupted", "interrupted by the user"
-    wall_time = begin.wall_time + time.perf_counter() - started
+    wall_time = start.wall_time + time.perf_counter() - started
     counted = statistics_of(statistics, wall_time, name, skipped)
     return Ended(counted, status, message, reached, balance, extremes, checkpoint)
 
@@ -250,7 +254,7 @@ def solve(
     samples: int | str | None = None,
     backend: str = "auto",
     on_progress: Callable[[float, int], None] | None = None,
-    origin: Origin | None = None,
+    start: Start = AT_ONCE,
     on_block: OnBlock | None = None,
 ) -> Solution:
     """Run a scene and collect all of it.
@@ -263,8 +267,8 @@ def solve(
     backend : {"auto", "native", "sksundae"}, optional
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
-    origin : Origin, optional
-        The end of another run to go on from.
+    start : Start, optional
+        Where the run begins, from `end_of` of the run that it goes on from.
     on_block : callable, optional
         As for `follow`.
 
@@ -288,11 +292,10 @@ def solve(
         rows.append(block.rows)
         events.append(block.events)
 
-    begin = Start(origin=origin, time=0.0 if origin is None else origin.time)
-    ended = follow(scene, take, backend=backend, on_progress=on_progress, begin=begin, on_block=on_block)
+    ended = follow(scene, take, backend=backend, on_progress=on_progress, start=start, on_block=on_block)
     table = np.concatenate(rows)
     return Solution(
-        time=sample_times(begin.time, scene.run.duration, scene.run.sample_count)[: len(table)],
+        time=sample_times(start.time, scene.run.duration, scene.run.sample_count)[: len(table)],
         samples={column: np.ascontiguousarray(table[:, i]) for i, column in enumerate(columns)},
         events=_events(np.concatenate(events)),
         statistics=ended.statistics,
@@ -301,7 +304,7 @@ def solve(
         reached=ended.reached,
         balance=ended.balance,
         extremes=ended.extremes,
-        start=begin.time,
+        start=start.time,
         checkpoint=ended.checkpoint,
     )
 
@@ -310,7 +313,7 @@ def outlook(
     scene: Scene,
     backend: str,
     checkpoint: NDArray[np.float64] | None = None,
-    origin: Origin | None = None,
+    start: Start = AT_ONCE,
 ) -> tuple[int, dict[str, int], str]:
     """What can be said of a run without running it.
 
@@ -320,8 +323,8 @@ def outlook(
     backend : {"native", "sksundae"}
     checkpoint : ndarray, optional
         Where the run is to go on.
-    origin : Origin, optional
-        The end of another run that it goes on from.
+    start : Start, optional
+        Where the run begins.
 
     Returns
     -------
@@ -337,14 +340,14 @@ def outlook(
     SceneError
         If the scene is beyond what the engine can do.
     """
-    problem = problem_from(scene, origin)
+    problem = problem_from(scene, start)
     if checkpoint is not None and problem.of_checkpoint(checkpoint).has_been_elastic(checkpoint):
         problem.skipped["elastic_deflection"] = 0
     return problem.checkpoint(0.0, problem.start).size, problem.skipped, formulas(problem, backend)
 
 
 def kept_at(
-    scene: Scene, checkpoint: NDArray[np.float64], backend: str, origin: Origin | None = None
+    scene: Scene, checkpoint: NDArray[np.float64], start: Start = AT_ONCE
 ) -> tuple[EnergyBalance | None, Extremes | None]:
     """Return the energy balance and the extremes at a checkpoint of a run.
 
@@ -353,17 +356,15 @@ def kept_at(
     scene : Scene
     checkpoint : ndarray
         From a `Block` of a run of this scene.
-    backend : {"native", "sksundae"}
-        The driver that ran.
-    origin : Origin, optional
-        The end of another run that it went on from.
+    start : Start, optional
+        Where the run began.
 
     Raises
     ------
     SceneError
         If the checkpoint is not of this scene.
     """
-    problem = problem_from(scene, origin).of_checkpoint(checkpoint)
+    problem = problem_from(scene, start).of_checkpoint(checkpoint)
     problem.prepare(scene.run.rtol, scene.run.sample_count)
     time, state = problem.restored(checkpoint)
     return problem.kept(time, state, np.zeros_like(state))

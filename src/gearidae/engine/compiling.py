@@ -75,7 +75,7 @@ def _leave() -> None:
 
 
 class CompileListener(event.Listener):
-    """Notes and shows what numba compiles because it has not found it on disk."""
+    """Counts and shows the functions that numba compiles because it has not found them on disk."""
 
     def __init__(self, what: str, how_long: str) -> None:
         self._what, self._how_long = what, how_long

@@ -13,7 +13,6 @@ last bit. A new torque changes the units of time and force, a new coating what a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -49,17 +48,18 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.population.restore import take_joined
-from gearidae.engine.setup.build import Begin, make_problem
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.build_torques import KNOT_SPACING
 from gearidae.engine.setup.kept_asperities import joined_asperities
 from gearidae.engine.setup.problem import Problem
+from gearidae.engine.setup.start import Start
 from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
+from gearidae.scene.differences import MAY_CHANGE, first_difference
 
 __all__ = [
-    "MAY_DIFFER",
-    "Origin",
     "checkpoint_of_start",
     "end_of",
     "knots_at_start",
@@ -67,47 +67,16 @@ __all__ = [
     "refuse_other_bodies",
 ]
 
-MAY_DIFFER: Final = ("name", "drive", "load", "coating", "initial", "run")
-"""Tables in which a run may differ from the one it goes on from; its own ``initial`` then says nothing."""
 
-_AS_THERE: Final = "as in the run to go on from"
 _SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
 _FORCES: Final = ("largest_force", "smallest_force")
 _TIMES: Final = ("stuck_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")
+_SAME: Final = 1e-12
+"""Relative difference of forces below which materials are the same: units of other torques round their last digits."""
 
 
-@dataclass(frozen=True, slots=True)
-class Origin:
-    """Where a run goes on from.
-
-    Attributes
-    ----------
-    scene : Scene
-        Of the other run.
-    words : ndarray of 8-byte words
-        Its checkpoint, see `gearidae.engine.setup.checkpoint`.
-    start : float
-        When the other run itself began [s].
-    time : float
-        When this one begins [s].
-    place : float
-        How far the gear has turned there, in pitches.
-    """
-
-    scene: Scene
-    words: Floats
-    start: float
-    time: float
-    place: float
-
-    @property
-    def begin(self) -> Begin:
-        """Where the new run begins."""
-        return Begin(self.time, self.place)
-
-
-def end_of(scene: Scene, words: Floats, start: float) -> Origin:
-    """Check a checkpoint against the scene of its run, and say where another run goes on from.
+def end_of(scene: Scene, words: Floats, began: float) -> Start:
+    """Check a checkpoint against the scene of its run, and return the start of a run that goes on from there.
 
     Parameters
     ----------
@@ -115,40 +84,41 @@ def end_of(scene: Scene, words: Floats, start: float) -> Origin:
         Of the run.
     words : ndarray of 8-byte words
         Its checkpoint.
-    start : float
+    began : float
         When it began [s].
 
     Raises
     ------
     SceneError
-        If the checkpoint is not of this scene, or a number is none that a run of it could have left.
+        If the checkpoint is not of this scene, or damaged.
     """
-    problem, y = _restored(scene, words, start)
+    problem, y = _restored(scene, words, began)
     s = problem.model.state
-    end = start + scene.run.duration
+    end = began + scene.run.duration
     time = end if s.time == problem.model.scene.end else float(s.time) * problem.time_unit
     place = float(y[PHASE] + s.turns) if problem.model.scene.kind == GEARS else 0.0
-    return Origin(scene, words, start, time, place)
+    return Start(time, place, scene, words, began)
 
 
-def problem_from(scene: Scene, origin: Origin | None) -> Problem:
-    """Make the problem of a scene that goes on from another run, or begins for itself."""
-    if origin is None:
-        return make_problem(scene)
-    refuse_other_bodies(origin.scene, scene)
-    return make_problem(scene, begin=origin.begin)
+def problem_from(scene: Scene, start: Start) -> Problem:
+    """Make the problem of a scene that goes on from another run, or begins by itself."""
+    if start.scene is not None:
+        refuse_other_bodies(start.scene, scene)
+    return make_problem(scene, start=start)
 
 
-def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
+def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     """Return the checkpoint of a scene's problem from which a run begins that goes on from another.
 
     Raises
     ------
     SceneError
-        If the scenes differ in what may not, or the state is none that a run of the new scene could have.
+        If the scenes differ in what may not.
     """
-    old, old_y = _restored(origin.scene, origin.words, origin.start)
-    new = problem_from(scene, origin)
+    assert start.scene is not None
+    assert start.words is not None
+    old, old_y = _restored(start.scene, start.words, start.began)
+    new = problem_from(scene, start)
     new.prepare(scene.run.rtol, scene.run.sample_count)
     new = _same_contact(old, new)
     new.prepare(scene.run.rtol, scene.run.sample_count)
@@ -158,9 +128,8 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
     units.convert_motion(old_y, y)
     take_over(source, m)
     units.convert_state(m.state)
-    changed = _materials(source) != _materials(m) or (
-        m.scene.population.flanks > 0 and origin.scene.coating != scene.coating
-    )
+    changed = not _same_materials(source, m)
+    changed |= m.scene.population.flanks > 0 and start.scene.coating != scene.coating
     if changed:  # what other materials have been exposed to says nothing of these
         exposures_of(m)[:] = 0.0
     else:
@@ -181,42 +150,36 @@ def checkpoint_of_start(scene: Scene, origin: Origin) -> Floats:
 def knots_at_start(problem: Problem) -> Floats:
     """Return the event of a schedule that has a knot where a continued run begins; the run before ended just there.
 
+    A knot that the solver could not tell from the end has been left out there.
+
     Returns
     -------
     ndarray, shape (0 or 1, EVENT_NUMBERS)
         Time [s], kind, pair, flank, gap rate [m/s].
     """
     s, tables = problem.model.scene, problem.model.tables
-    if not any((segment_ends(own, tables) == s.start).any() for own in s.schedule):
+    ends = np.concatenate([segment_ends(own, tables) for own in s.schedule])
+    if not ((ends <= s.start) & (s.start - ends <= KNOT_SPACING * s.start)).any():
         return np.empty((0, EVENT_NUMBERS))
     time = float(s.start * s.time_unit)
     return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0, -1.0]])
 
 
-def _restored(scene: Scene, words: Floats, start: float) -> tuple[Problem, Floats]:
-    """Return the problem of a run where it ended, with its state; everything read is checked."""
-    problem = make_problem(scene, begin=Begin(start, 0.0)).of_checkpoint(words)
+def _restored(scene: Scene, words: Floats, began: float) -> tuple[Problem, Floats]:
+    """Return the problem of a run where it ended, with its state; what is read is checked."""
+    problem = make_problem(scene, start=Start(began, 0.0)).of_checkpoint(words)
     problem.prepare(scene.run.rtol, scene.run.sample_count)
     return problem, problem.restored(words)[1]
 
 
 def refuse_other_bodies(old: Scene, new: Scene) -> None:
     """Refuse a scene that differs in what may not."""
-    before, after = old.to_dict(), new.to_dict()
-    for table in sorted({*before, *after} - {*MAY_DIFFER}):
-        if (table in before) != (table in after):
-            given = "(given)" if table in after else "(missing)"
-            raise SceneError(
-                table, given, f"must be {'given' if table in before else 'left out'}, {_AS_THERE}"
-            )
-        one, other = before.get(table, {}), after.get(table, {})
-        for key in sorted({*one, *other}):
-            if one.get(key) != other.get(key):
-                raise SceneError(
-                    f"{table}.{key}",
-                    other.get(key, "(missing)"),
-                    f"must be {one.get(key, '(missing)')}, {_AS_THERE}",
-                )
+    found = first_difference(old.to_dict(), new.to_dict(), ignored=MAY_CHANGE)
+    if found is not None:
+        key, before, after = found
+        given = "(missing)" if after is None else "(given)" if isinstance(after, dict) else after
+        wanted = "left out" if before is None else "given" if isinstance(before, dict) else before
+        raise SceneError(key, given, f"must be {wanted}, as in the run to go on from")
 
 
 def _same_contact(old: Problem, new: Problem) -> Problem:
@@ -268,21 +231,21 @@ class _Units:
                 e[name] *= ratio
 
 
-def _materials(m: Model) -> list[tuple[float, ...]]:
+def _same_materials(old: Model, new: Model) -> bool:
+    """Whether contacts of two models are of the same materials."""
+    before, after = _materials(old), _materials(new)
+    return len(before) == len(after) and bool(np.allclose(before, after, rtol=_SAME, atol=0.0))
+
+
+def _materials(m: Model) -> Floats:
     """What of the materials contacts depend on, in roughnesses and newtons, and fractions by tooth and place."""
-    by_place = [
-        (float(own.teeth), *m.tables[own.values_at : own.values_at + own.teeth * own.places].tolist())
-        for own in m.scene.coverage
-    ]
-    return by_place + [
-        (
-            float(own.force_scale * m.scene.force_unit),
-            float(own.stretch_limit),
-            float(own.joining_energy),
-            float(own.gap_offset),
-        )
-        for own in m.scene.material
-    ]
+    numbers: list[float] = []
+    for own in m.scene.coverage:
+        numbers += [own.teeth, *m.tables[own.values_at : own.values_at + own.teeth * own.places]]
+    for own in m.scene.material:
+        force = own.force_scale * m.scene.force_unit
+        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset]
+    return np.array(numbers)
 
 
 def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:

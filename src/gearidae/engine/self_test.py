@@ -109,14 +109,14 @@ def failure(way: str) -> str:
     """
     note = cache_folder() / "self_test.json"
     kept: dict[str, str] = {}
-    with suppress(OSError, ValueError):
-        kept = dict(json.loads(note.read_text()))
+    with suppress(OSError, ValueError, AttributeError):  # of a note that has been damaged
+        kept = {name: said for name, said in json.loads(note.read_text()).items() if isinstance(said, str)}
     if way not in kept:
         kept[way] = examine(way) if sys.platform in TRIED else examine_apart(way)
         if is_cached():
             with suppress(OSError):
                 note.write_text(json.dumps(kept))
-    return str(kept[way])
+    return kept[way]
 
 
 def examine_apart(way: str) -> str:

@@ -38,7 +38,7 @@ class GeometryError(ValueError):
     parameter : str
         The argument of `mesh_geometry` to change: ``pinion_teeth``, ``gear_teeth`` or ``pressure_angle``.
     reason : str
-        What is wrong, in words.
+        The reason, in words.
     """
 
     def __init__(self, parameter: str, reason: str) -> None:
@@ -47,13 +47,13 @@ class GeometryError(ValueError):
         super().__init__(f"{parameter}: {reason}")
 
     def __reduce__(self) -> tuple[type[GeometryError], tuple[str, str]]:
-        """Survive the trip between processes, which rebuilds an exception from its arguments."""
+        """Support pickling between processes, which rebuilds an exception from its arguments."""
         return type(self), (self.parameter, self.reason)
 
 
 @dataclass(frozen=True, slots=True)
 class Geometry:
-    """A gear pair as the dynamics need it; lengths in m, angle in rad.
+    """Geometry of a gear pair; lengths in m, angle in rad.
 
     Attributes
     ----------
@@ -249,7 +249,7 @@ def place_of_arc(geometry: Geometry, arc: ArrayLike) -> Floats:
 
 
 def separation(geometry: Geometry, xi: ArrayLike, tip_relief_radius: float) -> tuple[Floats, Floats]:
-    """How far the rounded tooth end opens the gap of a pair outside the path of contact.
+    """Additional gap of a pair outside the path of contact because of the rounded tooth end.
 
     Parameters
     ----------

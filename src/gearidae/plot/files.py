@@ -9,7 +9,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from gearidae.archive.disk import part_beside
+from gearidae.archive import target
 from gearidae.errors import SceneError
 
 __all__ = ["BY_FFMPEG", "MOVING", "whole_file", "write"]
@@ -76,20 +76,12 @@ def whole_file(
     SceneError
         If the file exists and may not be replaced, its ending is not known, or it cannot be written.
     """
-    target = Path(path)
-    if _kind(target) not in known:
+    ending = _kind(Path(path))
+    if ending not in known:
         endings = ", ".join(f".{each}" for each in sorted(known))
         raise SceneError("picture", path, f"must end in one of {endings}")
-    if target.is_dir() or (target.exists() and not overwrite):
-        raise SceneError("picture", path, "exists already: name another with -o, or allow --overwrite")
-    part = part_beside(target.with_name(target.stem), f".{_kind(target)}")
-    try:
+    with target.whole_file(path, overwrite=overwrite, name="picture", ending=f".{ending}") as part:
         yield part
-        part.replace(target)
-    except OSError as error:
-        raise SceneError("picture", path, f"cannot be written ({error.strerror})") from error
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _kind(path: Path) -> str:

@@ -6,13 +6,16 @@ nothing at all. These two say how they look, by the method that Jupyter asks obj
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from typing import Any
 
+import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-__all__ = ["Picture", "PictureAxes", "new_picture"]
+__all__ = ["Picture", "PictureAxes", "new_picture", "usual_style"]
 
 _WIDTH = 100
 """Pixels of the page that an inch of a figure takes; the picture itself has more, for fine screens."""
@@ -36,6 +39,14 @@ class PictureAxes(Axes):
         """Return the picture of the whole figure, nothing if that is not ours to show."""
         figure = self.get_figure(root=True)
         return figure._repr_png_() if isinstance(figure, Picture) else None
+
+
+@contextmanager
+def usual_style() -> Iterator[None]:
+    """Draw by matplotlib's own settings inside the block, whatever the user's are: they may ask for LaTeX."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        yield
 
 
 def new_picture(size: tuple[float, float], **options: Any) -> Picture:

@@ -107,7 +107,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
-    drive = [float(one["frequency"]) for one in scene_of(ds).get("drive", {}).get("harmonic", [])]
+    harmonics = scene_of(ds).get("drive", {}).get("harmonic", [])
+    drive = [float(one["frequency"]) for one in harmonics if "frequency" in one]
     mesh = max(_mesh_frequency(ds, _settled(run, _SETTLED)) for run in shown)
     rings = [] if drive else sorted({ring for run in shown for ring in _rings(run)})
     lines = [line for line in (mesh, *drive) if line > 0.0]
@@ -343,7 +344,8 @@ def _mesh_frequency(ds: xr.Dataset, run: xr.Dataset) -> float:
 
 def _period(ds: xr.Dataset, shown: list[Run]) -> tuple[float, str]:
     """Length of a cycle [s] and what it is a cycle of."""
-    harmonics: list[dict[str, Any]] = scene_of(ds).get("drive", {}).get("harmonic", [])
+    given: list[dict[str, Any]] = scene_of(ds).get("drive", {}).get("harmonic", [])
+    harmonics = [one for one in given if "frequency" in one]
     duration = float(ds["time"][-1] - ds["time"][0])
     if harmonics and float(harmonics[0]["frequency"]) * duration > 1.0:
         return 1.0 / float(harmonics[0]["frequency"]), "cycle of the drive"

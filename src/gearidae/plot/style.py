@@ -35,6 +35,7 @@ __all__ = [
     "largest",
     "legend",
     "new_axes",
+    "number_shown",
     "runs_of",
     "scale_for",
     "scaled",
@@ -63,6 +64,11 @@ _PREFIXED = ("m", "s", "Pa", "Hz", "N", "N m", "J", "W")
 _SPELT = {"rad s-1": "rad/s", "m s-1": "m/s", "kg m2": "kg m²", "J m-2": "J/m²", "m-2": "1/m²"}
 _MOST_POINTS = 6000
 _MOST_RUNS = 7
+_LONGEST_LABEL = 32
+_IN_A_LINE = 84
+"""Characters of a legend that a line of a picture takes."""
+_HANDLE = 8
+"""Those that the line in front of a name takes, with the space beside it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,12 +83,15 @@ class Run:
         The run.
     colour, line : str or tuple
         How matplotlib shall draw it.
+    of : int
+        Number of runs that could be drawn; more than those that are, if they are too many.
     """
 
     label: str
     data: xr.Dataset
     colour: str
     line: Any
+    of: int
 
     def trace(self, name: str) -> tuple[Floats, Floats]:
         """Time [s] and samples [SI] up to where the run ended, thinned for drawing."""
@@ -126,20 +135,26 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     """
     everything = list(runs(ds)) if name in ds else []
     kept = [number for number, (_, run) in enumerate(everything) if _has_samples(run[name])]
-    if len(kept) > _MOST_RUNS:
+    drawable = len(kept)
+    if drawable > _MOST_RUNS:
         judged = outcomes(ds)
         kept = [kept[number] for number in pick([judged[each].verdict for each in kept], _MOST_RUNS)]
     found = [everything[number] for number in kept]
     if not found:
         raise SceneError("plot", name, "the dataset has no samples of it")
+    labels = [_label(label, run) for label, run in found]
+    short = [_shortened(label) for label in labels]
+    if len(set(short)) == len(set(labels)):
+        labels = short
     return [
         Run(
-            _label(label, run),
+            labels[number],
             run,
             COLOURS[number % len(COLOURS)],
             LINE_STYLES[number % len(LINE_STYLES)],
+            drawable,
         )
-        for number, (label, run) in enumerate(found)
+        for number, (_, run) in enumerate(found)
     ]
 
 
@@ -252,17 +267,26 @@ def label_time(ax: Axes, runs: Sequence[Run]) -> Scale:
     return scale
 
 
+def number_shown(runs: Sequence[Run]) -> str:
+    """Say how many of the runs are shown; nothing if all are."""
+    return f"{len(runs)} of {runs[0].of} runs" if len(runs) < runs[0].of else ""
+
+
 def legend(ax: Axes, runs: Sequence[Run]) -> None:
     """Put the names of the runs above the axes, in the order of the dataset; a single run needs none."""
     if len(runs) < 2:
         return
     handles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
+    width = max(len(run.label) for run in runs) + _HANDLE
     shown = ax.legend(
         [handles[run.label] for run in runs],
         [run.label for run in runs],
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
-        ncols=min(len(runs), 4) if max(len(run.label) for run in runs) < 12 else 3,
+        ncols=min(len(runs), 4, max(_IN_A_LINE // width, 1)),
+        title=number_shown(runs) or None,
+        title_fontsize="small",
+        alignment="left",
         frameon=False,
         borderaxespad=0.2,
         handlelength=2.4,
@@ -283,6 +307,11 @@ def _picked(time: xr.DataArray, places: NDArray[np.int64]) -> Floats:
         part[places[(places >= place) & (places < place + len(part))] - place] for place, part in pieces(time)
     ]
     return np.concatenate(parts)
+
+
+def _shortened(label: str) -> str:
+    """Leave out the middle of a label that would take the place of the picture."""
+    return label if len(label) <= _LONGEST_LABEL else f"{label[:20]}...{label[-9:]}"
 
 
 def _label(label: Mapping[str, Any], run: xr.Dataset) -> str:

@@ -8,7 +8,18 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.plot.style import NEGATIVE, POSITIVE, Run, Scale, label_time, new_axes, runs_of, scale_for, tidy
+from gearidae.plot.style import (
+    NEGATIVE,
+    POSITIVE,
+    Run,
+    Scale,
+    label_time,
+    new_axes,
+    number_shown,
+    runs_of,
+    scale_for,
+    tidy,
+)
 
 __all__ = ["contact_torque"]
 
@@ -91,8 +102,9 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
     ax.tick_params(axis="y", length=0)
     ax.grid(visible=False, axis="y")
     ax.spines["left"].set_visible(False)
+    shown = number_shown(runs)
     ax.set_title(
-        "contact torque on the gear: drives it (blue), holds it back by adhesion (orange)",
+        f"contact torque on the gear{', ' * bool(shown)}{shown}: drives it (blue), holds it back by adhesion (orange)",
         loc="left",
         fontsize="medium",
     )

@@ -1,6 +1,6 @@
-"""Plain records that cross the rooms: samples, events, endings, solver statistics, energy balance, extremes, solutions.
+"""Plain records that all rooms exchange: samples, events, endings, statistics, energy balance, extremes, solutions.
 
-They are what the engine hands out and the archive stores; nothing here depends on another room.
+The engine returns them and the archive stores them; nothing here depends on another room.
 """
 
 from gearidae.records.columns import (
@@ -39,6 +39,7 @@ from gearidae.records.totals import (
     QUADRATURE_BOUND,
     ROLLER_BOUND,
     ROUNDING_BOUND,
+    RUN_PARTS,
     TABLE_BOUND,
     TORQUE_BOUND,
     TRAVEL_BOUND,
@@ -59,6 +60,7 @@ __all__ = [
     "ROLLER_COLUMNS",
     "ROLLER_SAMPLES",
     "ROUNDING_BOUND",
+    "RUN_PARTS",
     "TABLE_BOUND",
     "TORQUE_BOUND",
     "TRAVEL_BOUND",

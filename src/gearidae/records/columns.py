@@ -1,7 +1,7 @@
-"""What the solver samples: name, unit and meaning of each column, in the order in which the engine writes them.
+"""Sampled columns: name, unit and meaning of each, in the order of a row.
 
-The engine fills a row of these (`gearidae.engine.motion.observe`); dataset, files and their documentation follow from
-here.
+The engine fills the rows (`gearidae.engine.motion.observe`); dataset, files and their documentation follow from
+these lists.
 """
 
 from __future__ import annotations
@@ -37,15 +37,18 @@ class Column(NamedTuple):
     units : str
         UDUNITS unit.
     long_name : str
-        What it is, in words.
+        Meaning, in words.
     comment : str
         Sign convention and the like.
+    since : str
+        Version of gearidae that began to sample it; archives without it are older. Empty for the first version.
     """
 
     name: str
     units: str
     long_name: str
     comment: str = ""
+    since: str = ""
 
 
 GEAR_SAMPLES: Final = (
@@ -68,6 +71,23 @@ GEAR_SAMPLES: Final = (
     Column("drive_gap", "m", "smallest gap of all pairs on the drive flank"),
     Column("coast_gap", "m", "smallest gap of all pairs on the coast flank"),
     Column("pairs_in_contact", "1", "number of tooth pairs that transmit force"),
+    Column(
+        "drive_torque", "N m", "torque of the drive on the pinion", "positive turns the gears forward", "0.2"
+    ),
+    Column(
+        "load_torque",
+        "N m",
+        "torque that resists the gear",
+        "dry resistance and drag, Teodorescu et al. 2009, Eq. 2; of a gear at rest the torque that holds it",
+        "0.2",
+    ),
+    Column(
+        "pinion_angle",
+        "rad",
+        "rotation of the pinion since the start",
+        "of the first run of a chain; not wrapped",
+        "0.2",
+    ),
 )
 ROLLER_SAMPLES: Final = (
     Column("height", "m", "height of the roller above the mean plane of the asperities"),
@@ -85,7 +105,7 @@ GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
 POPULATION_COLUMNS = tuple(column.name for column in POPULATION_SAMPLES)
-"""What is sampled of elastic contacts and of populations besides, last."""
+"""Additional columns of elastic contacts and of populations, after the others."""
 
 
 def _places(*columns: str) -> Any:

@@ -12,7 +12,7 @@ __all__ = ["EventKind", "Events", "Flank"]
 
 
 class EventKind(IntEnum):
-    """What happened, as stored in ``event_kind``."""
+    """Kind of an event, as stored in ``event_kind``."""
 
     ONSET = 0
     SEPARATION = 1
@@ -29,7 +29,7 @@ class EventKind(IntEnum):
 
 
 class Flank(IntEnum):
-    """Which side of the tooth an event belongs to."""
+    """Side of the tooth to which an event belongs."""
 
     NONE = -1
     DRIVE = 0
@@ -38,7 +38,7 @@ class Flank(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Events:
-    """Events in the order they happened; every array has shape (n_events,).
+    """Events in the order of time; every array has shape (n_events,).
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Events:
     kind : ndarray of int8
         An `EventKind`.
     pair : ndarray of int64
-        Number of the tooth pair, counted from the one that starts in mesh as 0.
+        Number of the tooth pair; the pair that starts in mesh is 0.
     flank : ndarray of int8
         A `Flank`.
     gap_rate : ndarray of float64

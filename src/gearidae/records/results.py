@@ -1,4 +1,4 @@
-"""What a driver hands out: blocks of output, and the solution of a whole run."""
+"""Output of a driver: blocks, and the solution of a whole run."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from gearidae.records.totals import EnergyBalance, Extremes
 __all__ = ["Block", "Solution", "Words"]
 
 Words = NDArray[Any]
-"""A vector of 8-byte words whose meaning only their maker knows."""
+"""A vector of 8-byte words, whose layout only the engine knows."""
 
 
 @dataclass(slots=True)
 class Block:
-    """Output of a stretch of a run.
+    """Output of a part of a run.
 
     Attributes
     ----------
     rows : ndarray, shape (n, columns)
-        Samples that follow those of the block before, SI units.
+        Samples after those of the previous block, SI units.
     events : ndarray, shape (m, 6)
         Time [s], kind, pair, flank, gap rate [m/s], asperity by its place on its flank or -1.
     time : float
         Simulated time reached [s].
     checkpoint : ndarray of 8-byte words, optional
-        All that it takes to go on from the end of this block; present at checkpoints and at the end. Only the engine
-        knows what the words mean, and checks them when it is to go on from there.
+        State at the end of this block, from which a run can continue; present at checkpoints and at the end. Only the
+        engine knows the layout of the words, and checks them before it continues.
     balance : EnergyBalance, optional
-        The energy balance at the end of this block; missing where a block ends in the middle of a step.
+        The energy balance at the end of this block; missing if the block ends in the middle of a step.
     extremes : Extremes, optional
-        Likewise.
+        The extremes at the end of this block; missing under the same condition.
     """
 
     rows: NDArray[np.float64]
@@ -49,7 +49,7 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """One run as the engine leaves it.
+    """Result of one run.
 
     Attributes
     ----------
@@ -66,13 +66,13 @@ class Solution:
     reached : float, optional
         Simulated time reached [s]; by default that of the last sample.
     balance : EnergyBalance, optional
-        The energy balance; None if the run produced nothing.
+        The energy balance; None for a run without output.
     extremes : Extremes, optional
-        Likewise.
+        The extremes; None for a run without output.
     start : float
-        When the run began [s].
+        Start time of the run [s].
     checkpoint : ndarray of 8-byte words, optional
-        That of the end, from which another run can go on.
+        State at the end, from which another run can continue.
     """
 
     time: NDArray[np.float64]

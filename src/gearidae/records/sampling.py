@@ -1,7 +1,6 @@
-"""When samples are taken: uniformly, at whole multiples of their spacing where the run's start is one.
+"""Sample times: uniform, and whole multiples of their spacing if the start of the run is one.
 
-So the samples of a run that goes on from another are those that a single run over both would have, to the last bit
-where the spacing is the same.
+A continued run therefore has the sample times of a single run over both, to the last bit if the spacing is the same.
 """
 
 from __future__ import annotations
@@ -14,11 +13,11 @@ from numpy.typing import NDArray
 __all__ = ["first_sample", "sample_times"]
 
 _ON_GRID: Final = 1e-9
-"""Of a spacing: so close to a whole multiple a start counts as one."""
+"""A start counts as a whole multiple within this part of a spacing."""
 
 
 def first_sample(start: float, end: float, count: int) -> float:
-    """Return the start over the spacing of the samples, a whole number where it is one but for rounding.
+    """Return the start over the spacing of the samples, rounded if it is a whole number but for rounding errors.
 
     Parameters
     ----------
@@ -34,8 +33,10 @@ def first_sample(start: float, end: float, count: int) -> float:
     return whole if abs(due - whole) <= _ON_GRID * max(due, 1.0) else due
 
 
-def sample_times(start: float, duration: float, count: int) -> NDArray[np.float64]:
-    """Times of all samples of a run.
+def sample_times(
+    start: float, duration: float, count: int, numbers: range | None = None
+) -> NDArray[np.float64]:
+    """Times of the samples of a run.
 
     Parameters
     ----------
@@ -43,15 +44,17 @@ def sample_times(start: float, duration: float, count: int) -> NDArray[np.float6
         Of the run [s].
     count : int
         Samples, both ends included; 0 for none.
+    numbers : range, optional
+        Which of them, in steps of 1; by default all.
 
     Returns
     -------
-    ndarray, shape (count,)
+    ndarray
         [s]; of a run that begins at 0, `numpy.linspace`.
     """
-    if start == 0.0 or count < 2:
-        return np.linspace(0.0, duration, count)
-    first, spacing = first_sample(start, start + duration, count), duration / (count - 1)
-    grid = (first + np.arange(count, dtype=np.float64)) * spacing
-    grid[0], grid[-1] = start, start + duration
-    return grid
+    wanted = range(count) if numbers is None else numbers
+    number = np.arange(wanted.start, wanted.stop, dtype=np.float64)
+    times = (first_sample(start, start + duration, count) + number) * (duration / max(count - 1, 1))
+    times[number == count - 1] = start + duration
+    times[number == 0] = start
+    return times

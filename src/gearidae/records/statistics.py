@@ -1,4 +1,4 @@
-"""How runs end, and what the solver did."""
+"""Endings of a run, and solver statistics."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ __all__ = ["Ending", "Statistics"]
 
 
 class Ending(Enum):
-    """How a run ended: its status in the dataset, and a sentence."""
+    """Ending of a run: its status in the dataset, and a sentence."""
 
     FINISHED = ("finished", "")
-    CHATTER = ("chatter", "event followed event without the time going on")
+    CHATTER = ("chatter", "events followed each other while the time did not advance")
     MANY_EVENTS = (
         "many_events",
-        "asperities joined and let go more than 100000 times in a mesh cycle, or hundreds at once",
+        "asperities joined and detached more than 100000 times in a mesh cycle, or hundreds at once",
     )
-    STEP_UNDERFLOW = ("step_underflow", "the error test failed again and again: the steps became too small")
-    NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge, however small the step")
+    STEP_UNDERFLOW = ("step_underflow", "the error test failed repeatedly: the steps became too small")
+    NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge with any step size")
     TOO_ACCURATE = (
         "too_accurate",
-        "the tolerance asks for more than double precision can give: raise run.rtol",
+        "the tolerance is smaller than double precision allows: raise run.rtol",
     )
-    SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA gave up")
+    SOLVER_FAILURE = ("solver_failure", "SUNDIALS IDA failed")
     FOLD = (
         "fold",
-        "the elastic contact folds: adhesion outgrows the stiffness of the bodies, and the surfaces would jump",
+        "the elastic contact folds: adhesion exceeds the stiffness of the bodies, and the surfaces would jump",
     )
     DEFLECTION = (
         "deflection",
@@ -37,7 +37,7 @@ class Ending(Enum):
         "too_deep",
         "the teeth were pressed together by more than 39 roughnesses: use less speed or load, or a rougher surface",
     )
-    LIGHT = ("light", "contacts of elastic bodies are so light that the asperity model will do")
+    LIGHT = ("light", "contacts of elastic bodies are so light that the asperity model suffices")
     STOPPED = ("stopped", "ended by on_block")
     NOT_FINITE = ("not_finite", "the solution is no longer a finite number")
 
@@ -54,28 +54,28 @@ class Ending(Enum):
 
 @dataclass(slots=True)
 class Statistics:
-    """Solver statistics, added up over restarts; of a run under way, the driver brings them up to date as it goes.
+    """Solver statistics, summed over restarts; the driver updates them during a run.
 
     Attributes
     ----------
     steps, residual_evaluations, jacobian_evaluations, guard_evaluations : int
         Work counters.
     error_test_failures, convergence_failures, restarts : int
-        What went wrong, or had to start again at order one.
+        Rejected steps, and restarts at order one.
     wall_time : float
         Wall time in the solver [s].
     backend : str
         The driver that ran: ``native`` or ``sksundae``.
     skipped : dict
-        What the scene did not need, by name.
+        Terms that the scene did not need, by name.
     flight_steps : int
         Steps in which no pair was in contact.
     ending : Ending
-        How the driver ended.
+        Ending of the driver.
     fold_gap : float, optional
-        Gap at which the elastic contact folds, if that was the ending [m].
+        Gap at which the elastic contact folds, for the ending ``FOLD`` [m].
     method : str
-        The formulas that the run began with: ``adams`` (and IDA's own where these are better), or ``bdf``, IDA's own.
+        Formulas at the start of the run: ``adams`` (and IDA's own where these are better), or ``bdf``, IDA's own.
     """
 
     steps: int = 0
@@ -94,7 +94,7 @@ class Statistics:
     method: str = ""
 
     def note_fold(self, gap: float) -> None:
-        """Call the ending a fold if it was one; NaN if not, else the gap at which the contact folds [m]."""
+        """Set the ending `FOLD` with the gap at which the contact folds [m]; NaN for no fold."""
         if not math.isnan(gap):
             self.ending, self.fold_gap = Ending.FOLD, float(gap)
 

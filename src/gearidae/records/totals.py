@@ -1,4 +1,4 @@
-"""What a run adds up to: its energy balance and its extremes, which the solver keeps at its own steps."""
+"""Totals of a run: its energy balance and its extremes, which the solver keeps at its own steps."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ __all__ = [
     "QUADRATURE_BOUND",
     "ROLLER_BOUND",
     "ROUNDING_BOUND",
+    "RUN_PARTS",
     "TABLE_BOUND",
     "TORQUE_BOUND",
     "TRAVEL_BOUND",
@@ -19,64 +20,67 @@ __all__ = [
     "Extremes",
 ]
 
+RUN_PARTS = (0.05, 0.5, 0.95)
+"""Where the parts of a run begin over which speeds are judged, as shares of it: start-up, half, last twentieth."""
 GEAR_BOUND = 10.0
-"""Tolerances by which a gear pair's motion may put its energies out, over the energy that has moved: errors of single
-steps are a fraction of the tolerance, and add up from step to step as the energies do that they are compared with."""
+"""Largest error of a gear pair's energies because of errors of the motion, in tolerances of the energy exchanged: the
+error of a step is a fraction of the tolerance, and errors and energies add up over the steps alike."""
 TORQUE_BOUND = 0.1
-"""Tolerances by which torques that depend on the speed may put the balance out, over `EnergyBalance.torque_work`:
-errors of the speed have either sign. The largest measured is a seventh of this."""
+"""Largest error of the balance because of torques that depend on the speed, in tolerances of
+`EnergyBalance.torque_work`: errors of the speed have either sign. The largest measured is a seventh of this."""
 ROLLER_BOUND = 100.0
-"""The same of a roller, all of whose energy goes through the many steps of one impact; the largest measured is 30."""
+"""`GEAR_BOUND` of a roller, whose whole energy goes through the many steps of one impact; the largest measured is
+30."""
 QUADRATURE_BOUND = 3.0
-"""Largest error of the quadratures over their estimate, which is a mean over where an interval lies."""
+"""Largest error of the quadratures over their estimate, which is a mean over the positions of an interval."""
 TABLE_BOUND = 1e-10
-"""Tolerance below which the balance gets no better: the stored energy is tabulated apart from the force. Over an impact
+"""Smallest tolerance that improves the balance: stored energy and force have separate tables. Over an impact
 of a roller at a tolerance of 1e-12 they differ by a seventh of this."""
 ROUNDING_BOUND = 1e3 * sys.float_info.epsilon
-"""Rounding errors in sums over the steps of a run, over the sum of their sizes."""
+"""Rounding errors in sums over the steps of a run, over the sum of the magnitudes."""
 TRAVEL_BOUND = 10.0 * sys.float_info.epsilon
-"""Rounding errors of a travel over the pitches that it is counted within."""
+"""Rounding errors of a travel over the pitch within which it is counted."""
 
 
 @dataclass(frozen=True, slots=True)
 class EnergyBalance:
-    """Where the energy of a run came from and went, kept by the engine at every step [J].
+    """Energy balance of a run, updated by the engine at every step [J].
 
     Attributes
     ----------
     time : float
-        Simulated time up to which it is kept [s].
+        Simulated time up to which the balance is kept [s].
     drive_work : float
-        Done by the torque on the pinion.
+        Work of the torque on the pinion.
     radius_work : float
-        Work of the changing radius: what pairs in contact store more because the radii of curvature change along the
-        path of contact. The model has no force for that, so that nothing else pays for it.
+        Increase of the energy stored in contacts because the radii of curvature change along the
+        path of contact. The model has no force that does this work.
     model_change : float
-        By how much the stored energy jumped when the elastic contact model took over from the asperity model.
+        Jump of the stored energy at the change from the asperity model to the elastic contact model.
     drag_loss, dry_loss, damping_loss : float
-        Taken by both drags and the dry resistance at the gear, and by the mesh's viscous damping.
+        Losses by both drags and by the dry resistance at the gear, and by the viscous damping of the mesh.
     adhesion_loss : float
-        Lost to adhesion: 0.93550 times pull-off load times stretch limit for each asperity that joined.
+        Loss by adhesion: 0.93550 times pull-off load times stretch limit for each asperity that joined.
     stored_change, kinetic_change : float
-        Energy stored in contacts and energy of motion at the end, less those at the start.
+        Energy stored in contacts and kinetic energy, at the end minus at the start.
     throughput : float
-        The kinetic energy at the start, and all works, losses and changes of the kinetic energy, step by step and
-        without regard to sign.
+        The kinetic energy at the start, plus the magnitudes of all works, losses and changes of the kinetic energy,
+        step by step.
     quadrature_error : float
-        Estimated errors of all quadratures, added up without regard to sign: those of the works and losses, interval
-        by interval, from the size of the correction that the rule makes there.
+        Sum of the magnitudes of the estimated errors of all quadratures of works and losses, interval
+        by interval, from the size of the correction of the rule.
     largest : float
-        Energy that is held to a tolerance of its own even where little is exchanged: the largest kinetic energy there
-        was, and the sizes of the energy stored at the start and of `model_change`.
+        Energy with a tolerance of its own even if little is exchanged: the largest kinetic energy,
+        and the magnitudes of the energy stored at the start and of `model_change`.
     pitch_work : float
         Work of the reference load on both gears over one base pitch. Travels are counted within a pitch, so that their
-        rounding errors cost this work times that of a double, however small the energies are; 0 of a roller.
+        rounding errors are those of a number of this size, however small the energies are; 0 for a roller.
     speed_work : float
-        Kinetic energy that the speed to which the tolerance refers makes of the largest momenta: speeds are held to
-        absolute tolerances, which of a gear that is very much heavier than the other are much energy. 0 of a roller.
+        Kinetic energy of the speed to which the tolerance refers, with the largest momenta: speeds have
+        absolute tolerances, which are a large energy for a gear that is much heavier than the other. 0 for a roller.
     torque_work : float
-        Work along the way that torques which depend on the speed do on a difference of that speed. A drive that holds
-        its speed stiffly turns errors of the speed into work. 0 of a roller.
+        Work of speed-dependent torques for a difference of the speed. A drive that holds
+        its speed stiffly turns errors of the speed into work. 0 for a roller.
     """
 
     time: float
@@ -98,35 +102,35 @@ class EnergyBalance:
 
     @property
     def residual(self) -> float:
-        """What does not add up [J]."""
+        """Works minus losses and changes of the energies [J]."""
         given = self.drive_work + self.radius_work + self.model_change
         lost = self.drag_loss + self.dry_loss + self.damping_loss + self.adhesion_loss
         return given - lost - self.stored_change - self.kinetic_change
 
     @property
     def imbalance(self) -> float:
-        """Size of the residual over the throughput [1]; 0 of a run in which no energy has moved."""
+        """Magnitude of the residual over the throughput [1]; 0 for a run without exchange of energy."""
         return abs(self.residual) / self.throughput if self.throughput > 0.0 else 0.0
 
     def bound(self, rtol: float, *, roller: bool) -> float:
-        r"""What the residual stays below in a sound run [J].
+        r"""Bound of the residual of a correct run [J].
 
         .. math::
 
             (a \max(\mathrm{rtol}, a_t) + a_r)\, E + a_w\,\mathrm{rtol}\, W + a_q D + a_p P
 
-        with E the energy that has moved: `throughput`, `largest`, `adhesion_loss` and the size of `stored_change`, with
+        with E the energy exchanged: `throughput`, `largest`, `adhesion_loss`, the magnitude of `stored_change` and
         `speed_work`; W, `torque_work`; D, `quadrature_error`; and P, `pitch_work`. The
-        first two terms are what errors of the motion leave: speeds and gaps are held to rtol, step by step, and the
-        tables of force and energy agree no better than :math:`a_t`. The others are what the balance itself adds, by its
-        quadratures and by rounding.
+        first two terms are for errors of the motion: speeds and gaps have the tolerance rtol in each step, and the
+        tables of force and energy agree no better than :math:`a_t`. The others are for the quadratures of the balance
+        and for rounding.
 
         Parameters
         ----------
         rtol : float
             Relative tolerance of the run.
         roller : bool
-            Whether it was a roller's.
+            Whether the scene is a roller.
 
         Returns
         -------
@@ -146,52 +150,54 @@ class EnergyBalance:
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """What a run has been through, kept by the engine at its own steps and at extrema located between them.
+    """Extremes of a run, updated by the engine at its own steps and at extrema located between them.
 
-    Nothing here depends on how a run is sampled. What a run has no number for is NaN: the gear's speeds of a roller,
-    a part of the run that has not been reached, the time at which a gear sticks that does not.
+    They do not depend on the samples. A missing number is NaN: the gear's speeds for a roller,
+    a part of the run that has not been reached, the sticking time of a gear that does not stick.
 
     Attributes
     ----------
     min_gear_speed, max_gear_speed : float
         Extremes of the gear's speed [rad/s].
     settled_gear_speed : float
-        Its mean once the start-up, the first twentieth of the run, is over [rad/s].
+        Mean of the gear's speed after the start-up, the first twentieth of the run [rad/s].
     settled_spread : float
-        Its largest less its smallest from then on [rad/s].
+        Largest minus smallest speed after the start-up [rad/s].
     speed_fall, speed_rise : float
-        How far it fell below what it had reached since, and rose above what it had fallen to [rad/s].
+        Largest fall from an earlier maximum, and largest rise from an earlier minimum, after the start-up [rad/s].
     late_gear_speed, late_spread : float
         Mean and spread over the second half of the run [rad/s].
     last_min_gear_speed : float
-        Smallest in the last twentieth of the run [rad/s].
+        Smallest speed in the last twentieth of the run [rad/s].
     reversals : int
-        How often the gear's speed has fallen to zero.
+        Number of falls of the gear's speed to zero.
     stick_time : float
-        When its speed first fell to zero where it still is, to half a pitch [s]; 0 if it never rose above zero.
+        First time at which the speed fell to zero within half a pitch of the final position [s]; 0 if it never rose
+        above zero.
     stick_exits : int
-        Mesh exits until then; all of them if it has not come to stand.
+        Mesh exits until the stick time; all of them if the gear has not stuck.
     turned_back : float
-        How far it has been turned back since, in pitches; 0 if it has not.
+        Pitches by which the gear has turned back since the stick time.
     turn_backs : int
-        How often the drive flank's adhesion has turned it back there; 0 unless it has come to stand.
+        Number of times that adhesion of the drive flank has turned the gear back there, since dry resistance last held
+        it; 0 unless it has stuck.
     time_adhering : float
-        How long adhesion has held it, there and elsewhere: from one turning back to the next within half a pitch, and
-        to where the run stands [s].
+        Time for which adhesion has held the gear, there and elsewhere: from one turning back to the next within half a
+        pitch, and to the end of the run [s].
     mesh_exits : int
         Pairs of the drive flank that have left the path of contact.
     largest_mesh_force, smallest_mesh_force : float
         Extremes of the force along the line of action, or on a roller [N].
     largest_mesh_force_time, smallest_mesh_force_time : float
-        When [s].
+        Times of these extremes [s].
     smallest_separation : float
-        Smallest distance of the flanks [m], of elastic ones with their deflection.
+        Smallest distance of the flanks [m], with the deflection of elastic bodies.
     final_speed : float
-        Speed of the gear [rad/s] or the roller [m/s] where the run stands.
+        Speed of the gear [rad/s] or the roller [m/s] at the end of the data.
     asperity_onsets, asperity_detachments : int
-        Asperities of a population that have joined, and let go.
+        Asperities of a population that have joined, and detached.
     exposures : array of float
-        What the flanks have been exposed to, in the order flank, tooth of the pinion, quantity, place: for each
+        Exposures of the flanks, in the order flank, tooth of the pinion, quantity, place: for each
         material asperities joined over those of a unit contact length, for each the energy they lost [J], sliding work
         [J], largest force over contact length [N]. Empty if ``run.exposures`` is 0.
     """

@@ -7,12 +7,14 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
+from gearidae.printable import printable
+
 __all__ = ["definitions", "json_block", "paragraph", "section", "table", "text"]
 
 
 def text(value: object) -> str:
     """Escape a value for use between tags or in a quoted attribute."""
-    return escape(str(value), quote=True)
+    return escape(printable(str(value)), quote=True)
 
 
 def paragraph(words: object, css: str = "") -> str:

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearidae.archive.disk import part_beside
 from gearidae.archive.select import scene_of
-from gearidae.errors import SceneError
+from gearidae.archive.target import whole_file
 from gearidae.report import html
 from gearidae.report.life import is_life, life_headline, life_pictures, life_table, life_viewer
 from gearidae.report.pictures import pictures
@@ -139,19 +138,9 @@ def write_report(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: boo
     SceneError
         If the dataset carries no scene, the file exists and may not be replaced, or it cannot be written.
     """
-    target = Path(path)
-    if target.is_dir() or (target.exists() and not overwrite):
-        raise SceneError("report", path, "exists already: name another with -o, or allow --overwrite")
-    page = build_report(ds)
-    part = part_beside(target)
-    try:
-        part.write_text(page, encoding="utf-8")
-        part.replace(target)
-    except OSError as error:
-        raise SceneError("report", path, f"cannot be written ({error.strerror})") from error
-    finally:
-        part.unlink(missing_ok=True)
-    return target
+    with whole_file(path, overwrite=overwrite, name="report") as part:
+        part.write_text(build_report(ds), encoding="utf-8")
+    return Path(path)
 
 
 def _viewer(ds: xr.Dataset, most_values: int) -> str:

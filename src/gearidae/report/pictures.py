@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from gearidae import plot
 from gearidae.archive.select import is_roller, swept_dims
 from gearidae.errors import SceneError
+from gearidae.plot.picture import usual_style
 from gearidae.report import html
 from gearidae.report.svg import colour_rules, drawing
 
@@ -53,7 +54,8 @@ def pictures(ds: xr.Dataset) -> str:
 
 def figures(ds: xr.Dataset, wanted: Sequence[tuple[_Draw, str]]) -> str:
     """Draw pictures with their captions; those for which a dataset is too short or too empty are left out."""
-    drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
+    with usual_style():
+        drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
     shown = [(name, text, caption) for name, text, caption in drawn if text]
     if not shown:
         return ""

@@ -14,6 +14,7 @@ import xarray as xr
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.pieces import pieces
+from gearidae.archive.run_summary import counted_over
 from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
 from gearidae.records import EventKind
 from gearidae.report import html
@@ -100,9 +101,10 @@ def headline(ds: xr.Dataset) -> str:
 def outcome_table(ds: xr.Dataset) -> str:
     """List the outcome of each run."""
     judged = outcomes(ds)
+    rtol = scene_of(ds)["run"]["rtol"]
     dims = swept_dims(ds)
     headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
-    rows = [[*_label_cells(ds, each.label), *_outcome_cells(each)] for each in judged]
+    rows = [[*_label_cells(ds, each.label), *_outcome_cells(each, rtol)] for each in judged]
     last = len(dims) + len(headings) - 1
     numeric = [place for place in range(last) if place != len(dims)]
     return html.table((*dims, *headings), rows, caption="Outcome of each run", numeric=numeric)
@@ -113,14 +115,24 @@ def account_table(ds: xr.Dataset) -> str:
     told = json.loads(ds.attrs.get("account", "{}"))
     kept = balance_in_attributes(ds)
     rows = [
-        (words, _measure(told[name], unit))
+        (_with_reach(ds, name, words), _measure(told[name], unit))
         for name, words, unit in _ACCOUNT
         if told.get(name) not in (None, "")
     ]
-    rows += [(words, _measure(kept[name], unit)) for name, words, unit in _ENERGY_BALANCE if kept.get(name)]
+    rows += [
+        (_with_reach(ds, name, words), _measure(kept[name], unit))
+        for name, words, unit in _ENERGY_BALANCE
+        if kept.get(name)
+    ]
     if not rows:
         return ""
     return html.table(("quantity", "value"), rows, caption="Account of the run", numeric=(1,))
+
+
+def _with_reach(ds: xr.Dataset, name: str, words: str) -> str:
+    """Add to a row of a run that goes on from another what it is counted over."""
+    over = counted_over(name, ds.attrs)
+    return f"{words} ({over})" if over else words
 
 
 def event_table(ds: xr.Dataset) -> str:
@@ -225,12 +237,12 @@ def _provenance(key: str, value: Any) -> str:
     return _number(value)
 
 
-def _outcome_cells(outcome: GearOutcome | RollerOutcome) -> list[str]:
+def _outcome_cells(outcome: GearOutcome | RollerOutcome, rtol: float) -> list[str]:
     if isinstance(outcome, RollerOutcome):
         forces = (outcome.peak_force, outcome.pull_off_force)
         numbers = [*(_measure(force, "N") for force in forces), _number(outcome.restitution)]
     else:
-        numbers = [_number(outcome.min_speed), _number(outcome.max_speed)]
+        numbers = [_number(outcome.resolved_min_speed(rtol)), _number(outcome.max_speed)]
     return [outcome.words, *numbers, str(outcome.impacts), outcome.status]
 
 

@@ -70,6 +70,8 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
         shown = runs_of(ds, "transmission_error")
     except SceneError:  # no run has samples
         return {}
+    if not all(motion_samples(run.data) for run in shown):
+        return {}
     share = max(2, most_states // len(shown))
     return {
         "columns": {"frame": FRAME, "pair": PAIR},

@@ -18,7 +18,7 @@ from gearidae.archive.variables import VERDICT
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.leaving import Left, crashed, solve_and_leave, solve_group
+from gearidae.runs.run_result import RunResult, crashed, solve_and_leave, solve_group
 from gearidae.runs.running import unsolved
 from gearidae.runs.sweep_plan import SweepPlan
 
@@ -68,10 +68,9 @@ class Batch:
         self._keep = keep
         # samples go to where the dataset has them as soon as they are there: they are in memory once
         self._samples = SampleTable(keep.columns(plan.base), len(plan.scenes), plan.base.run.sample_count)
-        self._done: dict[int, Left] = {}
+        self._done: dict[int, RunResult] = {}
         self._under_way: dict[int, float] = {}  # share that is done of the runs that have begun
         self._counting = threading.Lock()
-        self._cancelled = threading.Event()
 
     @property
     def left(self) -> int:
@@ -84,11 +83,11 @@ class Batch:
             taken = former.take(scene)
             if taken is not None:
                 solution, judged = taken
-                self._store(number, Left(solution, **judged))
+                self._store(number, RunResult(solution, **judged))
         self._tell()
 
-    def run(self, executor: Executor | None, *, threads: int = 0) -> bool:
-        """Compute all runs; return whether Ctrl-C ended it early.
+    def run(self, executor: Executor | None, *, threads: int = 0) -> None:
+        """Compute all runs, or those until a `KeyboardInterrupt`.
 
         Parameters
         ----------
@@ -97,21 +96,16 @@ class Batch:
         threads : int, optional
             How many threads of this process the executor has; 0 if it is of other processes.
         """
-        try:
-            if executor is None:
-                for number in self._missing():
-                    self._finish(number, self._outcome_here(number))
-            else:
-                self._submit(executor, threads)
-        except KeyboardInterrupt:
-            self._cancelled.set()
-            return True
-        return False
+        if executor is None:
+            for number in self._missing():
+                self._finish(number, self._outcome_here(number))
+        else:
+            self._submit(executor, threads)
 
     def dataset(self) -> xr.Dataset:
         """Put what the runs have left behind into one dataset; runs that are missing were interrupted."""
         none = unsolved("interrupted", "the sweep was interrupted before this run was finished")
-        missing = Left(none, "unfinished")
+        missing = RunResult(none, "unfinished")
         found = [self._done.get(number, missing) for number in range(len(self._scenes))]
         ds = self._plan.stack([each.solution for each in found], keep=self._keep, samples=self._samples)
         if self._keep.names is None:
@@ -126,8 +120,8 @@ class Batch:
         return [number for number in range(len(self._scenes)) if number not in self._done]
 
     def _submit(self, executor: Executor, threads: int) -> None:
-        pending: dict[Future[list[Left]], Sequence[int]] = {}
-        ended: SimpleQueue[Future[list[Left]]] = SimpleQueue()
+        pending: dict[Future[list[RunResult]], Sequence[int]] = {}
+        ended: SimpleQueue[Future[list[RunResult]]] = SimpleQueue()
 
         def submit(numbers: Sequence[int]) -> None:
             future = self._future(executor, numbers, in_process=threads > 0)
@@ -150,7 +144,6 @@ class Batch:
                     while waiting:
                         submit([waiting.popleft() for _ in range(min(size, len(waiting)))])
         except BaseException:
-            self._cancelled.set()
             for future, numbers in pending.items():
                 if not future.cancel() and future.done() and future.exception() is None:
                     for number, left in zip(numbers, future.result(), strict=False):
@@ -158,7 +151,9 @@ class Batch:
                             self._note(number, left)
             raise
 
-    def _future(self, executor: Executor, numbers: Sequence[int], *, in_process: bool) -> Future[list[Left]]:
+    def _future(
+        self, executor: Executor, numbers: Sequence[int], *, in_process: bool
+    ) -> Future[list[RunResult]]:
         """Hand runs to an executor."""
         scenes = [self._scenes[number] for number in numbers]
         try:
@@ -166,13 +161,13 @@ class Batch:
                 return executor.submit(self._solve_here, *numbers)
             return executor.submit(solve_group, scenes, self._backend, self._keep)
         except BrokenExecutor as error:  # a process of it has died: none of its runs will be finished
-            future: Future[list[Left]] = Future()
+            future: Future[list[RunResult]] = Future()
             future.set_exception(error)
             return future
 
     def _outcomes(
-        self, future: Future[list[Left]], numbers: Sequence[int], submit: Callable[[Sequence[int]], None]
-    ) -> list[tuple[int, Left]]:
+        self, future: Future[list[RunResult]], numbers: Sequence[int], submit: Callable[[Sequence[int]], None]
+    ) -> list[tuple[int, RunResult]]:
         """Return what runs have left; those that were together when a worker died are begun again, each alone."""
         try:
             return list(zip(numbers, future.result(), strict=False))
@@ -190,19 +185,17 @@ class Batch:
         longest = max((each.solution.statistics.wall_time for each in self._done.values()), default=0.0)
         return min(max(int(_TOGETHER / longest), 1), _MOST_TOGETHER) if longest > 0.0 else 0
 
-    def _solve_here(self, number: int) -> list[Left]:
+    def _solve_here(self, number: int) -> list[RunResult]:
         duration = self._scenes[number].run.duration
 
         def on_progress(time: float, events: int) -> None:
-            if self._cancelled.is_set():
-                raise KeyboardInterrupt  # the only way to end a thread's run is from inside
             with self._counting:
                 self._under_way[number] = time / duration
             self._tell()
 
         return [solve_and_leave(self._scenes[number], self._backend, self._keep, on_progress)]
 
-    def _outcome_here(self, number: int) -> Left:
+    def _outcome_here(self, number: int) -> RunResult:
         """Run a scene; one that dies (of memory that ran out) must not take the others along."""
         try:
             return self._solve_here(number)[0]
@@ -211,7 +204,7 @@ class Batch:
         except Exception as error:
             return crashed(self._scenes[number], error, self._keep)
 
-    def _finish(self, number: int, left: Left) -> None:
+    def _finish(self, number: int, left: RunResult) -> None:
         if left.solution.status == "interrupted":
             raise KeyboardInterrupt
         self._note(number, left)
@@ -223,14 +216,14 @@ class Batch:
             done = len(self._done) + sum(self._under_way.values())
         self._report(done, len(self._scenes))
 
-    def _note(self, number: int, left: Left) -> None:
+    def _note(self, number: int, left: RunResult) -> None:
         if number not in self._done:
             if self._kept is not None and left.solution.status == "finished":
                 judged = {name: getattr(left, name) for name in VERDICT}
                 self._kept.keep(self._scenes[number], left.solution, judged)
             self._store(number, left)
 
-    def _store(self, number: int, left: Left) -> None:
+    def _store(self, number: int, left: RunResult) -> None:
         slim = self._samples.take(number, left.solution)
         with self._counting:
             self._done[number] = replace(left, solution=slim)

@@ -4,22 +4,61 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearidae.errors import SceneError
-from gearidae.runs.pair_contact import pair_contact
+from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.scene import Drive, Gears, Load, Scene
 
 __all__ = [
+    "Rest",
     "balanced_speed",
     "effective_mass",
     "mean_drive_torque",
+    "rest_of",
     "resting_gap",
     "steady_speed",
 ]
 
+Floats = NDArray[np.float64]
+
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """The contact that estimates are made for: a resting pair of teeth, or a roller at its closest approach.
+
+    Attributes
+    ----------
+    contact : PairContact
+        Of the pair at the pitch point, or of the roller.
+    gap : float
+        Where it rests under the mean torque, or the roller has come to [m]; NaN where nothing holds it.
+    load : float
+        Its force there [N].
+    mass : float
+        What oscillates [kg].
+    """
+
+    contact: PairContact
+    gap: float
+    load: float
+    mass: float
+
+
+def rest_of(scene: Scene, error: float = 1e-12) -> Rest:
+    """Find the contact that estimates are made for, its gap to an error in roughnesses; bodies are rigid."""
+    contact = pair_contact(scene)
+    if scene.roller is not None:
+        roller = scene.roller
+        gap = contact.closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
+        return Rest(contact, gap, math.nan if math.isnan(gap) else float(contact.force(gap)), roller.mass)
+    load = mean_drive_torque(scene) / _tables(scene)[0].pinion_base_radius
+    return Rest(contact, contact.resting_gap(load, error), load, effective_mass(scene))
 
 
 def effective_mass(scene: Scene) -> float:
@@ -47,7 +86,7 @@ def effective_mass(scene: Scene) -> float:
 
 
 def steady_speed(scene: Scene) -> float:
-    """Mean speed of the gear at which the constant torques balance, if nothing sticks.
+    """Speed of the gear at which the mean torques over the run balance, if nothing sticks.
 
     Parameters
     ----------
@@ -57,9 +96,10 @@ def steady_speed(scene: Scene) -> float:
     Returns
     -------
     float
-        w2 of ``(M10 + g (w - w2 R2/R1)) R2/R1 = M20 + c w2 + alpha w2^2`` [rad/s], with the viscous drag c and a drive
-        that holds the speed w with the gain g; 0 if the drive does not overcome the dry resistance, infinite if
-        nothing slows the gear down. (Teodorescu et al. 2009, Eq. 3, prints the ratio upside down.)
+        w2 of ``(M1 + g (w - w2 R2/R1)) R2/R1 = M2 + c w2 + alpha w2^2`` [rad/s], with the constants and the means of
+        the schedules as torques M1 and M2, the viscous drag c and a drive that holds the mean speed w with the gain g;
+        0 if the drive does not overcome the dry resistance, infinite if nothing slows the gear down. Harmonics and
+        laws are left out. (Teodorescu et al. 2009, Eq. 3, prints the ratio upside down.)
 
     Raises
     ------
@@ -67,14 +107,15 @@ def steady_speed(scene: Scene) -> float:
         If the scene has no gears.
     """
     _, drive, _ = _tables(scene)
-    return balanced_speed(scene, drive.torque)
+    return balanced_speed(scene, float(_over_run(scene, drive.torque, drive.schedule).mean()))
 
 
 def balanced_speed(scene: Scene, torque: float) -> float:
     """Speed of the gear [rad/s] at which a constant torque of the pinion [N m] is balanced, see `steady_speed`."""
     gears, drive, load = _tables(scene)
     ratio = gears.gear_teeth / gears.pinion_teeth
-    surplus = (torque + drive.speed_gain * _mean_over_run(scene, drive.speed_knots())) * ratio - load.torque
+    held = _mean_size(_over_run(scene, 0.0, drive.speed_knots()))
+    surplus = (torque + drive.speed_gain * held) * ratio - _mean_resistance(scene)
     if surplus <= 0.0:
         return 0.0
     linear = load.viscous + drive.speed_gain * ratio**2
@@ -82,18 +123,28 @@ def balanced_speed(scene: Scene, torque: float) -> float:
     return 2.0 * surplus / slowing if slowing > 0.0 else math.inf
 
 
-def _mean_over_run(scene: Scene, knots: Sequence[tuple[float, float]], *, constant: float = 0.0) -> float:
-    """Mean size of a constant plus a schedule over the run; cubics are taken for straight lines."""
+def _over_run(scene: Scene, constant: float, knots: Sequence[tuple[float, float]]) -> Floats:
+    """Return a constant plus a schedule at even times of the run; cubics are taken for straight lines."""
     if not knots:
-        return abs(constant)
+        return np.array([constant])
     table = np.array(knots)
     # Between knots the schedule is a straight line: what is off the mean of 4001 values lies below a thousandth.
     times = np.linspace(0.0, scene.run.duration, 4001)
-    return float(np.abs(constant + np.interp(times, table[:, 0], table[:, 1])).mean())
+    return np.asarray(constant + np.interp(times, table[:, 0], table[:, 1]), np.float64)
+
+
+def _mean_size(values: Floats) -> float:
+    return float(np.abs(values).mean())
+
+
+def _mean_resistance(scene: Scene) -> float:
+    """Mean dry resistance over the run [N m], harmonics and laws left out."""
+    load = _tables(scene)[2]
+    return _mean_size(_over_run(scene, load.torque, load.schedule))
 
 
 def resting_gap(scene: Scene) -> float:
-    """Mean gap at which a single pair, met at the pitch point, carries the constant drive torque.
+    """Mean gap at which a single pair, met at the pitch point, carries the mean drive torque of the run.
 
     Approaching surfaces, no bulk deflection (Teodorescu et al. 2009, Eqs. 12-15).
 
@@ -113,8 +164,8 @@ def resting_gap(scene: Scene) -> float:
     SceneError
         If the scene has no gears.
     """
-    gears, drive, _ = _tables(scene)
-    gap = pair_contact(scene).resting_gap(drive.torque / gears.pinion_base_radius)
+    _tables(scene)
+    gap = rest_of(scene).gap
     return gap if gap >= _INNERMOST * scene.surface.roughness else math.nan
 
 
@@ -138,11 +189,11 @@ def mean_drive_torque(scene: Scene) -> float:
         If the scene has no gears.
     """
     gears, drive, load = _tables(scene)
-    mean = _mean_over_run(scene, drive.schedule, constant=drive.torque)
+    mean = _mean_size(_over_run(scene, drive.torque, drive.schedule))
     if drive.speed is None:
         return mean
     speed = balanced_speed(scene, mean)
-    resistance = load.torque + speed * (load.viscous + load.drag * speed)
+    resistance = _mean_resistance(scene) + speed * (load.viscous + load.drag * speed)
     return resistance * gears.pinion_teeth / gears.gear_teeth
 
 

@@ -6,16 +6,20 @@ import multiprocessing
 import os
 import signal
 import socket
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
-from typing import Any
+from typing import Any, TypeVar
 
 from gearidae import __version__
 from gearidae.errors import SceneError
+from gearidae.runs.halting import heed
 
-__all__ = ["check_executor", "check_jobs", "dask_executor", "own_executor", "stop"]
+__all__ = ["check_executor", "check_jobs", "dask_executor", "own_executor", "side_by_side", "stop"]
+
+Made = TypeVar("Made")
 
 _PATIENCE = 10.0
 """How long to wait for a Dask scheduler to answer [s]."""
@@ -142,20 +146,28 @@ def own_executor(jobs: int, runs: int, *, releases_gil: bool) -> Iterator[Execut
     Yields
     ------
     Executor or None
-        It is shut down on leaving; runs that have not begun are dropped.
+        It is shut down on leaving; runs that have not begun are dropped. If an exception is the reason, such as
+        Ctrl-C, runs under way end as well.
     """
     workers = min(jobs, runs)
     if workers <= 1:
         yield None
         return
     executor: Executor
+    halted = threading.Event()
     if releases_gil:
-        executor = ThreadPoolExecutor(workers, thread_name_prefix="gearidae")
+        executor = ThreadPoolExecutor(
+            workers, thread_name_prefix="gearidae", initializer=heed, initargs=(halted,)
+        )
     else:
         context = multiprocessing.get_context("spawn")
         executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_quiet_on_interrupt)
     try:
         yield executor
+    except BaseException:
+        halted.set()
+        stop(executor)
+        raise
     finally:
         executor.shutdown(wait=True, cancel_futures=True)
 
@@ -165,6 +177,37 @@ def stop(executor: Executor) -> None:
     if isinstance(executor, ProcessPoolExecutor):
         for process in list((executor._processes or {}).values()):  # public only from Python 3.14 on
             process.terminate()
+
+
+def side_by_side(
+    executor: Executor | None, function: Callable[..., Made], *columns: Iterable[Any]
+) -> Iterator[Made]:
+    """Apply a function to rows of arguments, in an executor if there is one, and yield the results in their order.
+
+    Parameters
+    ----------
+    executor : Executor or None
+    function : callable
+    *columns : iterable
+        Values of each argument.
+
+    Yields
+    ------
+    object
+        What the function returns. Calls that have not begun are dropped as soon as one fails.
+    """
+    rows = zip(*columns, strict=True)
+    if executor is None:
+        for row in rows:
+            yield function(*row)
+        return
+    futures = [executor.submit(function, *row) for row in rows]
+    try:
+        for future in futures:
+            yield future.result()
+    finally:
+        for future in futures:
+            future.cancel()
 
 
 def _quiet_on_interrupt() -> None:

@@ -6,7 +6,6 @@ import logging
 import math
 from typing import TYPE_CHECKING, Final
 
-from gearidae.runs.run_time import run_time
 from gearidae.scene.prefixes import with_prefix
 
 if TYPE_CHECKING:
@@ -16,8 +15,6 @@ __all__ = ["doubts", "log_doubts"]
 
 log = logging.getLogger(__name__)
 
-LONG_RUN: Final = 600.0
-"""Wall time above which a run is announced as long [s]."""
 _PEAKS: Final = 6.0
 """Height of a rough surface from valley to peak, in rms roughnesses."""
 
@@ -34,7 +31,7 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
-    return [*_sizes(scene), *_long_run(scene)]
+    return [*_sizes(scene), *_resistance(scene)]
 
 
 def log_doubts(scene: Scene) -> None:
@@ -87,11 +84,14 @@ def _sizes(scene: Scene) -> list[str]:
     return found
 
 
-def _long_run(scene: Scene) -> list[str]:
-    expected = run_time(scene)
-    if expected.seconds <= LONG_RUN:
+def _resistance(scene: Scene) -> list[str]:
+    """Compare the harmonics of the dry resistance with its constant part and its schedule."""
+    load = scene.load
+    if load is None or not load.harmonic:
         return []
-    oscillations = f"{scene.run.duration:g} s of oscillations at {with_prefix(expected.frequency, 'Hz')}"
-    return [
-        f"this run is expected to take {expected.words()} ({expected.steps:.1g} steps for {oscillations})"
-    ]
+    least = load.torque + min((value for _, value in load.schedule), default=0.0)
+    swing = sum(abs(one.amplitude) for one in load.harmonic)
+    if swing <= least:
+        return []
+    about = f"{with_prefix(swing, 'N m')} about a dry resistance of {with_prefix(least, 'N m')}"
+    return [f"load.harmonic swings by {about}: it is cut off where the sum falls below 0"]

@@ -10,12 +10,13 @@ import numpy as np
 from gearidae import engine
 from gearidae.errors import SceneError, SolverError
 from gearidae.records import EventKind, Events, Flank, Solution, Statistics
+from gearidae.runs.halting import is_halted
 from gearidae.scene import Scene
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "unsolved"]
+__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "solve_to_end", "unsolved"]
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
@@ -68,7 +69,7 @@ def solve(
     backend: str,
     on_progress: Callable[[float, int], None] | None = None,
     *,
-    origin: engine.Origin | None = None,
+    start: engine.Start = engine.AT_ONCE,
     on_block: engine.OnBlock | None = None,
 ) -> Solution:
     """Run a scene; a solver that cannot even start leaves an empty solution that says why.
@@ -80,24 +81,40 @@ def solve(
         As for `simulate`.
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
-    origin : Origin, optional
-        The end of another run to go on from.
+    start : Start, optional
+        Where the run begins, if it goes on from another.
     on_block : callable, optional
         Told every block of output; ends the run by returning True.
 
     Returns
     -------
     Solution
+        Of the status ``interrupted`` after Ctrl-C, also in a thread of `gearidae.runs.executors.own_executor`.
     """
+
+    def report(time: float, events: int) -> None:
+        if is_halted():
+            raise KeyboardInterrupt
+        if on_progress is not None:
+            on_progress(time, events)
+
     try:
-        return engine.solve(scene, backend=backend, on_progress=on_progress, origin=origin, on_block=on_block)
+        return engine.solve(scene, backend=backend, on_progress=report, start=start, on_block=on_block)
     except SolverError as error:
         return unsolved("failed", str(error))
 
 
-def runs_in_threads(backend: str) -> bool:
+def solve_to_end(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
+    """Run a scene as `solve` does; a run that Ctrl-C has cut off is no result, and raises `KeyboardInterrupt`."""
+    solution = solve(scene, backend, start=start)
+    if solution.status == "interrupted":
+        raise KeyboardInterrupt
+    return solution
+
+
+def runs_in_threads(backend: str, method: str) -> bool:
     """Whether a backend solves outside Python's lock, so that threads of one process work side by side."""
-    return engine.choose_backend(backend) == "native"
+    return engine.choose_backend(backend, method) == "native"
 
 
 def unsolved(status: str, message: str) -> Solution:

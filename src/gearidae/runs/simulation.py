@@ -9,7 +9,7 @@ from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.plausibility import log_doubts
 from gearidae.runs.running import early_end, prepare, solve
-from gearidae.runs.starting import started_from
+from gearidae.runs.starting import started_attributes, started_from
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,31 +98,29 @@ def simulate(
     >>> ds = gd.simulate(scene, archive="low_speed.nc")  # doctest: +SKIP
     """
     scene = prepare(scene, rtol=rtol, samples=samples, backend=backend)
-    started = started_from(start, scene)
-    begin = 0.0 if started is None else started.time
+    begin = started_from(start, scene)
     if t_end is not None:
-        scene = _ending(scene, t_end, begin)
+        scene = _ending(scene, t_end, begin.time)
     log_doubts(scene)
     # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one
     if archive is not None:
-        from gearidae.archive import check_target
+        from gearidae.archive.target import claims_target
         from gearidae.runs.streaming import stream
 
-        target = check_target(archive, overwrite=overwrite or resume)
-        return stream(
-            scene,
-            target,
-            backend=backend,
-            progress=progress,
-            resume=resume,
-            started=started,
-            on_block=on_block,
-        )
+        with claims_target(archive, overwrite=overwrite or resume) as target:
+            return stream(
+                scene,
+                target,
+                backend=backend,
+                progress=progress,
+                resume=resume,
+                start=begin,
+                on_block=on_block,
+            )
     if resume:
         raise SceneError("resume", resume, "needs the archive to go on from (archive=)")
-    with run_progress(progress, begin + scene.run.duration) as report:
-        origin = None if started is None else started.origin
-        solution = solve(scene, backend, report, origin=origin, on_block=on_block)
+    with run_progress(progress, begin.time + scene.run.duration) as report:
+        solution = solve(scene, backend, report, start=begin, on_block=on_block)
 
     from gearidae.archive import reached, to_dataset
     from gearidae.archive.run_summary import with_account
@@ -130,8 +128,7 @@ def simulate(
 
     ds = with_account(to_dataset(scene, solution))
     log_imbalance(ds)
-    if started is not None:
-        ds.attrs["started_from"] = started.fingerprint
+    ds.attrs |= started_attributes(begin)
     if solution.status == "interrupted":
         where = f"t = {reached(solution):.4g} s of {scene.run.duration:.4g} s"
         raise Interrupted(f"stopped at {where}; what was computed is the error's dataset", ds)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearidae import engine
@@ -14,31 +13,10 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Started", "started_from"]
+__all__ = ["started_attributes", "started_from"]
 
 
-@dataclass(frozen=True, slots=True)
-class Started:
-    """Another run's end.
-
-    Attributes
-    ----------
-    origin : Origin
-        What the engine goes on from.
-    fingerprint : str
-        Tells it from other states.
-    """
-
-    origin: engine.Origin
-    fingerprint: str
-
-    @property
-    def time(self) -> float:
-        """When the run begins [s]."""
-        return self.origin.time
-
-
-def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene) -> Started | None:
+def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene) -> engine.Start:
     """Read where a run is to go on from, and make sure that a scene can.
 
     Parameters
@@ -50,8 +28,8 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
 
     Returns
     -------
-    Started or None
-        None without a start.
+    Start
+        That of a run by itself without one.
 
     Raises
     ------
@@ -59,9 +37,9 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
         If it is no single run, carries no state or one that is not its own, or is of other gears.
     """
     if start is None:
-        return None
+        return engine.Start()
     from gearidae.archive import open_archive
-    from gearidae.archive.end_state import end_state_of, fingerprint
+    from gearidae.archive.end_state import end_state_of
 
     if isinstance(start, str | os.PathLike):
         ds = open_archive(start)
@@ -76,6 +54,13 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
         theirs = Scene.from_dict(json.loads(ds.attrs["scene"]))
     except (TypeError, ValueError) as error:
         raise SceneError("start", "scene", f"is not readable ({error})") from None
-    origin = engine.end_of(theirs, words, began)
+    found = engine.end_of(theirs, words, began)
     engine.refuse_other_bodies(theirs, scene)
-    return Started(origin, fingerprint(words))
+    return found
+
+
+def started_attributes(start: engine.Start) -> dict[str, str]:
+    """Attributes of a run's dataset that tell the state it went on from; none of a run by itself."""
+    from gearidae.archive.end_state import fingerprint
+
+    return {} if start.words is None else {"started_from": fingerprint(start.words)}

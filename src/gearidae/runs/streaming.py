@@ -6,7 +6,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from gearidae import __version__, engine
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
@@ -20,13 +20,14 @@ from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.imbalance import log_imbalance
 from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.running import early_end, unsolved
+from gearidae.runs.starting import started_attributes
+from gearidae.scene.differences import first_difference
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from gearidae.engine import Ended
     from gearidae.records import Block, Solution, Statistics
-    from gearidae.runs.starting import Started
     from gearidae.scene import Scene
 
 __all__ = ["stream"]
@@ -41,7 +42,7 @@ def stream(
     backend: str,
     progress: bool | RunProgress,
     resume: bool,
-    started: Started | None = None,
+    start: engine.Start,
     on_block: engine.OnBlock | None = None,
 ) -> xr.Dataset:
     """Run a scene, or go on with a run of it, into an archive.
@@ -54,8 +55,8 @@ def stream(
         The archive, checked by `gearidae.archive.check_target`.
     backend, progress, resume, on_block
         As for `gearidae.simulate`.
-    started : Started, optional
-        Where the run goes on from.
+    start : Start
+        Where the run begins.
 
     Returns
     -------
@@ -67,13 +68,13 @@ def stream(
     SceneError, SolverError, Interrupted
         As `gearidae.simulate` says.
     """
-    found = _found(target, scene, started) if resume and target.exists() else None
+    found = _found(target, scene, start) if resume and target.exists() else None
     if found is not None and found.attrs["status"] == "finished":
         return found
     if found is not None:
         backend = _same_backend(backend, str(found.attrs["backend"]))
         found.close()
-    run = _Run(scene, target, engine.choose_backend(backend, scene.run.method), started)
+    run = _Run(scene, target, engine.choose_backend(backend, scene.run.method), start)
     with run.take_up() if found is not None else run.begin() as archive:
         with run_progress(progress, run.end) as report:
             ended = run.follow(archive, report, on_block)
@@ -84,14 +85,10 @@ def stream(
 class _Run:
     """One run into one archive."""
 
-    def __init__(self, scene: Scene, target: Path, backend: str, started: Started | None) -> None:
-        self._scene, self._target, self._backend, self._started = scene, target, backend, started
-        self._origin = None if started is None else started.origin
-        self._begin = 0.0 if started is None else started.time
-        self.end = self._begin + scene.run.duration
-        self._checkpoint_size, self._skipped, self._method = engine.outlook(
-            scene, backend, origin=self._origin
-        )
+    def __init__(self, scene: Scene, target: Path, backend: str, start: engine.Start) -> None:
+        self._scene, self._target, self._backend, self._start = scene, target, backend, start
+        self.end = start.time + scene.run.duration
+        self._checkpoint_size, self._skipped, self._method = engine.outlook(scene, backend, start=start)
 
     def begin(self) -> GrowingArchive:
         """Make the archive."""
@@ -120,7 +117,7 @@ class _Run:
         self, archive: GrowingArchive, report: RunProgress | None, on_block: engine.OnBlock | None
     ) -> Ended:
         """Run on from the newest checkpoint."""
-        reached = self._begin
+        reached = self._start.time
 
         def take(block: Block, statistics: Statistics, wall_time: float) -> None:
             nonlocal reached
@@ -129,19 +126,23 @@ class _Run:
 
         try:
             point = archive.go_back()
-            reached = point.time if point.sequence else self._begin
+            reached = point.time if point.sequence else self._start.time
             if _is_end(reached, self.end):  # all that is missing is the final form
                 return self._ended_at(point)
-            state = point.state if point.sequence else None
-            start = engine.Start(
-                state, self._origin, point.statistics, reached, point.wall_time, point.events
+            start = replace(
+                self._start,
+                checkpoint=point.state if point.sequence else None,
+                reached=reached,
+                wall_time=point.wall_time,
+                events=point.events,
+                statistics=point.statistics,
             )
             return engine.follow(
                 self._scene,
                 take,
                 backend=self._backend,
                 on_progress=report,
-                begin=start,
+                start=start,
                 on_block=on_block,
             )
         except DiskError as error:
@@ -169,7 +170,7 @@ class _Run:
     def _interrupted(self, archive: GrowingArchive) -> Interrupted:
         archive.close()
         kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
-        return Interrupted(kept, open_archive(self._target))
+        return Interrupted(kept, self._left())
 
     def _told(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
         """Make the final template, with the account of the run."""
@@ -181,7 +182,7 @@ class _Run:
                 archive.read,
                 archive.samples,
                 archive.events,
-                end,
+                (float(template.attrs.get("start_time", 0.0)), end),
                 balance_of(template),
                 ended.extremes,
             )
@@ -191,17 +192,22 @@ class _Run:
 
     def _not_written(self, archive: GrowingArchive, reached: float, error: DiskError) -> SolverError:
         archive.close()
-        ds = open_archive(self._target)
         return early_end(
-            ds, reached, f"the archive {self._target} could not be written ({error})", _FREE_SPACE
+            self._left(), reached, f"the archive {self._target} could not be written ({error})", _FREE_SPACE
         )
+
+    def _left(self) -> xr.Dataset:
+        """Open the archive of a run that has been left; its claim lasts until the error is there."""
+        ds = open_archive(self._target)
+        ds.attrs["status"] = "interrupted"
+        return ds
 
     def _ended_at(self, point: Checkpoint) -> Ended:
         """How a run ended of which only the archive's final form was missing."""
-        _, skipped, method = engine.outlook(self._scene, self._backend, point.state, self._origin)
+        _, skipped, method = engine.outlook(self._scene, self._backend, point.state, self._start)
         counted = replace(point.statistics, method=method)
         statistics = statistics_of(counted, point.wall_time, self._backend, skipped)
-        balance, extremes = engine.kept_at(self._scene, point.state, self._backend, self._origin)
+        balance, extremes = engine.kept_at(self._scene, point.state, self._start)
         return engine.Ended(statistics, "finished", "", point.time, balance, extremes, point.state)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
@@ -226,9 +232,8 @@ class _Run:
 
     def _dataset(self, solution: Solution) -> xr.Dataset:
         """Label a solution, and say how far the model holds and what the run goes on from."""
-        ds = with_validity(to_dataset(self._scene, replace(solution, start=self._begin)), self._scene)
-        if self._started is not None:
-            ds.attrs["started_from"] = self._started.fingerprint
+        ds = with_validity(to_dataset(self._scene, replace(solution, start=self._start.time)), self._scene)
+        ds.attrs |= started_attributes(self._start)
         return ds
 
 
@@ -237,36 +242,26 @@ def _is_end(time: float, duration: float) -> bool:
     return math.isclose(time, duration, rel_tol=1e-12)
 
 
-def _found(target: Path, scene: Scene, started: Started | None) -> xr.Dataset:
+def _found(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
     """Open the archive to be resumed and make sure that it is of this very run."""
     ds = open_archive(target)
     theirs = json.loads(ds.attrs["scene"])
-    differing = _difference(theirs, scene.to_dict())
+    differing = first_difference(theirs, scene.to_dict())
     refusal = ""
     if differing or "swept" in ds.attrs:
-        what = "of a sweep" if "swept" in ds.attrs else f"of another scene ({differing} differs)"
+        what = f"of another scene ({differing[0]} differs)" if differing else ""
+        what = "of a sweep" if "swept" in ds.attrs else what
         refusal = f"is {what}: resume with the scene it was begun with, or name another archive"
     elif ds.attrs["status"] in ("running", "interrupted") and ds.attrs["product_version"] != __version__:
         refusal = f"was begun by gearidae {ds.attrs['product_version']}, which alone can go on with it"
     elif ds.attrs["status"] not in ("finished", "running", "interrupted"):
         refusal = f"has ended early ({ds.attrs['status']}): there is nothing to go on with"
-    elif ds.attrs.get("started_from", "") != ("" if started is None else started.fingerprint):
+    elif ds.attrs.get("started_from", "") != started_attributes(start).get("started_from", ""):
         refusal = "began elsewhere: resume with the run that it went on from (--start, start=)"
     if refusal:
         ds.close()
         raise SceneError("archive", target, refusal)
     return ds
-
-
-def _difference(one: Any, other: Any, key: str = "") -> str:
-    """Name the first key in which two scenes differ; empty if none."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        for name in sorted({*one, *other}):
-            inner = f"{key}.{name}" if key else name
-            if found := _difference(one.get(name), other.get(name), inner):
-                return found
-        return ""
-    return "" if one == other else key
 
 
 def _same_backend(backend: str, begun: str) -> str:

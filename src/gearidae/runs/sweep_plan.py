@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import itertools
+import json
+import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.sample_table import SampleTable
-from gearidae.archive.stack import Axis, held, stack, swept_values, zipped_keys
+from gearidae.archive.stack import Axis, stack, swept_values, zipped_keys
 from gearidae.errors import SceneError
 from gearidae.records import Solution
+from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SweepPlan", "plan_sweep"]
 
+MOST_RUNS: Final = 1_000_000
+"""Runs of one sweep: their scenes take some gigabytes."""
+_TOO_MANY: Final = f"a sweep has {MOST_RUNS} runs at most"
 _ONE_TIME_AXIS = ("run.duration", "run.samples")
 
 
@@ -99,6 +105,8 @@ def plan_sweep(
     listed = _listed(over)
     groups = _groups(listed, zipped)
     steps = [list(zip(*group.values(), strict=True)) for group in groups]
+    if (runs := math.prod(map(len, steps))) > MOST_RUNS:
+        raise SceneError("over", f"({runs} runs)", _TOO_MANY)
     scenes = [
         base.replace(dict(zip(listed, itertools.chain(*values), strict=True)))
         for values in itertools.product(*steps)
@@ -108,12 +116,15 @@ def plan_sweep(
     for group, length in zip(groups, map(len, steps), strict=True):
         stride //= length
         own = [scenes[index * stride] for index in range(length)]
-        axis = {key: [held(scene, key) for scene in own] for key in group}
+        axis = {key: [scene_value(scene, key) for scene in own] for key in group}
         leader = next(iter(axis))
+        seen = set()
         for index, value in enumerate(axis[leader]):
-            if value in axis[leader][:index]:
+            mark = json.dumps(value) if isinstance(value, list | dict) else value
+            if mark in seen:
                 alone = "" if len(axis) == 1 else _LEADER
                 raise SceneError(leader, group[leader][index], f"stands twice in the list of values{alone}")
+            seen.add(mark)
         axes.append(axis)
     return SweepPlan(base, tuple(axes), scenes)
 
@@ -137,9 +148,12 @@ def _listed(over: Mapping[str, Iterable[Any]]) -> dict[str, list[Any]]:
         if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
             raise SceneError(key, values, "must be a list of values to sweep over")
         # numpy's scalars become plain numbers, which is what scenes are made of
-        listed[key] = [value.item() if hasattr(value, "item") else value for value in values]
+        taken = list(itertools.islice(values, MOST_RUNS + 1))
+        listed[key] = [value.item() if hasattr(value, "item") else value for value in taken]
         if not listed[key]:
             raise SceneError(key, "[]", "must be a list of at least one value")
+        if len(taken) > MOST_RUNS:
+            raise SceneError(key, f"(more than {MOST_RUNS} values)", _TOO_MANY)
     return listed
 
 

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 from gearidae.archive import check_target, open_archive, save
 from gearidae.archive.keep import EVERYTHING, Keep, read_keep
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.batch import Batch
-from gearidae.runs.executors import check_executor, check_jobs, own_executor, stop
+from gearidae.runs.executors import check_executor, check_jobs, own_executor
 from gearidae.runs.imbalance import log_imbalance
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.kept_validity import with_validity
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["kept_beside", "prepare_archive", "run_plan", "sweep", "whole_archive"]
 
 
+@claims_archive
 def sweep(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],
@@ -185,20 +187,22 @@ def run_plan(
     bool
         Whether Ctrl-C ended it early.
     """
-    workers, releases_gil = check_jobs(jobs), runs_in_threads(backend)
+    workers, releases_gil = check_jobs(jobs), runs_in_threads(backend, plan.base.run.method)
     if not releases_gil and jobs is None:
         workers = 1
     with sweep_progress(progress, len(plan.scenes)) as report:
         batch = Batch(plan, backend, report, kept, keep)
-        if former is not None:
-            batch.take_kept(former)
-        if executor is not None:
-            interrupted = batch.run(executor)
-        else:
-            with own_executor(workers, batch.left, releases_gil=releases_gil) as own:
-                interrupted = batch.run(own, threads=workers if releases_gil else 0)
-                if interrupted and own is not None:
-                    stop(own)
+        interrupted = False
+        try:
+            if former is not None:
+                batch.take_kept(former)
+            if executor is not None:
+                batch.run(executor)
+            else:
+                with own_executor(workers, batch.left, releases_gil=releases_gil) as own:
+                    batch.run(own, threads=workers if releases_gil else 0)
+        except KeyboardInterrupt:
+            interrupted = True
     ds = batch.dataset()
     log_imbalance(ds)
     return ds, interrupted
@@ -286,7 +290,7 @@ def kept_beside(
             raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
         return None
     target = check_target(archive, overwrite=True)
-    kept = KeptRuns(target, scene, choose_backend(backend), keep)
+    kept = KeptRuns(target, scene, choose_backend(backend, scene.run.method), keep)
     count = 0 if resume else kept.count()
     if count and not overwrite:
         raise SceneError(
@@ -337,7 +341,7 @@ def whole_archive(
     }
     expected |= {"swept": plan.swept, "zipped": plan.zipped, "keep": asked, **(more or {})}
     differing = [name for name, value in expected.items() if ds.attrs.get(name, "") != value]
-    if differing or ds.attrs["backend"] not in ("", choose_backend(backend)):
+    if differing or ds.attrs["backend"] not in ("", choose_backend(backend, plan.base.run.method)):
         ds.close()
         raise SceneError(
             "archive",

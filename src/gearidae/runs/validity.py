@@ -7,15 +7,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from gearidae.asperities import law_of
 from gearidae.asperities.tip import tabor_parameter
 from gearidae.contact.asperity_statistics import (
+    asperities_for_mean,
     density_product,
     expected_asperities,
     half_spacing,
+    mean_square_place,
     zero_load_radius,
 )
 from gearidae.contact.surroundings import (
@@ -25,10 +29,10 @@ from gearidae.contact.surroundings import (
     film_damping,
     thermal_amplitude,
 )
-from gearidae.runs.estimates import balanced_speed, effective_mass, mean_drive_torque
-from gearidae.runs.pair_contact import PairContact, pair_contact
+from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
+from gearidae.runs.pair_contact import PairContact
 from gearidae.scene.prefixes import with_prefix
-from gearidae.scene.validity_row import ValidityRow, rows_to_json
+from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,8 +41,6 @@ if TYPE_CHECKING:
 
 __all__ = ["validity", "validity_attribute", "validity_rows"]
 
-ENOUGH_ASPERITIES: Final = 10.0
-"""Below about so many, one pair of teeth is not the mean of all."""
 _DENSEST: Final = 0.06
 """Random surfaces have a product N beta sigma of 0.03 to 0.06."""
 _SPACINGS: Final = 0.165e-9, 0.3e-9
@@ -50,17 +52,6 @@ _SILICON: Final = 2330.0
 _CLEARANCE: Final = 2e-6
 """Distance between gear and substrate that the drag of the air is estimated for [m]: a usual sacrificial layer."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
-
-
-@dataclass(frozen=True, slots=True)
-class _Rest:
-    """The contact that the rows are about: pair, gap [m], force [N], stiffness [N/m] and mass [kg]."""
-
-    contact: PairContact
-    gap: float
-    load: float
-    stiffness: float
-    mass: float
 
 
 def validity(scene: Scene) -> pd.DataFrame:
@@ -125,59 +116,92 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
 # Some 15 ms: an archive asks for them when it is begun and when it is finished.
 @lru_cache(maxsize=16)
 def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
-    rest = _resting(scene)
+    rest = rest_of(scene)
+    stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
     rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
-    rows += [_temperature(rest), _gas(rest), _adhesion(scene, rest)]
+    rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
     if scene.gears is not None:
-        rows += [_disc_drag(scene), *_inertia(scene)]
+        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene)]
     return tuple(rows)
 
 
-def _resting(scene: Scene) -> _Rest:
-    contact = pair_contact(scene)
-    if scene.roller is not None:
-        roller = scene.roller
-        gap = contact.closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
-        load = math.nan if math.isnan(gap) else float(contact.force(gap))
-        mass = roller.mass
-    else:
-        assert scene.gears is not None
-        load = mean_drive_torque(scene) / scene.gears.pinion_base_radius
-        gap, mass = contact.resting_gap(load), effective_mass(scene)
-    stiffness = math.nan if math.isnan(gap) else contact.stiffness(gap)
-    return _Rest(contact, gap, load, stiffness, mass)
+def _row(
+    name: str, quantity: str, number: float, unit: str, limit: str, bound: float, holds: bool, verdict: str
+) -> ValidityRow:
+    """Make the row of a number; one that is NaN needs a contact that rests, and there is none."""
+    if math.isnan(number):
+        holds, verdict = False, _NO_LOAD
+    return ValidityRow(name, quantity, with_prefix(number, unit), limit, verdict, holds, number, bound, unit)
 
 
 def _times(ratio: float) -> str:
     """Write a ratio: ``"45 times"``."""
-    return (
-        f"{ratio:.2g} times"
-        if ratio < 10.0
-        else f"{ratio:,.0f} times"
-        if ratio < 1e6
-        else f"{ratio:.0e} times"
-    )
+    return f"{f'{ratio:.2g}' if ratio < 10.0 else f'{ratio:,.0f}' if ratio < 1e6 else f'{ratio:.0e}'} times"
 
 
-def _asperities(rest: _Rest) -> ValidityRow:
-    contact, limit = rest.contact, f"at least {ENOUGH_ASPERITIES:g}"
-    name, quantity = "expected_asperities", "expected asperities in contact"
-    if math.isnan(rest.gap):
-        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, ENOUGH_ASPERITIES, "1")
-    count = sum(
+def _about(count: float) -> str:
+    """Write a large number with two digits: ``"26,000"``."""
+    return f"{float(f'{count:.2g}'):,.0f}" if count < 1e9 else f"{count:.0e}"
+
+
+def _asperities(rest: Rest) -> ValidityRow:
+    count = needed = math.nan
+    limit = verdict = "-"
+    if not math.isnan(rest.gap):
+        parts = [(surface, share, offset) for surface, share, offset, _ in rest.contact.parts]
+        needed = asperities_for_mean(rest.gap, parts, rest.contact.law)
+        count = sum(_counts(rest))
+        limit = f"at least {_about(needed)} for a scatter of 10 %"
+        words = (
+            "one pair's force is the mean to 10 %"
+            if count >= needed
+            else "the smooth law of force is an ensemble mean, not one pair of teeth"
+        )
+        verdict = f"{words} (gap {rest.gap / rest.contact.surface.roughness:.2f} roughnesses)"
+    quantity = "expected asperities in contact"
+    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, count >= needed, verdict)
+
+
+def _counts(rest: Rest) -> list[float]:
+    """Asperities of each material of the interface that are expected in contact."""
+    contact = rest.contact
+    return [
         share * float(expected_asperities(rest.gap + offset, contact.radius, contact.width, surface))
         for surface, share, offset, _ in contact.parts
+    ]
+
+
+def _memory(scene: Scene, rest: Rest) -> ValidityRow:
+    """Compare the contact's width with the flank that rolls through it while the pair is engaged."""
+    contact, geometry = rest.contact, scene.geometry
+    ratio, holds, verdict = math.nan, False, ""
+    if not math.isnan(rest.gap):
+        squares = [
+            mean_square_place(rest.gap + part.gap_offset, contact.radius, part.surface)
+            for part in contact.parts
+        ]
+        width = 4.0 * math.sqrt(
+            np.average(squares, weights=_counts(rest))
+        )  # four standard deviations of the places
+        begin = geometry.tangent_pinion - geometry.approach
+        rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
+        ratio = width / rolled
+        laws = [law_of(contact.law, part.surface) for part in contact.parts]
+        forgets = all(law.detach == law.join for law in laws)
+        holds = forgets or ratio >= 1.0
+        words = (
+            "asperities of this law have no memory"
+            if forgets
+            else "the same asperities stay in contact while the pair is engaged"
+            if holds
+            else "asperities pass through the contact; here those that an impact joins stay with the pair"
+        )
+        verdict = f"{words} ({with_prefix(width, 'm')} of {with_prefix(rolled, 'm')})"
+    quantity, limit = (
+        "width of the contact over the rolled distance",
+        "at least 1: the same asperities all the time",
     )
-    relative = rest.gap / contact.surface.roughness
-    enough = count >= ENOUGH_ASPERITIES
-    verdict = (
-        f"enough for a smooth law of force (gap {relative:.2f} roughnesses)"
-        if enough
-        else f"the smooth law of force is an ensemble mean, not one pair of teeth (gap {relative:.2f} roughnesses)"
-    )
-    return ValidityRow(
-        name, quantity, with_prefix(count, "1"), limit, verdict, enough, count, ENOUGH_ASPERITIES, "1"
-    )
+    return _row("memory", quantity, ratio, "1", limit, 1.0, holds, verdict)
 
 
 def _density(contact: PairContact) -> ValidityRow:
@@ -188,16 +212,9 @@ def _density(contact: PairContact) -> ValidityRow:
         if holds
         else f"{_times(product / _DENSEST)} as dense as random surfaces: asperities would share their load"
     )
-    return ValidityRow(
-        "density_product",
-        "density product N beta sigma",
-        with_prefix(product, "1"),
-        "0.03 to 0.06 for random surfaces",
-        verdict,
-        holds,
-        product,
-        _DENSEST,
-        "1",
+    limit = "0.03 to 0.06 for random surfaces"
+    return _row(
+        "density_product", "density product N beta sigma", product, "1", limit, _DENSEST, holds, verdict
     )
 
 
@@ -211,17 +228,8 @@ def _merging(scene: Scene) -> Iterator[ValidityRow]:
             else "contacts grow into their neighbours before any load: the asperities are not independent"
         )
         limit = f"{with_prefix(half, 'm')}, half the mean spacing"
-        yield ValidityRow(
-            f"merging_{name}",
-            f"{name}: contact radius without load",
-            with_prefix(radius, "m"),
-            limit,
-            verdict,
-            holds,
-            radius,
-            half,
-            "m",
-        )
+        quantity = f"{name}: contact radius without load"
+        yield _row(f"merging_{name}", quantity, radius, "m", limit, half, holds, verdict)
 
 
 def _tabor(scene: Scene) -> Iterator[ValidityRow]:
@@ -260,65 +268,56 @@ def _tabor_verdict(law: str, low: float, high: float) -> tuple[str, float, bool,
     return "none: the law holds for every value", math.nan, True, f"{law} covers the transition"
 
 
-def _temperature(rest: _Rest) -> ValidityRow:
+def _temperature(rest: Rest, stiffness: float) -> ValidityRow:
     sigma = rest.contact.surface.roughness
     bound = 0.1 * sigma
     limit = f"{with_prefix(bound, 'm')}, a tenth of the roughness ({with_prefix(sigma, 'm')})"
-    name, quantity = "thermal_motion", f"thermal motion at {ROOM_TEMPERATURE:g} K"
-    if math.isnan(rest.stiffness):
-        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, bound, "m")
-    amplitude = thermal_amplitude(rest.stiffness)
+    amplitude = math.nan if math.isnan(stiffness) else thermal_amplitude(stiffness)
     holds = amplitude <= bound
-    stiffness = with_prefix(rest.stiffness, "N/m")
+    contact = f"this contact ({with_prefix(stiffness, 'N/m')})"
     verdict = (
-        f"heat moves this contact ({stiffness}) little"
+        f"heat moves {contact} little"
         if holds
-        else f"heat shakes this contact ({stiffness}) by {amplitude / sigma:.2g} roughnesses: the model has none"
+        else f"heat shakes {contact} by {amplitude / sigma:.2g} roughnesses: the model has none"
     )
-    return ValidityRow(
-        name, quantity, with_prefix(amplitude, "m"), limit, verdict, holds, amplitude, bound, "m"
-    )
+    quantity = f"thermal motion at {ROOM_TEMPERATURE:g} K"
+    return _row("thermal_motion", quantity, amplitude, "m", limit, bound, holds, verdict)
 
 
-def _gas(rest: _Rest) -> ValidityRow:
-    name, quantity = "gas_damping", "damping ratio of a film of air"
-    limit = f"{_LITTLE_DAMPING:g}"
-    if math.isnan(rest.stiffness) or not rest.stiffness > 0.0:
-        return ValidityRow(name, quantity, "-", limit, _NO_LOAD, False, math.nan, _LITTLE_DAMPING, "1")
-    contact = rest.contact
-    film = max(rest.gap, contact.surface.roughness)  # mean planes that overlap leave the valleys
-    damping = film_damping(film, contact.radius, contact.width)
-    ratio = damping / (2.0 * math.sqrt(rest.stiffness * rest.mass))
-    holds = ratio <= _LITTLE_DAMPING
-    where = f"film of {with_prefix(film, 'm')}, Kn = {AIR_MEAN_FREE_PATH / film:.2g}"
-    verdict = (
-        f"air hardly damps the contact ({where})"
-        if holds
-        else f"in air the contact would not ring as it does here, in vacuum ({where})"
-    )
-    return ValidityRow(
-        name, quantity, with_prefix(ratio, "1"), limit, verdict, holds, ratio, _LITTLE_DAMPING, "1"
-    )
+def _gas(rest: Rest, stiffness: float) -> ValidityRow:
+    ratio, holds, verdict = math.nan, False, ""
+    if stiffness > 0.0:
+        contact = rest.contact
+        film = max(rest.gap, contact.surface.roughness)  # mean planes that overlap leave the valleys
+        damping = film_damping(film, contact.radius, contact.width)
+        ratio = damping / (2.0 * math.sqrt(stiffness * rest.mass))
+        holds = ratio <= _LITTLE_DAMPING
+        where = f"film of {with_prefix(film, 'm')}, Kn = {AIR_MEAN_FREE_PATH / film:.2g}"
+        verdict = (
+            f"air hardly damps the contact ({where})"
+            if holds
+            else f"in air the contact would not ring as it does here, in vacuum ({where})"
+        )
+    limit, quantity = f"{_LITTLE_DAMPING:g}", "damping ratio of a film of air"
+    return _row("gas_damping", quantity, ratio, "1", limit, _LITTLE_DAMPING, holds, verdict)
 
 
-def _adhesion(scene: Scene, rest: _Rest) -> ValidityRow:
-    name = "net_adhesion"
-    quantity = "net adhesion of the pair when it parts"
+def _adhesion(scene: Scene, rest: Rest) -> ValidityRow:
     driven = "the drive's force" if scene.roller is None else "the peak force, rigid bodies"
-    if math.isnan(rest.gap):
-        return ValidityRow(name, quantity, "-", driven, _NO_LOAD, False, math.nan, rest.load, "N")
-    tension = rest.contact.largest_tension(rest.gap)
-    holds = tension <= rest.load
-    if tension == 0.0:
-        verdict = "it does not pull when it parts from rest; impacts press deeper"
-    elif holds:
-        verdict = "smaller than the force that presses"
-    else:
-        verdict = f"{_times(tension / rest.load)} the force that presses: teeth that leave the mesh can stick"
-    limit = f"{with_prefix(rest.load, 'N')}, {driven}"
-    return ValidityRow(
-        name, quantity, with_prefix(tension, "N"), limit, verdict, holds, tension, rest.load, "N"
-    )
+    tension, limit, verdict = math.nan, driven, ""
+    if not math.isnan(rest.gap):
+        tension = rest.contact.largest_tension(rest.gap)
+        limit = f"{with_prefix(rest.load, 'N')}, {driven}"
+        if tension == 0.0:
+            verdict = "it does not pull when it parts from rest; impacts press deeper"
+        elif tension <= rest.load:
+            verdict = "smaller than the force that presses"
+        else:
+            verdict = (
+                f"{_times(tension / rest.load)} the force that presses: teeth that leave the mesh can stick"
+            )
+    quantity = "net adhesion of the pair when it parts"
+    return _row("net_adhesion", quantity, tension, "N", limit, rest.load, tension <= rest.load, verdict)
 
 
 def _disc_drag(scene: Scene) -> ValidityRow:
@@ -340,17 +339,7 @@ def _disc_drag(scene: Scene) -> ValidityRow:
         verdict = f"nothing else resists the gear at {where}"
     else:
         verdict = f"{_times(torque / resistance)} as much at {where}: in air the gear needs more torque"
-    return ValidityRow(
-        "disc_drag",
-        "drag of air under the gear",
-        with_prefix(torque, "N m"),
-        limit,
-        verdict,
-        holds,
-        torque,
-        resistance,
-        "N m",
-    )
+    return _row("disc_drag", "drag of air under the gear", torque, "N m", limit, resistance, holds, verdict)
 
 
 def _inertia(scene: Scene) -> Iterator[ValidityRow]:
@@ -369,14 +358,6 @@ def _inertia(scene: Scene) -> Iterator[ValidityRow]:
             verdict = f"{_times(times)} lighter than a solid disc: pierced, smaller, or a mistake"
         else:
             verdict = f"{_times(1.0 / times)} heavier than a solid disc: a load on the shaft, or a mistake"
-        yield ValidityRow(
-            f"inertia_{name}",
-            f"{name}: moment of inertia",
-            with_prefix(inertia, "kg m^2"),
-            f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon",
-            verdict,
-            holds,
-            inertia,
-            disc,
-            "kg m^2",
-        )
+        limit = f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon"
+        quantity = f"{name}: moment of inertia"
+        yield _row(f"inertia_{name}", quantity, inertia, "kg m^2", limit, disc, holds, verdict)

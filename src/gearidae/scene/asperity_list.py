@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from itertools import zip_longest
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -20,8 +21,9 @@ from pydantic_core import CoreSchema, core_schema
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
-from gearidae.scene.schedule_table import read_csv, split_unit, unit_factor
 from gearidae.scene.tables import MOST_KNOTS
+from gearidae.scene.text_table import check_regular, split_unit
+from gearidae.scene.units import from_text
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
@@ -33,6 +35,7 @@ _LENGTHS: Final = {"arc": (-1.0, 1.0), "x": (-1.0, 1.0), "height": (-0.1, 0.1), 
 _NUMBERS: Final = _LENGTHS | {"q": (0.0, 1.0), "q2": (0.0, 1.0), "tooth": (0.0, 9999.0)}
 _COLUMNS: Final = (*_NUMBERS, "flank")
 _MOST_ROWS: Final = MOST_KNOTS
+_LARGEST: Final = 50_000_000  # bytes of a file
 
 
 class ListedAsperity(NamedTuple):
@@ -138,7 +141,7 @@ class AsperityList:
             raise ValueError(
                 f"has {source} and {next(key for key in value if key != source)}; {source} is enough"
             )
-        frame = read_csv(value["file"]) if source == "file" else value["data"]
+        frame = _read_file(value["file"]) if source == "file" else value["data"]
         if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
             raise ValueError("data must be a DataFrame")
         return _rows(
@@ -185,6 +188,20 @@ def check_asperities(scene: Scene) -> None:
             raise SceneError(key, f"(row {row}, flank coast)", "a roller has no coast flank")
 
 
+def _read_file(file: object) -> Any:
+    """Read a CSV file as texts; the name of a flank is no number."""
+    if not isinstance(file, str | Path):
+        raise ValueError("file must be the name of a CSV file")
+    import pandas as pd  # a third of a second, and few scenes need it
+
+    path = Path(file)
+    try:
+        check_regular(path, _LARGEST)
+        return pd.read_csv(path, dtype=str, keep_default_na=False, skipinitialspace=True, comment="#")
+    except (OSError, ValueError) as error:  # pandas' own are values that it cannot read
+        raise ValueError(f"the file {path.name}: {str(error).strip().partition(chr(10))[0]}") from None
+
+
 def _is_column(cells: object, name: object) -> bool:
     """Whether something is a list, as each column of a scene's own is."""
     if not isinstance(cells, (list, tuple)) and not hasattr(cells, "tolist"):
@@ -197,7 +214,11 @@ def _headed(heading: str, cells: list[Any]) -> tuple[str, tuple[list[Any], float
     name, unit = split_unit(heading.strip())
     if name in _LENGTHS and not unit:
         raise ValueError(f"column {name!r} needs its unit in the heading, such as '{name} [nm]'")
-    return name, (cells, unit_factor(heading, unit, "m" if name in _LENGTHS else "1"))
+    try:
+        factor = from_text(f"1 {unit}", "m" if name in _LENGTHS else "1") if unit else 1.0
+    except ValueError as error:
+        raise ValueError(f"column {heading[:60]!r}: {error}") from None
+    return name, (cells, factor)
 
 
 def _rows(columns: dict[str, tuple[list[Any], float]]) -> ListedAsperities:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from pathlib import Path
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
+from gearidae.scene.literal import read_toml
 from gearidae.scene.scene import Scene
 from gearidae.scene.schedule_table import in_folder
 
@@ -37,10 +37,9 @@ def load_case(path: str | os.PathLike[str]) -> Scene:
         raise SceneError("case file", shorten(path), "must be a path")
     text = _read(path)
     try:
-        data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        # Not TOMLDecodeError alone: integers of thousands of digits and bottomless nesting fail otherwise.
-        raise SceneError("case file", shorten(os.fspath(path)), f"is not TOML: {_line(error)}") from error
+        data = read_toml(text)
+    except ValueError as error:  # not TOMLDecodeError alone: integers of thousands of digits fail otherwise
+        raise SceneError("case file", shorten(os.fspath(path)), f"is not TOML: {error}") from error
     if not data:
         raise SceneError("case file", shorten(os.fspath(path)), "is empty")
     data.pop("$schema", None)  # tells editors where the schema of case files is
@@ -86,7 +85,3 @@ def _stem(path: str | os.PathLike[str]) -> str:
     """Name a scene after its file, without what could not stand in a title."""
     stem = "".join(char if char.isprintable() else "_" for char in Path(path).stem)
     return stem.strip()[:200] or "scene"
-
-
-def _line(error: Exception) -> str:
-    return "nested too deeply" if isinstance(error, RecursionError) else str(error)

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Final
 
-if TYPE_CHECKING:
-    from gearidae.scene.scene import Scene
+__all__ = ["MAY_CHANGE", "first_difference"]
 
-__all__ = ["first_difference"]
+MAY_CHANGE: Final = ("name", "drive", "load", "coating", "initial", "run")
+"""What may differ between a run and the one that it goes on from, whose end is its start."""
 
 
-def first_difference(one: Scene, other: Scene, ignored: Iterable[str] = ()) -> tuple[str, Any, Any] | None:
+def first_difference(
+    one: Mapping[str, Any], other: Mapping[str, Any], ignored: Iterable[str] = ()
+) -> tuple[str, Any, Any] | None:
     """Name the first key in which two scenes differ.
 
     Parameters
     ----------
-    one, other : Scene
+    one, other : mapping
+        As `Scene.to_dict` gives them, or an archive holds them.
     ignored : iterable of str, optional
         Dotted keys, or names of tables, in which they may differ.
 
@@ -28,7 +31,7 @@ def first_difference(one: Scene, other: Scene, ignored: Iterable[str] = ()) -> t
         What both hold there; None where one lacks it. The whole is None if there is no difference.
     """
     allowed = [_plain(key) for key in ignored]
-    for key, mine, theirs in _differences(one.to_dict(), other.to_dict(), ""):
+    for key, mine, theirs in _differences(one, other, ""):
         plain = _plain(key)
         if not any(plain == each or plain.startswith(f"{each}.") for each in allowed):
             return key, mine, theirs

@@ -14,6 +14,7 @@ from gearidae.scene.asperity_list import ListedAsperities
 from gearidae.scene.group import Group
 from gearidae.scene.knots import Knots
 from gearidae.scene.quantity import Quantity
+from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.scene import Scene
 
 __all__ = ["dump_case", "dump_keys"]
@@ -134,14 +135,17 @@ def _rows(rows: tuple[tuple[float, ...], ...]) -> str:
 
 
 def _inline(group: Group) -> str:
-    """Write a small table in one line."""
-    parts = (f"{name} = {_plain(getattr(group, name))}" for name in type(group).model_fields)
-    return f"{{ {', '.join(parts)} }}"
+    """Write a small table in one line, without empty lists."""
+    given = [*((name, getattr(group, name)) for name in type(group).model_fields)]
+    given += (group.model_extra or {}).items()
+    return f"{{ {', '.join(f'{name} = {_plain(value)}' for name, value in given if value != ())} }}"
 
 
 def _plain(value: Any) -> str:
-    """Write a text, or a list of SI numbers."""
-    return _text(value) if isinstance(value, str) else f"[{', '.join(map(repr, value))}]"
+    """Write a text, an SI number, or a list of numbers or of lists."""
+    if isinstance(value, str):
+        return _text(value)
+    return f"[{', '.join(map(_plain, value))}]" if isinstance(value, tuple) else repr(value)
 
 
 def _list_of_tables(table: str, name: str, group: Group) -> Iterator[str]:
@@ -154,8 +158,8 @@ def _list_of_tables(table: str, name: str, group: Group) -> Iterator[str]:
 
 def _value(value: Any, quantity: Quantity | None) -> str:
     """Write one value, with a unit that people use where it is exact."""
-    if isinstance(value, str):
-        return _text(value)
+    if isinstance(value, (str, InRoughnesses)):
+        return _text(str(value))
     if isinstance(value, bool):
         return "true" if value else "false"
     if quantity is None or quantity.unit == "1":

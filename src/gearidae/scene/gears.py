@@ -24,9 +24,14 @@ class Gears(Group):
 
     Their size is given by the pinion's base radius, or by the module m in its place, from which it follows as
     ``R1 = m z1 cos(alpha) / 2``: the pitch circle has the diameter ``m z1``, and the base circle is that times
-    ``cos(alpha)`` (ISO 21771). A scene keeps the radius.
+    ``cos(alpha)`` (ISO 21771). A scene keeps the radius. Moments of inertia may be those of solid discs as large as the
+    pitch circles and as thick as the face width, ``pi/2 density L (R / cos(alpha))^4``, by their density.
     """
 
+    density: Annotated[float | None, Quantity(unit="kg/m^3", at_least=1, at_most=1e5)] = Field(
+        default=None,
+        description="density, in place of both inertias: solid discs of the pitch circles; a scene keeps the inertias",
+    )
     pinion_inertia: Inertia = Field(description="moment of inertia of the pinion, I1")
     gear_inertia: Inertia = Field(description="moment of inertia of the gear, I2")
     pinion_base_radius: Annotated[float, Quantity(unit="m", at_least=1e-8, at_most=1, shown=("um", -6))] = (
@@ -47,21 +52,37 @@ class Gears(Group):
 
     @model_validator(mode="before")
     @classmethod
-    def _radius_of_module(cls, data: Any) -> Any:
-        """Put the base radius in the place of the module."""
-        if not isinstance(data, dict) or data.get("module") is None:
+    def _in_place_of_others(cls, data: Any) -> Any:
+        """Put the base radius in the place of the module, and the inertias of discs in that of the density."""
+        if not isinstance(data, dict):
             return data
-        if data.get("pinion_base_radius") is not None:
-            raise SceneError(
-                "module",
-                shorten(data["module"]),
-                "cannot be given beside pinion_base_radius: choose one of the two",
+        found = dict(data)
+        if cls._is_given(found, "module", "pinion_base_radius"):
+            module, teeth, angle = (
+                cls._number(found, name) for name in ("module", "pinion_teeth", "pressure_angle")
             )
-        module, teeth, angle = (
-            cls._number(data, name) for name in ("module", "pinion_teeth", "pressure_angle")
-        )
-        rest = {name: value for name, value in data.items() if name != "module"}
-        return {**rest, "pinion_base_radius": 0.5 * module * teeth * math.cos(angle)}
+            del found["module"]
+            found["pinion_base_radius"] = 0.5 * module * teeth * math.cos(angle)
+        if cls._is_given(found, "density", "pinion_inertia", "gear_inertia"):
+            density, width = cls._number(found, "density"), cls._number(found, "face_width")
+            pinion = cls._number(found, "pinion_base_radius") / math.cos(cls._number(found, "pressure_angle"))
+            gear = pinion * cls._number(found, "gear_teeth") / cls._number(found, "pinion_teeth")
+            del found["density"]
+            for name, radius in (("pinion_inertia", pinion), ("gear_inertia", gear)):
+                found[name] = 0.5 * math.pi * density * width * radius**4
+        return found
+
+    @staticmethod
+    def _is_given(data: dict[str, Any], name: str, *others: str) -> bool:
+        """Whether a key is given, and none of those that it takes the place of."""
+        if data.get(name) is None:
+            return False
+        for other in others:
+            if data.get(other) is not None:
+                raise SceneError(
+                    name, shorten(data[name]), f"cannot be given beside {other}: choose one of the two"
+                )
+        return True
 
     @classmethod
     def _number(cls, data: dict[str, Any], name: str) -> float:
@@ -92,13 +113,13 @@ class Mesh(Group):
     """How the teeth meet along the line of action."""
 
     backlash: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, shown=("um", -6))] = Field(
-        description="total play between the flanks, 2b"
+        description="total play between the flanks, 2b, from the summits' mean plane"
     )
     tip_relief_radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = (
         Field(default=10e-6, description="radius of the rounded tooth end, rho")
     )
     damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
-        default=0.0, description="viscous damping of the transmission error"
+        default=0.0, description="viscous damping of the transmission error; it acts without contact, too"
     )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(
         default=(), description="harmonics of the static transmission error, a list of tables"

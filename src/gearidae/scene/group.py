@@ -31,7 +31,7 @@ class Group(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     def __init__(self, **data: Any) -> None:
-        known = list(type(self).model_fields)
+        known = type(self).known_keys(data)
         for key, value in data.items():
             if key not in known:
                 raise SceneError(key, shorten(value), self._unknown(key, known))
@@ -48,6 +48,16 @@ class Group(BaseModel):
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse: scenes are frozen."""
         raise SceneError(name, shorten(value), "scenes cannot be changed in place; use scene.replace({...})")
+
+    @classmethod
+    def known_keys(cls, data: Mapping[str, Any]) -> list[str]:
+        """Return the keys that a table with this content may have."""
+        return list(cls.model_fields)
+
+    @classmethod
+    def open_key(cls, name: str) -> tuple[str, str] | None:
+        """Return unit and description of a key that is no field; None where every key is a field."""
+        return None
 
     def plain_tables(self, **options: Any) -> dict[str, Any]:
         """Return pydantic's dump: plain tables, lists, texts and numbers, ready for JSON.

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final, get_args
+from typing import TYPE_CHECKING, Any, Final, get_args
 
 from pydantic.fields import FieldInfo
 
@@ -16,10 +16,16 @@ from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Count, Quantity
 
-__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put"]
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
+
+__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put", "scene_value"]
 
 _LONGEST_KEY = 200
-INSTEAD: Final = {"gears.module": "gears.pinion_base_radius"}
+INSTEAD: Final = {
+    "gears.module": ("gears.pinion_base_radius",),
+    "gears.density": ("gears.pinion_inertia", "gears.gear_inertia"),
+}
 """Keys that are given in the place of others, in which a scene keeps what they say."""
 
 
@@ -71,9 +77,27 @@ def find_key(model: type[Group], key: str, value: object = "(key)") -> KeyInfo:
         )
     plain = ".".join(part for part in key.split(".") if not part.isdecimal())
     known = {info.key: info for info in keys_of(model)}
+    if plain not in known and (info := _open_key(model, plain)) is not None:
+        return info
     if plain not in known:
         raise SceneError(str(shorten(key)), shorten(value), _unknown(key, [*known, *model.model_fields]))
     return known[plain]
+
+
+def _open_key(model: type[Group], key: str) -> KeyInfo | None:
+    """Look up a key of a table that has more keys than fields."""
+    *path, last = key.split(".")
+    table: type[Group] | None = model
+    for part in path:
+        table = (
+            _table(table.model_fields[part].annotation)[0] if table and part in table.model_fields else None
+        )
+    found = table.open_key(last) if table else None
+    if found is None:
+        return None
+    unit, description = found
+    allowed = f"a number in {unit or 'SI'} or a text with a unit"
+    return KeyInfo(key, unit, required=False, default=None, allowed=allowed, description=description)
 
 
 def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> None:
@@ -98,7 +122,10 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     """
     value = value.plain_tables() if isinstance(value, Group) else value
     if isinstance(key, str) and key in model.model_fields:
-        data[key] = deepcopy(value) if isinstance(value, dict) else value  # dotted keys may change it later
+        try:  # dotted keys may change a table later
+            data[key] = deepcopy(value) if isinstance(value, dict) else value
+        except RecursionError:
+            raise SceneError(key, shorten(value), "is nested too deeply") from None
         return
     info = find_key(model, key, value)
     *path, last = key.split(".")
@@ -108,7 +135,8 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     if isinstance(inside, list) and len(inside) == 1 and not last.isdecimal():
         inside = inside[0]
     if isinstance(inside, dict) and key in INSTEAD and not _is_nothing(value):
-        inside.pop(INSTEAD[key].rpartition(".")[2], None)
+        for other in INSTEAD[key]:
+            inside.pop(other.rpartition(".")[2], None)
     if isinstance(inside, dict) and info.default == () and _is_nothing(value):
         inside.pop(last, None)
     elif isinstance(inside, dict):
@@ -117,6 +145,16 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
         inside[int(last)] = value
     else:
         raise SceneError(key, shorten(value), "this scene has no such table or entry to change")
+
+
+def scene_value(scene: Scene, key: str) -> Any:
+    """Return the value of a dotted key in SI units, as plain data; None where the scene has none."""
+    inside: Any = scene.to_dict()
+    for part in key.split("."):
+        if isinstance(inside, list) and len(inside) == 1 and not part.isdecimal():
+            inside = inside[0]  # a list of one may go without its number
+        inside = _entry(inside, part)
+    return inside
 
 
 def _is_nothing(value: object) -> bool:

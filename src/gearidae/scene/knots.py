@@ -7,16 +7,28 @@ table with columns; see `gearidae.scene.schedule_table`.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
 
+import numpy as np
 from pydantic import GetCoreSchemaHandler, PlainSerializer, TypeAdapter, WrapValidator
 from pydantic_core import CoreSchema, core_schema
 
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.schedule_table import pack_knots, read_schedule
-from gearidae.scene.tables import increasing, pairs
+from gearidae.scene.tables import MOST_KNOTS, check_increasing, increasing, pairs
 
-__all__ = ["INTERPOLATIONS", "Knots", "Schedule", "Scheduled", "Time", "Torque"]
+__all__ = [
+    "INTERPOLATIONS",
+    "Knots",
+    "Resistance",
+    "ResistanceSchedule",
+    "Schedule",
+    "Scheduled",
+    "Time",
+    "Torque",
+]
 
 INTERPOLATIONS: Final = ("linear", "cubic")
 PACKED_ABOVE: Final = 500
@@ -62,34 +74,60 @@ class Knots(tuple[tuple[float, float], ...]):
 def plain(knots: Iterable[tuple[float, float]]) -> Any:
     """Write knots as plain lists and texts, ready for JSON and exact to the last bit."""
     interpolation = getattr(knots, "interpolation", "linear")
-    numbers = [list(pair) for pair in knots]
-    if len(numbers) > PACKED_ABOVE:
-        return {"packed": pack_knots(numbers), "interpolation": interpolation}
+    pairs = tuple(knots)
+    if len(pairs) > PACKED_ABOVE:
+        return {"packed": pack_knots(pairs), "interpolation": interpolation}
+    numbers = [list(pair) for pair in pairs]
     return numbers if interpolation == "linear" else {"knots": numbers, "interpolation": interpolation}
 
 
-def _reader(unit: str) -> WrapValidator:
-    """Read whatever may stand for a schedule; the pairs themselves are read by the field's own types."""
+def _reader(quantity: Quantity) -> WrapValidator:
+    """Read whatever may stand for a schedule; the field's own types read pairs that hold more than plain numbers."""
 
     def read(value: object, handler: Any) -> Knots:
-        knots, interpolation = read_schedule(value, unit)
-        return Knots(handler(knots), interpolation)
+        given, interpolation = read_schedule(value, quantity.unit)
+        knots = _plain_knots(given, quantity)
+        return Knots(handler(given) if knots is None else knots, interpolation)
 
     return WrapValidator(read)
 
 
-Time = Annotated[float, Quantity(unit="s", at_least=0, at_most=1e12, least=1e-20)]
-Torque = Annotated[float, Quantity(unit="N m", at_least=-1e9, at_most=1e9, least=1e-40)]
-Speed = Annotated[float, Quantity(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)]
+def _plain_knots(given: object, quantity: Quantity) -> Iterable[tuple[float, float]] | None:
+    """Check pairs of plain numbers all at once; None if one of them is not as it must be."""
+    if not isinstance(given, (list, tuple)) or not 0 < len(given) <= MOST_KNOTS:
+        return None
+    try:
+        if not set(map(type, chain.from_iterable(given))) <= {float, int} or set(map(len, given)) != {2}:
+            return None
+        times, values = np.array(given, np.float64).T
+    except (TypeError, OverflowError):
+        return None
+    if not (_TIME.admits_all(times) and quantity.admits_all(values)):
+        return None
+    check_increasing(times)
+    return zip(times.tolist(), values.tolist(), strict=True)
+
+
+def _schedule(quantity: Quantity) -> Any:
+    """Return the type of a schedule of a quantity."""
+    pair = tuple[Time, Annotated[float, quantity]]
+    return Annotated[tuple[pair, ...], pairs, increasing, _reader(quantity), PlainSerializer(plain)]
+
+
+_TIME: Final = Quantity(unit="s", at_least=0, at_most=1e12, least=1e-20)
+_TORQUE: Final = Quantity(unit="N m", at_least=-1e9, at_most=1e9, least=1e-40)
+_RESISTANCE: Final = replace(_TORQUE, at_least=0)
+_SPEED: Final = Quantity(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)
+Time = Annotated[float, _TIME]
+Torque = Annotated[float, _TORQUE]
+Resistance = Annotated[float, _RESISTANCE]
 if TYPE_CHECKING:
     Schedule = Knots  # what every reader ends with
+    ResistanceSchedule = Knots
 else:
-    Schedule = Annotated[
-        tuple[tuple[Time, Torque], ...], pairs, increasing, _reader("N m"), PlainSerializer(plain)
-    ]
-_SPEEDS: Final[TypeAdapter[Any]] = TypeAdapter(
-    Annotated[tuple[tuple[Time, Speed], ...], pairs, increasing, _reader("rad/s")]
-)
+    Schedule = _schedule(_TORQUE)
+    ResistanceSchedule = _schedule(_RESISTANCE)
+_SPEEDS: Final[TypeAdapter[Any]] = TypeAdapter(_schedule(_SPEED))
 
 
 class Scheduled(Quantity):

@@ -139,5 +139,5 @@ def check_gaps(scene: Scene) -> None:
         raise SceneError(
             "initial.gap",
             initial.gap,
-            f"must be 0 or at least {resolved:.2g} m in size: less cannot be told beside backlash and roughness",
+            f"must be 0 or at least {resolved:.2g} m in size: less cannot be resolved beside backlash and roughness",
         )

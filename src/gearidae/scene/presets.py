@@ -54,7 +54,7 @@ _HIGH_SPEED: Final[_Tables] = {
     "drive": {"torque": 2.43e-11, "harmonic": {"amplitude": 0.3e-11, "frequency": 10e3}},
     "load": {"torque": 3e-11, "drag": 8e-18},
     # Steady: M10 = (R1/R2) (M20 + alpha w^2).
-    "initial": {"gear_speed": 2898.0, "gap": 36e-9, "mesh_phase": 0.3},
+    "initial": {"gear_speed": 2898.0, "gap": "6 sigma", "mesh_phase": 0.3},
     "run": {"duration": 1e-3, "samples": 20_001, "rtol": 1e-6},
 }
 
@@ -62,7 +62,7 @@ _LOW_SPEED: Final[_Tables] = {
     **_PAIR,
     "drive": {"torque": 4.5e-18},  # inferred: (R1/R2) alpha (1.5 rad/s)^2
     "load": {"drag": 8e-18},
-    "initial": {"gear_speed": 1.5, "gap": 36e-9, "mesh_phase": 0.3},  # inferred: six roughnesses apart
+    "initial": {"gear_speed": 1.5, "gap": "6 sigma", "mesh_phase": 0.3},  # inferred
     "run": {"duration": 0.3, "samples": 30_001, "rtol": 1e-6},
 }
 
@@ -94,7 +94,7 @@ _BRAKING: Final[_Tables] = {
     **_WORN,
     "drive": {"schedule": [[0.0, _FULL], [0.01, _FULL], [0.03, 0.0]]},
     "load": _DRY,
-    "initial": {"gear_speed": 2898.0, "gap": 36e-9, "mesh_phase": 0.3},
+    "initial": {"gear_speed": 2898.0, "gap": "6 sigma", "mesh_phase": 0.3},
     "run": {"duration": 0.05, "samples": 50_001, "rtol": 1e-6},
 }
 

@@ -12,6 +12,7 @@ from numbers import Real
 from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
@@ -48,6 +49,13 @@ class _Bounded:
             and (self.at_most is None or value <= self.at_most)
             and (self.least is None or value == 0.0 or abs(value) >= self.least)
         )
+
+    def admits_all(self, values: NDArray[np.float64]) -> bool:
+        """Whether each of several values keeps to the limits: those of their range and size decide."""
+        if not np.isfinite(values).all():
+            return False
+        smallest = np.abs(values[values != 0.0]).min(initial=math.inf)
+        return self.admits(values.min()) and self.admits(values.max()) and smallest >= (self.least or 0.0)
 
     def range(self) -> str:
         """Return the limits in words, empty without any."""

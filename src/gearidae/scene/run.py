@@ -11,6 +11,7 @@ from gearidae.errors import SceneError
 from gearidae.scene.group import Group
 from gearidae.scene.knots import Time
 from gearidae.scene.quantity import Count, Quantity, Sampling, Switch
+from gearidae.scene.roughnesses import Length
 
 __all__ = ["Initial", "Roller", "Run"]
 
@@ -25,7 +26,9 @@ class Initial(Group):
     gear_speed: Annotated[float, Quantity(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)] = Field(
         default=0.0, description="speed of the gear"
     )
-    gap: Annotated[float, Quantity(unit="m", shown=("nm", -9))] = Field(description="gap of the drive flank")
+    gap: Annotated[float, Length(unit="m", shown=("nm", -9))] = Field(
+        description="gap of the drive flank from the summits' mean plane, a length or in roughnesses"
+    )
     mesh_phase: Annotated[float, Quantity(unit="1", at_least=0, below=1)] = Field(
         default=0.3, description="position of pair 0 on the path of contact, in base pitches"
     )

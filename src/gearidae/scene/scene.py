@@ -16,6 +16,7 @@ from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import check_gaps, check_reach, check_stretch, check_thickness
+from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
 from gearidae.scene.showing import as_html, as_line
@@ -100,6 +101,7 @@ class Scene(Group):
     @model_validator(mode="after")
     def _whole(self) -> Self:
         """Check what no table can check alone."""
+        self._set_gap()
         given = [table for table in _GEAR_TABLES if getattr(self, table) is not None]
         check_stretch(self)
         check_thickness(self)
@@ -123,6 +125,15 @@ class Scene(Group):
                 raise SceneError(table, "(missing)", "is required in a scene without a roller")
         self._check_mesh()
         return self
+
+    def _set_gap(self) -> None:
+        """Let a gap that is given in roughnesses follow this scene's roughness."""
+        gap = None if self.initial is None else self.initial.gap
+        if self.initial is None or not isinstance(gap, InRoughnesses):
+            return
+        length = InRoughnesses(gap.number, self.surface.roughness)
+        if length != gap:  # a table of its own then: scenes share those that do not change
+            object.__setattr__(self, "initial", self.initial.model_copy(update={"gap": length}))
 
     def _check_mesh(self) -> None:
         """Refuse gears that cannot mesh, and starts from within the teeth."""
@@ -218,11 +229,12 @@ class Scene(Group):
         """
         if not isinstance(changes, Mapping):
             raise SceneError("replace", shorten(changes), "must be a mapping from dotted keys to values")
-        for key, other in INSTEAD.items():
-            if changes.get(key) is not None and other in changes:
-                raise SceneError(
-                    key, shorten(changes[key]), f"cannot be given beside {other}: choose one of the two"
-                )
+        for key, others in INSTEAD.items():
+            for other in others:
+                if changes.get(key) is not None and other in changes:
+                    raise SceneError(
+                        key, shorten(changes[key]), f"cannot be given beside {other}: choose one of the two"
+                    )
         touched = {key.partition(".")[0] for key in changes if isinstance(key, str)}
         # tables that stay are shared: they have been checked, and a scene of an ensemble takes few kilobytes
         data: dict[str, Any] = {

@@ -12,24 +12,26 @@ from __future__ import annotations
 
 import base64
 import binascii
-import re
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
+from gearidae.scene.text_table import column_of, listed, split_unit
 from gearidae.scene.units import from_text
 
-__all__ = ["in_folder", "pack_knots", "read_csv", "read_schedule", "split_unit", "unit_factor"]
+__all__ = ["in_folder", "pack_knots", "read_schedule"]
+
+Floats = NDArray[np.float64]
 
 _KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
 _SOURCES: Final = ("file", "data", "knots", "packed")
 _LARGEST: Final = 50_000_000  # bytes of a file
-_UNIT: Final = re.compile(r"(.*?)\s*[\[(]\s*([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)\s*[\])]\s*")
 
 
 def read_schedule(value: object, unit: str) -> tuple[object, str]:
@@ -72,8 +74,7 @@ def read_schedule(value: object, unit: str) -> tuple[object, str]:
         return unpack_knots(value["packed"]), interpolation
     if "knots" in value:
         return value["knots"], interpolation
-    columns = _columns(value, sources[0] if sources else "")
-    times, values = (_numbers(*column, own) for column, own in zip(columns, ("s", unit), strict=True))
+    times, values = _columns(value, sources[0] if sources else "", ("s", unit))
     if len(times) != len(values):
         raise ValueError(f"time has {len(times)} rows and value {len(values)}: they must be as many")
     return np.column_stack([times, values]).tolist(), interpolation
@@ -86,7 +87,7 @@ def in_folder(table: object, folder: Path) -> object:
     return table
 
 
-def pack_knots(knots: list[list[float]]) -> str:
+def pack_knots(knots: Sequence[Sequence[float]]) -> str:
     """Write knots as text, exactly."""
     bits = np.array(knots, "<f8").T.copy().view("<u8")
     differences = np.diff(bits, axis=1, prepend=np.zeros((2, 1), "<u8")).ravel()
@@ -115,75 +116,67 @@ def unpack_knots(text: object) -> list[list[float]]:
     return knots
 
 
-def _columns(table: Mapping[str, Any], source: str) -> tuple[tuple[str, Any], tuple[str, Any]]:
-    """Find the columns of time and value, each with its name."""
-    if not source:
-        if "time" not in table or "value" not in table:
-            raise ValueError("needs file, data or knots, or arrays as time and value")
-        return ("time", table["time"]), ("value", table["value"])
-    frame = read_csv(table["file"]) if source == "file" else table["data"]
-    if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
-        raise ValueError("data must be a DataFrame")
-    names = [str(name).strip() for name in frame.columns]
+def _columns(table: Mapping[str, Any], source: str, units: tuple[str, str]) -> list[Floats]:
+    """Read the columns of time and value in SI units."""
+    if source == "file":
+        return _of_file(table, units)
+    if source == "data":
+        frame = table["data"]
+        if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
+            raise ValueError("data must be a DataFrame")
+        names = [str(name).strip() for name in frame.columns]
+        columns = [(name, frame.iloc[:, place]) for name, place in _wanted(table, names)]
+    elif "time" in table and "value" in table:
+        columns = [(key, table[key]) for key in ("time", "value")]
+    else:
+        raise ValueError("needs file, data or knots, or arrays as time and value")
+    return [_numbers(*column, unit) for column, unit in zip(columns, units, strict=True)]
+
+
+def _of_file(table: Mapping[str, Any], units: tuple[str, str]) -> list[Floats]:
+    if not isinstance(table["file"], str | Path):
+        raise ValueError("file must be the name of a CSV file")
+    path = Path(table["file"])
+    asked = [table[key] for key in ("time", "value") if isinstance(table.get(key), str)]
+
+    def names(headings: Sequence[str]) -> bool:
+        return all(column_of(headings, name) is not None for name in asked)
+
+    try:
+        found = open_table(path, largest=_LARGEST, names=names, unit_row=True)
+        wanted = _wanted(table, found.headings)
+        factors = [
+            _factor(name, split_unit(name)[1], unit) for (name, _), unit in zip(wanted, units, strict=True)
+        ]
+        numbers = found.numbers([place for _, place in wanted], most=MOST_KNOTS)
+    except ValueError as error:
+        raise ValueError(f"the file {path.name}: {error}") from None
+    return list((numbers * factors).T)
+
+
+def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, int]]:
+    """Find the columns of time and value: their names, with units, and their places."""
     if "time" not in table and "value" not in table and len(names) == 2:
-        return (names[0], frame.iloc[:, 0]), (names[1], frame.iloc[:, 1])
+        return [(names[0], 0), (names[1], 1)]
+    found = []
     for key in ("time", "value"):
         if not isinstance(table.get(key), str):
-            raise ValueError(f"{key} must be the name of a column, one of {_listed(names)}")
-    time, value = (_column(frame, names, table[key]) for key in ("time", "value"))
-    return time, value
+            raise ValueError(f"{key} must be the name of a column, one of {listed(names)}")
+        name = table[key].strip()
+        place = column_of(names, name)
+        if place is None:
+            problem = "stands more than once among" if list(names).count(name) > 1 else "is not among"
+            raise ValueError(f"column {name[:60]!r} {problem} the columns, {listed(names)}")
+        found.append((name if split_unit(name)[1] else names[place], place))
+    return found
 
 
-def _column(frame: Any, names: list[str], wanted: str) -> tuple[str, Any]:
-    """Find a column by its name, or by the name without the unit, which the key may then have."""
-    wanted = wanted.strip()
-    if names.count(wanted) == 1:
-        return wanted, frame.iloc[:, names.index(wanted)]
-    bare = split_unit(wanted)[0]
-    if bare != wanted and names.count(bare) == 1:
-        return wanted, frame.iloc[:, names.index(bare)]
-    problem = "stands more than once among" if wanted in names else "is not among"
-    raise ValueError(f"column {wanted[:60]!r} {problem} the columns, {_listed(names)}")
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(repr(name[:40]) for name in names[:8]) + (", ..." if len(names) > 8 else "")
-
-
-def read_csv(file: object) -> Any:
-    """Read a CSV file as texts."""
-    if not isinstance(file, str | Path):
-        raise ValueError("file must be the name of a CSV file")
-    import pandas as pd  # a third of a second, and few scenes need it
-
-    path = Path(file)
-    try:
-        if path.stat().st_size > _LARGEST:
-            raise ValueError(f"the file {path.name} is longer than {_LARGEST} bytes")
-        return pd.read_csv(
-            path, dtype=str, keep_default_na=False, skipinitialspace=True, nrows=MOST_KNOTS + 1, comment="#"
-        )
-    except FileNotFoundError:
-        raise ValueError(f"there is no file {path.name}") from None
-    except OSError as error:
-        raise ValueError(f"the file {path.name} cannot be read ({error.strerror})") from None
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
-        reason = str(error).strip().partition("\n")[0]
-        raise ValueError(f"the file {path.name} is no CSV table ({reason})") from None
-
-
-def split_unit(name: str) -> tuple[str, str]:
-    """Split a column's name into the bare name and the unit."""
-    match = _UNIT.fullmatch(name)
-    return (match[1], match[2]) if match else (name, "")
-
-
-def _numbers(name: str, column: Any, unit: str) -> NDArray[np.float64]:
+def _numbers(name: str, column: Any, unit: str) -> Floats:
     """Read a column in SI units; whatever is no finite number is named with its row, counted from 1."""
     own_unit = split_unit(name)[1]
     if hasattr(column, "magnitude") and hasattr(column, "units"):
         own_unit, column = f"{column.units:~}" if str(column.units) else "", column.magnitude
-    factor = unit_factor(name, own_unit, unit)
+    factor = _factor(name, own_unit, unit)
     cells = np.asarray(column)
     if cells.ndim != 1:
         raise ValueError(f"column {name[:60]!r} must be one-dimensional")
@@ -195,7 +188,7 @@ def _numbers(name: str, column: Any, unit: str) -> NDArray[np.float64]:
     return numbers * factor
 
 
-def unit_factor(name: str, own_unit: str, unit: str) -> float:
+def _factor(name: str, own_unit: str, unit: str) -> float:
     """Return how many `unit` the unit of a column of this name is; 1 without one."""
     try:
         return from_text(f"1 {own_unit}", unit) if own_unit else 1.0

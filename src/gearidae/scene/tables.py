@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator
 
 from gearidae.scene.group import Group, shorten
 
-__all__ = ["CLOSEST_KNOTS", "MOST_KNOTS", "MOST_TABLES", "increasing", "one_or_more", "pairs"]
+__all__ = [
+    "CLOSEST_KNOTS",
+    "MOST_KNOTS",
+    "MOST_TABLES",
+    "check_increasing",
+    "increasing",
+    "one_or_more",
+    "pairs",
+]
 
 MOST_TABLES: Final = 1_000
 """Harmonics of one torque, or of the static error: all of them are summed in every evaluation of the residual."""
@@ -51,20 +60,34 @@ def _as_pairs(value: object) -> object:
     return tuple(tuple(pair) for pair in value)
 
 
-def _check_increasing(value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-    times = [time for time, _ in value]
-    for row, (before, after) in enumerate(pairwise(times), 2):
-        if after <= before:
-            raise ValueError(
-                f"times must strictly increase, but {after:g} s follows {before:g} s (knot {row})"
-            )
-        if after - before < CLOSEST_KNOTS * after:
-            raise ValueError(
-                f"the knots at {before!r} s and {after!r} s are too close to step between:"
-                f" they must be {CLOSEST_KNOTS:g} of the time apart, {CLOSEST_KNOTS * after:.2g} s"
-            )
+def check_increasing(times: NDArray[np.float64]) -> None:
+    """Refuse times of knots [s] that do not increase, or by less than the solver can step.
+
+    Raises
+    ------
+    ValueError
+        Naming the first two knots for which it is so.
+    """
+    steps = np.diff(times)
+    wrong = np.flatnonzero((steps <= 0.0) | (steps < CLOSEST_KNOTS * times[1:]))
+    if not wrong.size:
+        return
+    row = int(wrong[0])
+    before, after = times[row : row + 2].tolist()
+    if after <= before:
+        raise ValueError(
+            f"times must strictly increase, but {after:g} s follows {before:g} s (knot {row + 2})"
+        )
+    raise ValueError(
+        f"the knots at {before!r} s and {after!r} s are too close to step between:"
+        f" they must be {CLOSEST_KNOTS:g} of the time apart, {CLOSEST_KNOTS * after:.2g} s"
+    )
+
+
+def _check_pairs(value: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+    check_increasing(np.array([time for time, _ in value]))
     return value
 
 
 pairs = BeforeValidator(_as_pairs)
-increasing = AfterValidator(_check_increasing)
+increasing = AfterValidator(_check_pairs)

@@ -6,15 +6,16 @@ decimals, so "34.715 um" is the float that ``34.715e-6`` is, to the last bit.
 
 from __future__ import annotations
 
+import math
 import re
 from decimal import Decimal, DecimalException
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pint
 
-__all__ = ["from_text"]
+__all__ = ["from_text", "to_si"]
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 # Only names, products, quotients and one-digit powers reach pint: it would also work out 9**9**9.
@@ -29,14 +30,17 @@ _PLAIN = str.maketrans(
         "\u22c5": "*",
         "\u00d7": "*",
         "\u00b0": " deg ",
+        "\u2103": "degC",
+        "\u2109": "degF",
         "\u00a0": " ",
         "\u202f": " ",
     }
 )
 _DIGITS = {"\u00b9": "1", "\u00b2": "2", "\u00b3": "3", "\u2074": "4"}
+_DEGREES = re.compile("\u00b0\\s*([CF])(?!\\w)")
 _LONGEST = 100
 
-# pint holds angles to be pure numbers, so that 1 rpm would be 0.105 Hz and 1 Hz would be 1 rad/s.
+# pint holds angles to be pure numbers, so that 1 rpm would be 0.105 Hz, 1 Hz and 1/min would be 1 rad/s and 1/60 of it.
 _ANGLES = (
     "radian",
     "degree",
@@ -49,8 +53,11 @@ _ANGLES = (
 )
 
 
-def from_text(text: str, unit: str) -> float:
+def from_text(text: str, unit: str, *, difference: bool = False) -> float:
     """Read a number with a unit and turn it into SI.
+
+    An angular speed without an angle counts radians where it is per second, and turns where it is ``1/min``. Other
+    rates, and other units of time, need the angle named ("25 turn/s").
 
     Parameters
     ----------
@@ -58,6 +65,9 @@ def from_text(text: str, unit: str) -> float:
         Such as ``"34.715 um"``, ``"169 / um^2"`` or ``"20 deg"``; pure numbers need no unit.
     unit : str
         The SI unit wanted; ``"1"`` for a pure number.
+    difference : bool, optional
+        Whether it is the difference of two values, such as a standard deviation: of temperatures, one in degC is one
+        in K.
 
     Returns
     -------
@@ -74,52 +84,109 @@ def from_text(text: str, unit: str) -> float:
     number, own_unit = match.groups()
     if not own_unit and unit != "1":
         raise ValueError(f"lacks a unit; expected {_wanted(unit)}")
+    factor, offset = _scale(own_unit, unit, difference)
     try:
-        return float(Decimal(number) * _factor(own_unit, unit))
+        value = Decimal(number) * factor
+        return float(value + offset if offset else value)  # a sum with 0 would take the sign from -0
     except DecimalException:
         raise ValueError("must be a finite number") from None
 
 
+def to_si(text: str) -> float:
+    """Read a text with any unit, or none, as a number in SI base units.
+
+    Raises
+    ------
+    ValueError
+        Saying what is wrong with it.
+    """
+    parts = _NUMBER_AND_UNIT.fullmatch(_plain(text))
+    if parts is None:
+        raise ValueError("must be a number or a text of a number and a unit")
+    registry = _registry()
+    try:
+        base = registry.parse_units(parts[2]) if parts[2] else registry.dimensionless
+        unit = f"{registry.Quantity(Decimal(1), base).to_base_units().units:~}".replace("\u03bb", "")
+    except Exception:  # pint fails in a dozen ways on what is no unit
+        raise ValueError(f"{parts[2][:20]!r} is not a known unit") from None
+    return from_text(text, unit or "1")
+
+
 def _plain(text: str) -> str:
     """Replace typographic minus signs, dots and superscripts by what can be typed."""
+    text = _DEGREES.sub(r"deg\1", text)
     text = _SUPERSCRIPT.sub(lambda m: "^" + ("-" if m[1] else "") + _DIGITS[m[2]], text)
     return text.translate(_PLAIN)
 
 
 @lru_cache(maxsize=512)
-def _factor(own_unit: str, unit: str) -> Decimal:
-    """How many `unit` one `own_unit` is."""
+def _scale(own_unit: str, unit: str, difference: bool) -> tuple[Decimal, Decimal]:
+    """Return how many `unit` one `own_unit` is, and what its zero is."""
     if not own_unit:
-        return Decimal(1)
+        return Decimal(1), Decimal(0)
     bare = _LONE_ONE.sub("", _POWER.sub("", own_unit))
-    if not _UNIT.fullmatch(bare):
+    # a power that begins the unit would be one of the number
+    if own_unit.startswith(("^", "**")) or not _UNIT.fullmatch(bare):
         raise ValueError(f"{own_unit[:20]!r} is not a unit; expected {_wanted(unit)}")
     source = f"1 {own_unit}" if own_unit.startswith(("/", "*")) else own_unit
     registry = _registry()
     try:
-        one = registry.Quantity(Decimal(1), registry.parse_units(source))
+        given = registry.parse_units(source)
         wanted = registry.parse_units("" if unit == "1" else unit)
-        fits = one.is_compatible_with(wanted) and _same_turns([name for name, _ in one.unit_items()], unit)
-        factor = one.to(wanted).magnitude if fits else None
+        if unit == "rad/s" and given == registry.parse_units("1/min"):
+            given = registry.parse_units("rpm")
+        one = registry.Quantity(Decimal(1), given)
+        powers = dict(one.unit_items())
+        target = dict(registry.Quantity(Decimal(1), wanted).unit_items())
+        fits = one.is_compatible_with(wanted) and _same_turns(powers, target, unit)
+        # of temperatures the zero counts, too
+        zero = Decimal(registry.Quantity(Decimal(0), given).to(wanted).magnitude) if fits else Decimal(0)
+        factor = Decimal(one.to(wanted).magnitude) - zero if fits else Decimal(0)
+        two = (
+            Decimal(registry.Quantity(Decimal(2), given).to(wanted).magnitude) - zero if fits else Decimal(0)
+        )
+        if not math.isclose(two, 2 * factor, rel_tol=1e-9):
+            raise ValueError("is a logarithm")  # decibels and nepers
     except Exception:  # pint fails in a dozen ways on what is no unit, and all of them mean this
         raise ValueError(f"{own_unit[:20]!r} is not a known unit; expected {_wanted(unit)}") from None
-    if factor is None:
+    if not fits:
         raise ValueError(f"the unit {own_unit[:20]!r} does not fit; expected {_wanted(unit)}")
-    return Decimal(factor)
+    if unit == "K" and not difference and any(name.startswith("delta_") for name in powers):
+        raise ValueError(
+            f"{own_unit[:20]!r} is a difference of temperatures; expected one in K, degC or degF"
+        )
+    return factor, Decimal(0) if difference else zero
 
 
 def _wanted(unit: str) -> str:
     return "a number" if unit == "1" else f"a number with a unit that fits {unit}"
 
 
-def _same_turns(names: list[str], unit: str) -> bool:
-    """Keep apart what pint takes for the same: numbers and angles, cycles per second and angular speeds."""
-    has_angle = any(name.endswith(_ANGLES) for name in names)
+def _same_turns(own: dict[str, Any], wanted: dict[str, Any], unit: str) -> bool:
+    """Keep apart what pint takes for the same: numbers and angles, cycles per second and angular speeds.
+
+    Parameters
+    ----------
+    own, wanted : dict of str to number
+        Powers of the units by their names.
+    unit : str
+        As text, what `wanted` is of.
+    """
+    angles = {name: power for name, power in own.items() if name.endswith(_ANGLES)}
     if unit in ("1", "Hz"):
-        return not has_angle
-    if unit == "rad":
-        return has_angle
-    return unit != "rad/s" or not any(name.endswith("hertz") for name in names)
+        return not angles
+    radians = wanted.get("radian", 0)
+    if sum(angles.values()) == radians:
+        return True
+    # A radian may be left out. The second goes without one; minutes, hertz and becquerels count cycles.
+    only_radians = all(name.endswith("radian") for name in angles)
+    return unit != "rad" and only_radians and not any(map(_counts_cycles, own))
+
+
+def _counts_cycles(name: str) -> bool:
+    """Whether a unit is of time or of a rate, and not the second with a prefix or without."""
+    power = dict(_registry().Unit(name).dimensionality)
+    return power == {"[time]": -1} or (power == {"[time]": 1} and not name.endswith("second"))
 
 
 @cache

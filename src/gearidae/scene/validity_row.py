@@ -8,10 +8,21 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-__all__ = ["ATTRIBUTE", "ValidityRow", "contact_subject", "holds_rows", "rows_from_json", "rows_to_json"]
+__all__ = [
+    "ATTRIBUTE",
+    "EXPECTED_ASPERITIES",
+    "ValidityRow",
+    "contact_subject",
+    "holds_rows",
+    "mean_note",
+    "rows_from_json",
+    "rows_to_json",
+]
 
 ATTRIBUTE = "validity"
 """Name of the attribute."""
+EXPECTED_ASPERITIES = "expected_asperities"
+"""Name of the row that says whether the force of one pair of teeth is the mean over many."""
 _LONGEST = 100_000
 """Characters of it; what is written has some four thousand."""
 
@@ -74,6 +85,25 @@ def contact_subject(*, roller: bool, swept: Sequence[str] = ()) -> str:
     if not swept:
         return contact
     return f"{contact}, for the scene that the runs were derived from: {', '.join(swept)} may change it"
+
+
+def mean_note(rows: Iterable[ValidityRow]) -> str:
+    """Say in a line what stands beside a verdict where the force of one pair of teeth is not the mean over many.
+
+    Parameters
+    ----------
+    rows : iterable of ValidityRow
+
+    Returns
+    -------
+    str
+        Such as ``"mean over many gears: 5.13e-08 asperities in contact"``; empty where the mean law holds, or the
+        contact is not known.
+    """
+    for row in rows:
+        if row.name == EXPECTED_ASPERITIES and not row.holds and not math.isnan(row.number):
+            return f"mean over many gears: {row.value} asperities in contact"
+    return ""
 
 
 def rows_to_json(rows: Iterable[ValidityRow]) -> str:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gearidae.archive import save
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.running import prepare
@@ -26,7 +27,7 @@ from gearidae.studies.observations import Observation
 from gearidae.studies.posterior import grid_posterior, sampled_posterior
 from gearidae.studies.predicting import Predictor
 from gearidae.studies.product_file import read_product
-from gearidae.studies.study_run import Execution
+from gearidae.studies.study_run import Execution, interruptible
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -39,6 +40,7 @@ Floats = NDArray[np.float64]
 METHODS: Final = ("auto", "grid", "emcee")
 
 
+@claims_archive
 def calibrate(
     scene: Scene,
     priors: Mapping[str, Any],
@@ -125,12 +127,13 @@ def calibrate(
         return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
 
     names = list(dimension_names(keys).values())
-    if chosen == "grid":
-        ds = grid_posterior(distributions, names, points, lambda values: likelihood(values, progress))
-    else:
-        with sweep_progress(progress, steps) as report:
-            allowed = _where_allowed(base, keys, likelihood)
-            ds = sampled_posterior(distributions, names, steps, seed, allowed, report)
+    with interruptible(None if predictor.kept is None else predictor.kept.folder):
+        if chosen == "grid":
+            ds = grid_posterior(distributions, names, points, lambda values: likelihood(values, progress))
+        else:
+            with sweep_progress(progress, steps) as report:
+                allowed = _where_allowed(base, keys, likelihood)
+                ds = sampled_posterior(distributions, names, steps, seed, allowed, report)
     for key, name in zip(keys, names, strict=True):
         info = describe_key(key)
         ds[name].attrs.update(long_name=f"{key}: {info.description}", units=info.unit)

@@ -22,9 +22,10 @@ from gearidae.analysis.map_model import require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names, save
 from gearidae.archive.provenance import provenance
-from gearidae.archive.stack import held
-from gearidae.errors import Interrupted, SceneError
+from gearidae.archive.target import claims_archive
+from gearidae.errors import SceneError
 from gearidae.scene import describe_key
+from gearidae.scene.keys import scene_value
 from gearidae.studies.product_file import read_product
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ _SLOWEST = {
 }
 
 
+@claims_archive
 def coating_map(
     scene: Scene,
     sam_fraction: ArrayLike | None = None,
@@ -116,6 +118,7 @@ def coating_map(
     # reading and drawing maps must not wait for the solver
     from gearidae.runs.executors import check_executor, check_jobs
     from gearidae.runs.sweeping import prepare_archive, run_plan
+    from gearidae.studies.study_run import interruptible
 
     if getattr(scene, "gears", None) is None:
         raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
@@ -133,19 +136,22 @@ def coating_map(
     )
     if whole is not None:
         return whole
-    lines: list[xr.Dataset] = []
-    for plan in plans:
-        # one line at a time: what is kept of a run is a few numbers of some megabytes
-        runs, interrupted = run_plan(
-            plan, kept if resume else None, kept, executor, backend=backend, jobs=jobs, progress=progress
+    runs, lines = xr.Dataset(), list[xr.Dataset]()
+    with interruptible(None if kept is None else kept.folder, lambda: runs):
+        for plan in plans:
+            # one line at a time: what is kept of a run is a few numbers of some megabytes
+            runs, interrupted = run_plan(
+                plan, kept if resume else None, kept, executor, backend=backend, jobs=jobs, progress=progress
+            )
+            if interrupted:
+                raise KeyboardInterrupt
+            lines.append(_line(runs, width))
+        chart = _assembled(lines, numbers).assign_attrs(
+            _attributes(scene, (_FRACTION, *keys), lines[0].attrs)
         )
-        if interrupted:
-            where = "" if kept is None else f"the finished runs are in {kept.folder}; go on with --resume"
-            raise Interrupted(where, runs)
-        lines.append(_line(runs, width))
-    chart = _assembled(lines, numbers).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
-    if archive is not None and kept is not None:
-        save(chart, archive, overwrite=overwrite or resume)
+        if archive is not None and kept is not None:
+            save(chart, archive, overwrite=overwrite or resume)
+    if kept is not None:
         kept.remove(scenes)
     return chart
 
@@ -267,7 +273,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
 
 def _number(scene: Scene, key: str, value: Any) -> Any:
     """A swept value in SI units, as the scene holds it."""
-    return held(scene.replace({key: value}), key)
+    return scene_value(scene.replace({key: value}), key)
 
 
 def _assembled(lines: list[xr.Dataset], keys: Mapping[str, list[Any]]) -> xr.Dataset:

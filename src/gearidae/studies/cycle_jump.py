@@ -16,7 +16,7 @@ from typing import Final, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Direct", "Life", "Sticks", "jump"]
+__all__ = ["Direct", "GearStuck", "Life", "jump"]
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ _FASTER: Final = 1.1
 """Loss in the second half of a stretch over that in the first, up to which a jump is tried again."""
 
 
-class Sticks(Exception):  # noqa: N818  # it is no error
+class GearStuck(Exception):  # noqa: N818  # it is no error
     """The gear sticks in this state, so that there is no rate; of cycles simulated one by one, with the passages."""
 
 
@@ -48,7 +48,7 @@ class Direct(Protocol):
 
         Raises
         ------
-        Sticks
+        GearStuck
             With the passages by which the gear sticks.
         """
 
@@ -97,7 +97,7 @@ def jump(
     Parameters
     ----------
     rate : callable
-        Change of the state in a passage, of a state within 0..1; raises `Sticks` where the gear sticks.
+        Change of the state in a passage, of a state within 0..1; raises `GearStuck` where the gear sticks.
     start : ndarray, shape (n,)
         State at the beginning.
     passages : float
@@ -132,7 +132,7 @@ def jump(
 
     try:
         fastest = float(np.abs(of(0.0, start)).max())
-    except Sticks:
+    except GearStuck:
         life.ending, life.sticks_by = "sticks", 0.0
         return life
     if fastest == 0.0:
@@ -174,7 +174,7 @@ def _integrate(
             step = _step(rate, life, limits, bound, step)
         except _TooFar:
             step *= 0.5
-        except Sticks:
+        except GearStuck:
             upper = n + step
             if _sticks(
                 rate, n, state
@@ -188,7 +188,7 @@ def _integrate(
 def _sticks(rate: Callable[[float, Floats], Floats], n: float, state: Floats) -> bool:
     try:
         rate(n, state)
-    except Sticks:
+    except GearStuck:
         return True
     return False
 
@@ -237,7 +237,7 @@ def _go_through(direct: Direct, life: Life, limits: _Limits) -> bool:
             if whole:
                 break
             last = (n, state)
-    except Sticks as stuck:
+    except GearStuck as stuck:
         if last[0] > life.passages[-1]:
             life.add(*last)
         life.ending, life.sticks_by = "sticks", float(stuck.args[0])

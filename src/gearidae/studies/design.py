@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from gearidae.errors import SceneError
+from gearidae.runs.sweep_plan import MOST_RUNS
 from gearidae.studies.distributions import Distribution
 
 __all__ = ["DESIGNS", "Design", "check_design", "pick_freeze_design", "plain_design"]
@@ -66,8 +67,8 @@ def check_design(size: int, design: str, seed: int, *, indices: bool) -> None:
     ------
     SceneError
     """
-    if isinstance(size, bool) or not isinstance(size, int | np.integer) or size < 1:
-        raise SceneError("size", size, "must be a whole number, 1 or more")
+    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MOST_RUNS:
+        raise SceneError("size", size, f"must be a whole number in 1..{MOST_RUNS}")
     if indices and (size < 2 or size & (size - 1)):
         raise SceneError("size", size, "must be a power of 2 for Sobol' indices, such as 256 or 1024")
     if design not in DESIGNS:

@@ -35,6 +35,8 @@ class _Kind(NamedTuple):
     arguments: tuple[str, ...]
     pure: tuple[int, ...]
     """Places of arguments that are pure numbers, not of the key's unit."""
+    spread: tuple[int, ...]
+    """Places of arguments that are differences of two values: a standard deviation in degC is one in K."""
     sound: Callable[..., bool]
     rule: str
     frozen: Callable[..., Any]
@@ -50,6 +52,7 @@ KINDS: Final[Mapping[str, _Kind]] = {
     "normal": _Kind(
         ("mean", "standard deviation"),
         (),
+        (1,),
         lambda mean, deviation: deviation > 0.0,
         "a standard deviation above 0",
         lambda mean, deviation: _stats().norm(mean, deviation),
@@ -57,6 +60,7 @@ KINDS: Final[Mapping[str, _Kind]] = {
     "truncnormal": _Kind(
         ("mean", "standard deviation", "lowest", "highest"),
         (),
+        (1,),
         lambda mean, deviation, low, high: deviation > 0.0 and low < high,
         "a standard deviation above 0 and lowest below highest",
         lambda mean, deviation, low, high: _stats().truncnorm(
@@ -66,6 +70,7 @@ KINDS: Final[Mapping[str, _Kind]] = {
     "uniform": _Kind(
         ("lowest", "highest"),
         (),
+        (),
         lambda low, high: low < high,
         "lowest below highest",
         lambda low, high: _stats().uniform(low, high - low),
@@ -73,6 +78,7 @@ KINDS: Final[Mapping[str, _Kind]] = {
     "lognormal": _Kind(
         ("median", "geometric standard deviation"),
         (1,),
+        (),
         lambda median, factor: median > 0.0 and factor > 1.0,
         "a median above 0 and a geometric standard deviation above 1, a pure number",
         lambda median, factor: _stats().lognorm(math.log(factor), scale=median),
@@ -219,7 +225,8 @@ def _of_text(key: str, text: str, unit: str) -> Any:
     numbers = []
     for place, part in enumerate(parts):
         try:
-            numbers.append(_number(part, "1" if place in kind.pure else unit))
+            own = "1" if place in kind.pure else unit
+            numbers.append(_number(part, own, difference=place in kind.spread))
         except ValueError as error:
             raise SceneError(key, shorten(text), f"{kind.arguments[place]} {error}") from None
     if not all(map(math.isfinite, numbers)) or not kind.sound(*numbers):
@@ -227,12 +234,12 @@ def _of_text(key: str, text: str, unit: str) -> Any:
     return kind.frozen(*numbers)
 
 
-def _number(text: str, unit: str) -> float:
+def _number(text: str, unit: str, *, difference: bool) -> float:
     """Read a number in SI or one with a unit."""
     try:
         return float(text)
     except ValueError:
-        return from_text(text, unit)
+        return from_text(text, unit, difference=difference)
 
 
 def _form(name: str) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.target import claims_archive
 from gearidae.archive.variables import extreme_names
 from gearidae.errors import SceneError
 from gearidae.runs.running import prepare
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["ensemble", "figure_names"]
 
 
+@claims_archive
 def ensemble(
     scene: Scene,
     vary: Mapping[str, Any],

@@ -27,7 +27,7 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_value
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
-from gearidae.runs.estimates import resting_gap
+from gearidae.runs.estimates import mean_drive_torque, resting_gap
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -93,7 +93,7 @@ def natural_frequency(scene: Scene) -> float:
 
 
 def contact_resonance(scene: Scene, joined: float | None = None) -> float:
-    """Frequency of small oscillations of one pair in mesh under the scene's constant drive torque.
+    """Frequency of small oscillations of one pair in mesh under the scene's mean drive torque.
 
     Parameters
     ----------
@@ -115,13 +115,12 @@ def contact_resonance(scene: Scene, joined: float | None = None) -> float:
     """
     if scene.gears is None or scene.drive is None:
         raise SceneError("scene", scene.name, "must be a scene with gears")
-    if not scene.drive.torque > 0.0:
-        raise SceneError(
-            "drive.torque", scene.drive.torque, "must be positive, or nothing presses the teeth together"
-        )
+    torque = mean_drive_torque(scene)
+    if not torque > 0.0:
+        raise SceneError("drive.torque", torque, "must not be 0, or nothing presses the teeth together")
     geometry, gears = scene.geometry, scene.gears
     pinion, gear = geometry.base_radius_pinion, geometry.base_radius_gear
-    law, force = pair_law(scene), scene.drive.torque / pinion
+    law, force = pair_law(scene), torque / pinion
     place = geometry.path_length - (1.0 - _AFTER) * geometry.base_pitch
     radius = float(curvature_radii(geometry, place)[2])
     gap = settled_gap(scene, lambda at: law(at, at, radius) - force)

@@ -20,8 +20,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive import save
+from gearidae.archive.target import claims_archive
 from gearidae.archive.verdict import is_scheduled
-from gearidae.errors import Interrupted, SceneError
+from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor
 from gearidae.runs.running import prepare, runs_in_threads
@@ -32,6 +33,7 @@ from gearidae.studies.life_dataset import life_dataset
 from gearidae.studies.life_direct import DirectCycles
 from gearidae.studies.life_states import MOST_STATES, Seen, Windows
 from gearidae.studies.life_window import Cycles, window_scene
+from gearidae.studies.study_run import interruptible
 from gearidae.wear import LossLaw
 
 if TYPE_CHECKING:
@@ -44,6 +46,7 @@ Floats: TypeAlias = NDArray[np.float64]
 _PLACES: Final = 8
 
 
+@claims_archive
 def life(
     scene: Scene,
     law: LossLaw,
@@ -145,34 +148,36 @@ def life(
     check_executor(executor)
     workers = check_jobs(jobs)
     kept = kept_beside(archive, window, backend, overwrite=overwrite, resume=resume)
-    threads = runs_in_threads(backend)
-    with (
-        sweep_progress(progress, MOST_STATES) as report,
-        own_executor(min(workers, starts) if executor is None else 1, starts, releases_gil=threads) as own,
-    ):
-        windows = Windows(window, coverage, law, length, starts, backend, executor or own, kept, report)
+    threads = runs_in_threads(backend, scene.run.method)
+    found = Life()
+
+    def keep(ds: xr.Dataset) -> xr.Dataset:
+        if archive is not None and ds.sizes:
+            save(ds, archive, overwrite=overwrite or resume)
+        return ds
+
+    with sweep_progress(progress, MOST_STATES) as report:
+        windows = Windows(window, coverage, law, length, starts, backend, executor, kept, report)
         direct = DirectCycles(windows)
-        found = Life()
-        try:
-            jump(
-                windows.rate,
-                coverage.start,
-                passages=passages,
-                tolerance=tolerance,
-                least=fraction,
-                bracket=bracket,
-                direct=direct,
-                life=found,
-            )
-            ds = _dataset(scene, direct, found, frequency=frequency)
-        except KeyboardInterrupt:
-            ds = _so_far(scene, direct, found)
-            if archive is not None and ds.sizes:
-                save(ds, archive, overwrite=overwrite or resume)
-            where = "" if archive is None else "the life so far is in the archive; go on with --resume"
-            raise Interrupted(where, ds) from None
-    if archive is not None:
-        save(ds, archive, overwrite=overwrite or resume)
+        with interruptible(
+            None if kept is None else kept.folder, lambda: keep(_so_far(scene, direct, found))
+        ):
+            with own_executor(
+                min(workers, starts) if executor is None else 1, starts, releases_gil=threads
+            ) as own:
+                windows.executor = executor or own
+                jump(
+                    windows.rate,
+                    coverage.start,
+                    passages=passages,
+                    tolerance=tolerance,
+                    least=fraction,
+                    bracket=bracket,
+                    direct=direct,
+                    life=found,
+                )
+                ds = _dataset(scene, direct, found, frequency=frequency)
+            keep(ds)
     if kept is not None:
         kept.remove()
     return ds

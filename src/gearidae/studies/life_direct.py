@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae import engine
-from gearidae.studies.cycle_jump import Sticks
+from gearidae.studies.cycle_jump import GearStuck
 from gearidae.studies.life_states import Seen, Windows
 from gearidae.studies.life_window import gained, part_of, solved, stands, steady_window, with_exposures
 
@@ -81,7 +81,7 @@ class DirectCycles:
 
         Raises
         ------
-        Sticks
+        GearStuck
             If the gear does, with the passages by which it has come to stand.
         """
         here = self._here
@@ -97,36 +97,37 @@ class DirectCycles:
         """Bring the gears into steady motion at a coverage."""
         windows = self.windows
         window = steady_window(windows.scene_at(state), windows.cycles, windows.backend)
-        if window.origin is None:
-            raise Sticks(passages)
+        if window.start is None:
+            raise GearStuck(passages)
         assert window.solution.extremes is not None
         self.run += window.solution.extremes.mesh_exits
-        return _Place(passages, state, window.origin, window.solution)
+        return _Place(passages, state, window.start, window.solution)
 
     def _next(self, here: _Place) -> _Place:
         """Simulate a cycle."""
         windows, state = self.windows, here.state
         scene = part_of(windows.scene_at(state), 1, windows.cycles.total, _PATIENCE)
-        found = solved(scene, windows.backend, here.origin)
+        found = solved(scene, windows.backend, here.start)
         if stands(found, scene) or found.checkpoint is None:
-            raise Sticks(here.passages + self.cycle)
+            raise GearStuck(here.passages + self.cycle)
         seen = self._see(scene, found, here)
         self.seen[state.tobytes()] = seen
         self.run += 1
         windows.say()
         after = np.clip(state + seen.rate * self.cycle, 0.0, 1.0)
-        origin = engine.end_of(scene, found.checkpoint, here.origin.time)
-        return _Place(here.passages + self.cycle, after, origin, found, here.passages, state)
+        start = engine.end_of(scene, found.checkpoint, here.start.time)
+        return _Place(here.passages + self.cycle, after, start, found, here.passages, state)
 
     def _see(self, scene: Scene, found: Solution, here: _Place) -> Seen:
         """What a cycle has shown; where the coverage is that of the run before, its exposures go on."""
         assert found.extremes is not None
         assert scene.gears is not None
-        same = scene.coating == here.origin.scene.coating
+        assert here.start.scene is not None
+        same = scene.coating == here.start.scene.coating
         exposures = gained(found, here.run if same else None, scene)
         exposure = self.windows.coverage.exposure(scene, with_exposures(found, exposures), 1, here.state)
         assert found.reached is not None
-        speed = 2.0 * math.pi / (scene.gears.gear_teeth * (found.reached - here.origin.time))
+        speed = 2.0 * math.pi / (scene.gears.gear_teeth * (found.reached - here.start.time))
         rate = self.windows.law.rate(here.state, exposure)
         return Seen(False, rate, (exposure,), speed, found.extremes.min_gear_speed)
 
@@ -139,8 +140,8 @@ class _Place:
     ----------
     passages, state
         Where the next cycle begins.
-    origin : Origin
-        End of the cycle before.
+    start : Start
+        Of the next cycle, at the end of the one before.
     run : Solution
         That cycle.
     before, turned
@@ -149,7 +150,7 @@ class _Place:
 
     passages: float
     state: Floats
-    origin: engine.Origin
+    start: engine.Start
     run: Solution
     before: float = math.nan
     turned: Floats = field(default_factory=lambda: np.empty(0))

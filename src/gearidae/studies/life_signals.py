@@ -11,6 +11,7 @@ from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 from gearidae.studies.life_file import require_life
+from gearidae.studies.study_run import interruptible
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -50,6 +51,8 @@ def assess_life(ds: xr.Dataset, chart: xr.Dataset, *, noise: float = 0.0, seed: 
     ------
     SceneError
         If the dataset is no life or the chart no coating map, or a number is not allowed.
+    Interrupted
+        On Ctrl-C.
     """
     from gearidae.analysis import assess
 
@@ -58,9 +61,10 @@ def assess_life(ds: xr.Dataset, chart: xr.Dataset, *, noise: float = 0.0, seed: 
         raise SceneError("noise", noise, "must be a speed in rad/s, 0 or more")
     random = np.random.default_rng(seed)
     found = []
-    for number in range(ds.sizes["passages"]):
-        signal = life_signal(ds, number)
-        found.append(assess(signal + noise * random.standard_normal(signal.size), chart))
+    with interruptible():
+        for number in range(ds.sizes["passages"]):
+            signal = life_signal(ds, number)
+            found.append(assess(signal + noise * random.standard_normal(signal.size), chart))
     columns = [(each.sam_fraction, each.low, each.high) for each in found]
     values = np.where([[each.conclusive] for each in found], np.array(columns), np.nan)
     made: dict[str, Any] = {

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.errors import SolverError
+from gearidae.runs.executors import side_by_side
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.studies.cycle_jump import Sticks
+from gearidae.studies.cycle_jump import GearStuck
 from gearidae.studies.life_coverage import Coverage
 from gearidae.studies.life_window import Cycles, run_window
 from gearidae.wear import LossLaw
@@ -60,10 +61,10 @@ class Windows:
     mesh_cycles: int = 0
 
     def rate(self, state: Floats) -> Floats:
-        """Change of a state in a passage; `Sticks` where the gear sticks."""
+        """Change of a state in a passage; `GearStuck` where the gear sticks."""
         seen = self.of(state)
         if seen.sticks:
-            raise Sticks
+            raise GearStuck
         return seen.rate
 
     def has(self, state: Floats) -> bool:
@@ -132,8 +133,9 @@ class Windows:
         """Take windows that are kept, and run the others."""
         taken = [None if self.kept is None else self.kept.take(each) for each in scenes]
         left = [each for each, one in zip(scenes, taken, strict=True) if one is None]
-        run = map if self.executor is None else self.executor.map
-        fresh = run(run_window, left, [self.cycles] * len(left), [self.backend] * len(left))
+        fresh = side_by_side(
+            self.executor, run_window, left, [self.cycles] * len(left), [self.backend] * len(left)
+        )
         found: list[tuple[Solution, bool]] = []
         for scene, one in zip(scenes, taken, strict=True):
             if one is not None:

@@ -19,7 +19,7 @@ from gearidae import engine
 from gearidae.errors import SolverError
 from gearidae.records import ExposureRows
 from gearidae.runs.estimates import steady_speed
-from gearidae.runs.running import solve, unsolved
+from gearidae.runs.running import solve_to_end, unsolved
 from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:
@@ -104,13 +104,13 @@ class Window:
     exposures : ndarray or None
         Of one block, as `gained` has them: the last, or the mean of the last two where blocks no longer drift but
         fluctuate. None if the gear sticks.
-    origin : Origin or None
-        Where it ends, if the gear turns.
+    start : Start or None
+        Of a run that goes on from its end, if the gear turns.
     """
 
     solution: Solution
     exposures: Floats | None = None
-    origin: engine.Origin | None = None
+    start: engine.Start | None = None
 
 
 def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bool]:
@@ -176,24 +176,24 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
         If a run could not be finished.
     """
     before: Solution | None = None
-    origin: engine.Origin | None = None
+    start = engine.AT_ONCE
     if cycles.settle:
         first = part_of(scene, cycles.settle, cycles.total)
         before = solved(first, backend)
         if stands(before, first) or before.checkpoint is None:
             return Window(before)
-        origin = engine.end_of(first, before.checkpoint, 0.0)
+        start = engine.end_of(first, before.checkpoint, 0.0)
     block = part_of(scene, cycles.count, cycles.total)
     tables: list[Floats] = []
     while True:
-        found = solved(block, backend, origin)
+        found = solved(block, backend, start)
         if stands(found, block) or found.checkpoint is None:
             return Window(found)
         tables.append(gained(found, before, scene))
-        origin = engine.end_of(block, found.checkpoint, 0.0 if origin is None else origin.time)
+        start = engine.end_of(block, found.checkpoint, start.time)
         exposures = steady_exposures(tables, cycles.tolerance)
         if exposures is not None:
-            return Window(found, exposures, origin)
+            return Window(found, exposures, start)
         before = found
 
 
@@ -253,7 +253,7 @@ def stands(solution: Solution, scene: Scene) -> bool:
     return found is None or not math.isnan(found.stick_time) or late
 
 
-def solved(scene: Scene, backend: str, origin: engine.Origin | None = None) -> Solution:
+def solved(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
     """Run some cycles.
 
     Raises
@@ -261,7 +261,7 @@ def solved(scene: Scene, backend: str, origin: engine.Origin | None = None) -> S
     SolverError
         If they could not be finished.
     """
-    solution = solve(scene, backend, origin=origin)
+    solution = solve_to_end(scene, backend, start)
     if solution.extremes is None or solution.status != "finished":
         raise SolverError(
             f"a window of the life could not be finished: {solution.message or solution.status}",

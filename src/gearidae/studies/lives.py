@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -19,10 +17,11 @@ from numpy.typing import NDArray
 
 from gearidae.archive import check_target, dimension_names, save
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.engine import choose_backend
-from gearidae.errors import Interrupted, SceneError, SolverError
+from gearidae.errors import SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.executors import check_executor, check_jobs, own_executor, stop
+from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.kept_runs import circumstances, name_of
 from gearidae.runs.running import prepare, runs_in_threads
 from gearidae.scene.group import did_you_mean
@@ -32,6 +31,7 @@ from gearidae.studies.law_draws import drawn_laws, parameter_units
 from gearidae.studies.life import life
 from gearidae.studies.life_file import open_life
 from gearidae.studies.members import member_plan, names_of
+from gearidae.studies.study_run import interruptible
 from gearidae.wear import LossLaw
 
 if TYPE_CHECKING:
@@ -62,6 +62,7 @@ _COLUMNS: Final = {
 }
 
 
+@claims_archive
 def lives(
     scene: Scene,
     law: LossLaw,
@@ -142,30 +143,34 @@ def lives(
     common = _Common(settings, backend, folder)
     paths = [common.path(*each) for each in members]
     with (
+        interruptible(folder),
+        _gone_if_empty(folder),
         sweep_progress(progress, len(members)) as report,
         own_executor(
-            workers if executor is None else 1, len(members), releases_gil=runs_in_threads(backend)
+            workers if executor is None else 1,
+            len(members),
+            releases_gil=runs_in_threads(backend, scene.run.method),
         ) as own,
-        _halting(own is not None and runs_in_threads(backend)) as halted,
     ):
-        try:
-            found = _followed(common, members, executor or own, halted, report)
-        except KeyboardInterrupt:
-            if own is not None:
-                stop(own)
-            where = (
-                "" if archive is None else "the lives so far are kept beside the archive; go on with --resume"
-            )
-            raise Interrupted(where, xr.Dataset()) from None
+        found = _followed(common, members, executor or own, report)
     ds = _dataset(base, law, distributions, values, found).assign_attrs(ensemble=json.dumps(about))
     if archive is not None and folder is not None:
         save(ds, archive, overwrite=overwrite or resume)
-        for path in paths:
-            assert path is not None
-            path.unlink(missing_ok=True)
-        if folder.is_dir() and not any(folder.iterdir()):
-            folder.rmdir()
+        with _gone_if_empty(folder):
+            for path in paths:
+                assert path is not None
+                path.unlink(missing_ok=True)
     return ds
+
+
+@contextmanager
+def _gone_if_empty(folder: Path | None) -> Iterator[None]:
+    """Remove a folder in which nothing is left after the block."""
+    try:
+        yield
+    finally:
+        if folder is not None and folder.is_dir() and not any(folder.iterdir()):
+            folder.rmdir()
 
 
 @dataclass(frozen=True)
@@ -180,7 +185,10 @@ class _Common:
         """Where the life of a member is kept: a hash of all that it depends on."""
         if self.folder is None:
             return None
-        about = {**circumstances(scene, choose_backend(self.backend)), "settings": self.settings}
+        about = {
+            **circumstances(scene, choose_backend(self.backend, scene.run.method)),
+            "settings": self.settings,
+        }
         return self.folder / f"{name_of(scene, {**about, 'law': law.describe()})}.nc"
 
 
@@ -197,7 +205,7 @@ class _Member:
     message: str = ""
 
 
-def _follow(member: tuple[Scene, LossLaw], common: _Common, halted: Callable[[], bool] | None) -> _Member:
+def _follow(member: tuple[Scene, LossLaw], common: _Common) -> _Member:
     """Follow the life of a member, or read it where it is kept."""
     scene, law = member
     path = common.path(scene, law)
@@ -213,19 +221,12 @@ def _follow(member: tuple[Scene, LossLaw], common: _Common, halted: Callable[[],
             frequency=False,
             jobs=1,
             backend=common.backend,
-            progress=False if halted is None else partial(_halt, halted),
             archive=path,
             resume=path is not None,
         )
     except SolverError as error:
         return _Member("unfinished", np.nan, np.nan, np.nan, 0, "failed", str(error))
     return _member(ds)
-
-
-def _halt(halted: Callable[[], bool], done: float, of: int) -> None:
-    """End a life in a thread, which Ctrl-C does not reach, between two of its states."""
-    if halted():
-        raise KeyboardInterrupt
 
 
 def _member(ds: xr.Dataset) -> _Member:
@@ -244,30 +245,14 @@ def _followed(
     common: _Common,
     members: Sequence[tuple[Scene, LossLaw]],
     executor: Executor | None,
-    halted: Callable[[], bool] | None,
     report: SweepProgress,
 ) -> list[_Member]:
     """Follow all members, side by side where there is an executor."""
-    run = map if executor is None else executor.map
-    found = []
-    for each in run(_follow, members, [common] * len(members), [halted] * len(members)):
+    found: list[_Member] = []
+    for each in side_by_side(executor, _follow, members, [common] * len(members)):
         found.append(each)
         report(float(len(found)), len(members))
     return found
-
-
-@contextmanager
-def _halting(in_threads: bool) -> Iterator[Callable[[], bool] | None]:
-    """Tell the lives in our threads to end where this is left by an exception."""
-    if not in_threads:
-        yield None
-        return
-    event = threading.Event()
-    try:
-        yield event.is_set
-    except BaseException:
-        event.set()
-        raise
 
 
 def _folder(archive: str | os.PathLike[str] | None, *, overwrite: bool, resume: bool) -> Path | None:

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-import csv
 import os
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
-from gearidae.scene.literal import literal
+from gearidae.scene.literal import literal, read_toml
+from gearidae.scene.table_head import open_table
+from gearidae.scene.text_table import check_regular
 from gearidae.studies.observations import Observation
 
 __all__ = ["observation_of", "read_observations"]
 
 _OWN: Final = ("of", "value", "uncertainty", "misjudged")
 """What is said of an observation beside its conditions."""
+_LARGEST: Final = 10_000_000  # bytes
 
 
 def read_observations(path: str | os.PathLike[str]) -> list[Observation]:
@@ -44,12 +45,14 @@ def read_observations(path: str | os.PathLike[str]) -> list[Observation]:
     if source.suffix.lower() not in kinds:
         raise SceneError("observations", path, f"must be a file that ends in {' or '.join(kinds)}")
     try:
-        text = source.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
-        raise SceneError("observations", path, f"cannot be read ({reason})") from error
+        rows = list(kinds[source.suffix.lower()](source))
+    except SceneError:
+        raise
+    except (OSError, ValueError) as error:
+        reason = "is no text" if isinstance(error, UnicodeDecodeError) else error
+        raise SceneError("observations", path, f"cannot be read: {reason}") from error
     found = []
-    for number, given in enumerate(kinds[source.suffix.lower()](text, source), 1):
+    for number, given in enumerate(rows, 1):
         try:
             found.append(observation_of(given))
         except SceneError as error:
@@ -108,11 +111,9 @@ def _dotted(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
             yield f"{before}{name}", value
 
 
-def _tables(text: str, source: Path) -> list[Mapping[str, Any]]:
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError("observations", source, f"is no TOML: {error}") from None
+def _tables(source: Path) -> list[Mapping[str, Any]]:
+    check_regular(source, _LARGEST)
+    data = read_toml(source.read_text(encoding="utf-8-sig"))
     unknown = [name for name in data if name != "observation"]
     listed = data.get("observation", [])
     if unknown or not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):
@@ -123,15 +124,8 @@ def _tables(text: str, source: Path) -> list[Mapping[str, Any]]:
     return listed
 
 
-def _rows(text: str, source: Path) -> Iterator[Mapping[str, Any]]:
-    lines = (line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#"))
-    table = csv.DictReader(lines, skipinitialspace=True, strict=True)
-    try:
-        for row in table:
-            if None in row or None in row.values():
-                raise SceneError(
-                    "observations", source, f"has a row with other than {len(table.fieldnames or ())} cells"
-                )
-            yield {name.strip(): literal(cell.strip()) for name, cell in row.items() if cell.strip()}
-    except csv.Error as error:
-        raise SceneError("observations", source, f"is no CSV: {error}") from None
+def _rows(source: Path) -> Iterator[Mapping[str, Any]]:
+    table = open_table(source, largest=_LARGEST, names=lambda headings: "value" in headings)
+    for _, _, cells in table.rows():
+        given = zip(table.headings, cells, strict=True)
+        yield {name: literal(cell) for name, cell in given if cell}

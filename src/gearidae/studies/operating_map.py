@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, Outcome, sticking, verdict_codes
+from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.runs.running import prepare
 from gearidae.runs.sweep_plan import plan_sweep
@@ -33,6 +34,7 @@ _OUTCOME = {
 }
 
 
+@claims_archive
 def operating_map(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],

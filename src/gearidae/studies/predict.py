@@ -12,6 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.dataset import dimension_names
+from gearidae.archive.target import claims_archive
 from gearidae.runs.running import prepare
 from gearidae.studies.design import check_design
 from gearidae.studies.members import along_members, member_plan
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["posterior_draws", "predict"]
 
 
+@claims_archive
 def predict(
     scene: Scene,
     posterior: xr.Dataset,

@@ -13,11 +13,11 @@ from gearidae.analysis.ringing import characteristic_frequency
 from gearidae.analysis.verdict_codes import sticking, verdict_codes
 from gearidae.archive.keep import read_keep
 from gearidae.archive.select import runs
-from gearidae.archive.stack import held
-from gearidae.errors import Interrupted, SceneError
+from gearidae.errors import SceneError
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import kept_beside, run_plan
+from gearidae.scene.keys import scene_value
 from gearidae.studies.observations import RING, STICKS, Observation
 from gearidae.studies.study_run import KEPT, Execution
 
@@ -123,7 +123,7 @@ class Predictor:
         for first in range(0, len(scenes), size):
             part = list(scenes[first : first + size])
             axis: dict[str, list[Any]] = {"name": [f"run {first + number}" for number in range(len(part))]}
-            axis |= {key: [held(scene, key) for scene in part] for key in self._varied}
+            axis |= {key: [scene_value(scene, key) for scene in part] for key in self._varied}
             ds, interrupted = run_plan(
                 SweepPlan(self._base, (axis,), part),
                 self.kept,
@@ -135,12 +135,7 @@ class Predictor:
                 progress=progress,
             )
             if interrupted:
-                where = (
-                    ""
-                    if self.kept is None
-                    else "finished runs are kept beside the archive; go on with resume"
-                )
-                raise Interrupted(where, ds)
+                raise KeyboardInterrupt
             read += self._read(ds)
         return read
 

@@ -61,7 +61,7 @@ def read_product(
     try:
         found = loaded(source)
     except Exception as error:
-        raise SceneError(name, path, f"is damaged ({type(error).__name__})") from error
+        raise SceneError(name, path, f"is damaged ({error})") from error
     try:
         return check(found)
     except SceneError as error:

@@ -18,17 +18,20 @@ derivatives differ by counts too. If that is not good enough, the tolerance is m
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearidae.errors import SceneError
-from gearidae.runs.executors import check_executor
+from gearidae.runs.executors import check_executor, side_by_side
 from gearidae.runs.simulation import simulate
+from gearidae.scene.keys import scene_value
+from gearidae.studies.study_run import interruptible
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,7 +118,7 @@ def sensitivity(
         Size of the input that steps are measured by, in its SI unit; by default the input itself.
     backend : {'auto', 'native', 'sksundae'}, optional
     executor : Executor, optional
-        Has a ``map`` to run side by side, as that of `concurrent.futures.ThreadPoolExecutor`.
+        To run side by side, as that of `concurrent.futures.ThreadPoolExecutor`.
 
     Returns
     -------
@@ -126,6 +129,8 @@ def sensitivity(
     ------
     SceneError
         If the key is no number, is zero without a `scale`, or the run has no such figure.
+    Interrupted
+        On Ctrl-C.
 
     Examples
     --------
@@ -142,7 +147,8 @@ def sensitivity(
     best, before, runs = None, None, 0
     for rtol in _tolerances(scene.run.rtol):
         of_scene = _Runs(scene.replace({"run.rtol": rtol}), key, figure, backend, executor)
-        found = _differentiate(of_scene, middle, size, rtol)
+        with interruptible():
+            found = _differentiate(of_scene, middle, size, rtol)
         runs += found.runs
         if before is not None:
             more = _REMAINING * abs(found.value - before.value)
@@ -173,8 +179,8 @@ class _Runs:
 
     def __call__(self, inputs: Sequence[float]) -> list[float]:
         scenes = [self._scene.replace({self._key: value}) for value in inputs]  # refused before anything runs
-        run = map if self._executor is None else self._executor.map
-        return list(run(_run, scenes, [self._figure] * len(scenes), [self._backend] * len(scenes)))
+        figures, backends = [self._figure] * len(scenes), [self._backend] * len(scenes)
+        return list(side_by_side(self._executor, _run, scenes, figures, backends))
 
 
 def _run(scene: Scene, figure: Figure, backend: str) -> float:
@@ -210,21 +216,13 @@ def _differentiate(runs: _Runs, middle: float, size: float, rtol: float) -> Sens
 
 def _number(scene: Scene, key: str) -> float:
     """Return the number that a key holds."""
-    scene.replace({key: _held(scene, key)})  # names a key that there is not
-    value = _held(scene, key)
+    value = scene_value(scene, key)
+    scene.replace({key: value})  # names a key that there is not
+    if isinstance(value, str):
+        value = functools.reduce(getattr, key.split("."), scene)  # a gap in roughnesses is a length here
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise SceneError(key, str(value)[:40], "must hold a number to differentiate by")
     return float(value)
-
-
-def _held(scene: Scene, key: str) -> Any:
-    inside: Any = scene.to_dict()
-    for part in key.split("."):
-        if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
-            inside = inside[int(part)]
-        else:
-            inside = inside.get(part) if isinstance(inside, dict) else None
-    return inside
 
 
 def _figure(of: str | Figure) -> Figure:

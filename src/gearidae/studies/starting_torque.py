@@ -14,10 +14,11 @@ from scipy.optimize import brentq
 
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
-from gearidae.errors import SceneError
-from gearidae.runs.executors import check_jobs, own_executor
-from gearidae.runs.running import prepare, runs_in_threads, solve
+from gearidae.errors import SceneError, SolverError
+from gearidae.runs.executors import check_jobs, own_executor, side_by_side
+from gearidae.runs.running import prepare, runs_in_threads, solve_to_end
 from gearidae.studies.release import holding_forces
+from gearidae.studies.study_run import interruptible
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -122,6 +123,10 @@ def starting_torque(
     ------
     SceneError
         If the scene has no gears or a setting is not allowed.
+    SolverError
+        If a run could not be finished.
+    Interrupted
+        On Ctrl-C.
 
     Notes
     -----
@@ -143,13 +148,14 @@ def starting_torque(
         )
         for fraction in fractions
     ]
-    static = [static_starting_torque(each, impacts=impacts, lowest=lowest) for each in scenes]
-    searches = [
-        _Search(each, impacts, _lowest(each, lowest), torque)
-        for each, torque in zip(scenes, static, strict=True)
-    ]
-    if simulated:
-        _search_all(searches, tolerance, check_jobs(jobs), backend)
+    with interruptible():
+        static = [static_starting_torque(each, impacts=impacts, lowest=lowest) for each in scenes]
+        searches = [
+            _Search(each, impacts, _lowest(each, lowest), torque)
+            for each, torque in zip(scenes, static, strict=True)
+        ]
+        if simulated:
+            _search_all(searches, tolerance, check_jobs(jobs), backend)
     values: dict[str, tuple[list[float], str]] = {
         "static_torque": (static, "starting torque without inertia"),
         "simulated_torque": (
@@ -215,7 +221,7 @@ class _Search:
 
 def _search_all(searches: Sequence[_Search], tolerance: float, workers: int, backend: str) -> None:
     """Narrow all brackets, the runs of each round side by side."""
-    threads = runs_in_threads(backend)
+    threads = runs_in_threads(backend, searches[0].scene.run.method)
     with own_executor(workers if threads else 1, len(searches), releases_gil=threads) as executor:
         while True:
             asked = [(each, each.next_torque(tolerance)) for each in searches]
@@ -223,8 +229,7 @@ def _search_all(searches: Sequence[_Search], tolerance: float, workers: int, bac
             if not todo:
                 return
             arguments: list[list[Any]] = [list(column) for column in zip(*todo, strict=True)]
-            run = map if executor is None else executor.map
-            outcomes = run(_turns, *arguments, [backend] * len(todo))
+            outcomes = side_by_side(executor, _turns, *arguments, [backend] * len(todo))
             for (each, torque), turned in zip(todo, outcomes, strict=True):
                 each.learn(torque, turned)
 
@@ -250,7 +255,16 @@ def _turns(search: _Search, torque: float, backend: str) -> bool:
         "run.duration": _PATIENCE * duration,
         "run.samples": 101,
     }
-    angle = solve(scene.replace(changes), backend).samples.get("gear_angle", np.zeros(1))
+    solution = solve_to_end(scene.replace(changes), backend)
+    if solution.status != "finished":
+        raise SolverError(
+            f"the run at {_dry(scene) + torque:g} N m could not be finished: {solution.message or solution.status}",
+            time=solution.reached or 0.0,
+            state={},
+            last_event="not kept",
+            advice="try another rtol (run.rtol)",
+        )
+    angle = solution.samples["gear_angle"]
     return bool(angle.max() - angle[0] >= way)
 
 

@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -19,15 +20,17 @@ import xarray as xr
 
 from gearidae.archive import save
 from gearidae.archive.provenance import provenance
+from gearidae.archive.target import claims_archive
 from gearidae.archive.verdict import is_scheduled
-from gearidae.errors import Interrupted, SceneError
+from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import steady_speed
-from gearidae.runs.executors import check_executor, check_jobs, own_executor
+from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import prepare, runs_in_threads
 from gearidae.runs.sweeping import kept_beside
 from gearidae.scene.keys import find_key
+from gearidae.studies.study_run import interruptible
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
 if TYPE_CHECKING:
@@ -44,6 +47,7 @@ _PATIENCE = 1.5
 _USUAL = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
+@claims_archive
 def sticking_threshold(
     scene: Scene,
     over: str = "coating.sam_fraction",
@@ -114,27 +118,34 @@ def sticking_threshold(
     workers = check_jobs(jobs)
     base = base.replace({"run.duration": _window(base, exits)})
     kept = kept_beside(archive, base, backend, overwrite=overwrite, resume=resume)
-    threads = runs_in_threads(backend)
+    threads = runs_in_threads(backend, scene.run.method)
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
     most = 2 + (_PARTS - 1) * rounds * len(waits)
-    with (
-        sweep_progress(progress, most) as report,
-        own_executor(
-            workers if executor is None and (threads or jobs) else 1, most, releases_gil=threads
-        ) as own,
-    ):
-        pool = _Pool(base, over, exits, backend, executor or own, kept, lambda done: report(done, most))
-        interrupted = _search(pool, ends, waits, width)
-    ds = _dataset(scene, over, pool.runs, waits, ends, width)
-    if archive is not None and not interrupted:
-        save(ds, archive, overwrite=overwrite or resume)
-    if interrupted:
-        where = "" if archive is None else "finished runs are kept beside the archive; go on with --resume"
-        raise Interrupted(where, ds)
+    runs: list[ThresholdRun] = []
+
+    def so_far() -> xr.Dataset:
+        return _dataset(scene, over, runs, waits, ends, width)
+
+    with interruptible(None if kept is None else kept.folder, so_far):
+        with (
+            sweep_progress(progress, most) as report,
+            own_executor(
+                workers if executor is None and (threads or jobs) else 1, most, releases_gil=threads
+            ) as own,
+        ):
+            tell = partial(_tell, report, most)
+            _search(_Pool(base, over, exits, backend, executor or own, kept, tell, runs), ends, waits, width)
+        ds = so_far()
+        if archive is not None:
+            save(ds, archive, overwrite=overwrite or resume)
     if kept is not None:
         kept.remove()
     return ds
+
+
+def _tell(report: SweepProgress, most: int, done: int) -> None:
+    report(float(done), most)
 
 
 @dataclass
@@ -147,10 +158,8 @@ class _Pool:
     backend: str
     executor: Executor | None
     kept: KeptRuns | None
-    report: Callable[[float], None]
-
-    def __post_init__(self) -> None:
-        self.runs: list[ThresholdRun] = []
+    report: Callable[[int], None]
+    runs: list[ThresholdRun]
 
     def run(self, values: Sequence[float]) -> None:
         """Run the values that have not been run."""
@@ -160,34 +169,31 @@ class _Pool:
         taken = [None if self.kept is None else self.kept.take(each) for each in scenes]
         found = [None if each is None else each[0] for each in taken]
         left = [each for each, solution in zip(scenes, found, strict=True) if solution is None]
-        run = map if self.executor is None else self.executor.map
-        fresh = run(run_until, left, [self.exits] * len(left), [self.backend] * len(left))
+        fresh = side_by_side(
+            self.executor, run_until, left, [self.exits] * len(left), [self.backend] * len(left)
+        )
         for value, each, solution in zip(todo, scenes, found, strict=True):
-            if solution is None:
-                solution = next(fresh)
-                if self.kept is not None:
-                    self.kept.keep(each, solution)
-            self.runs.append(ThresholdRun.of(value, solution))
+            new = next(fresh) if solution is None else solution
+            self.runs.append(ThresholdRun.of(value, new))
+            if solution is None and self.kept is not None:
+                self.kept.keep(each, new)
             self.report(len(self.runs))
 
 
-def _search(pool: _Pool, ends: tuple[float, float], waits: Sequence[int], width: float) -> bool:
-    """Narrow the brackets of all numbers of exits; return whether Ctrl-C ended it early."""
-    try:
-        pool.run(ends)
-        _check_ends(pool, ends)
-        while True:
-            wanted: list[float] = []
-            for exits in waits:
-                sticks, passes = _bracket(pool.runs, exits)
-                if abs(passes - sticks) > width:  # never so of NaN
-                    inner = np.linspace(sticks, passes, _PARTS + 1)[1:-1]
-                    wanted += inner.tolist()
-            if not wanted:
-                return False
-            pool.run(wanted)
-    except KeyboardInterrupt:
-        return True
+def _search(pool: _Pool, ends: tuple[float, float], waits: Sequence[int], width: float) -> None:
+    """Narrow the brackets of all numbers of exits."""
+    pool.run(ends)
+    _check_ends(pool, ends)
+    while True:
+        wanted: list[float] = []
+        for exits in waits:
+            sticks, passes = _bracket(pool.runs, exits)
+            if abs(passes - sticks) > width:  # never so of NaN
+                inner = np.linspace(sticks, passes, _PARTS + 1)[1:-1]
+                wanted += inner.tolist()
+        if not wanted:
+            return
+        pool.run(wanted)
 
 
 def _bracket(runs: Sequence[ThresholdRun], exits: int) -> tuple[float, float]:

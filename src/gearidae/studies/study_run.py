@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+import xarray as xr
 
 from gearidae.archive import save
 from gearidae.archive.keep import read_keep
@@ -17,12 +21,10 @@ from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.sweeping import prepare_archive, run_plan, whole_archive
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from gearidae.progress import SweepProgress
     from gearidae.runs.sweep_plan import SweepPlan
 
-__all__ = ["KEPT", "Execution", "run_study"]
+__all__ = ["KEPT", "Execution", "interruptible", "run_study"]
 
 KEPT = ("extremes",)
 """What each run leaves behind, beside its verdict."""
@@ -49,6 +51,33 @@ class Execution:
     def __post_init__(self) -> None:
         check_jobs(self.jobs)
         check_executor(self.executor)
+
+
+@contextmanager
+def interruptible(
+    folder: Path | None = None, so_far: Callable[[], xr.Dataset] = xr.Dataset
+) -> Iterator[None]:
+    """Turn Ctrl-C into an `Interrupted` that says where finished runs are.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        Where finished runs are kept; without one nothing can be resumed.
+    so_far : callable, optional
+        Makes the dataset of what has been found.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        where = "nothing of it is kept"
+        if folder is not None:
+            where = f"finished runs are kept in {folder}; go on with --resume (resume=True)"
+        raise Interrupted(where, so_far()) from None
 
 
 def run_study(

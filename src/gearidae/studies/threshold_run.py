@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from gearidae.archive.stack import held
 from gearidae.errors import SceneError, SolverError
-from gearidae.runs.running import solve, unsolved
+from gearidae.runs.running import solve_to_end, unsolved
+from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -76,7 +76,7 @@ def run_until(scene: Scene, exits: int, backend: str) -> Solution:
     """
     duration, longest = scene.run.duration, _LONGEST * scene.run.duration
     while True:
-        solution = solve(scene.replace({"run.duration": duration}), backend)
+        solution = solve_to_end(scene.replace({"run.duration": duration}), backend)
         found = solution.extremes
         slow = found is not None and math.isnan(found.stick_time) and found.mesh_exits < exits
         if not slow or solution.status != "finished" or duration >= longest:
@@ -92,7 +92,7 @@ def value_of(scene: Scene, key: str) -> float:
     SceneError
         If it is no number.
     """
-    value = held(scene, key)
+    value = scene_value(scene, key)
     if not isinstance(value, int | float) or isinstance(value, bool):
         raise SceneError("over", key, "must be the key of a number")
     return float(value)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gearidae.contact.history import joined_height
+from gearidae.errors import SceneError
 from gearidae.mesh.involute import separation
 from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
@@ -43,11 +44,21 @@ class ToothRecord:
         The samples to take, at least one.
     events : slice
         Events among which all those of that time are.
+
+    Raises
+    ------
+    SceneError
+        If a sample is missing.
     """
 
     def __init__(self, run: xr.Dataset, scene: Scene, samples: slice, events: slice) -> None:
         def read(name: str, cut: slice = samples) -> NDArray[np.float64]:
             values: NDArray[np.float64] = run[name].variable[cut].values
+            if cut is samples and not (present := np.isfinite(values)).all():
+                number = samples.start + int(present.argmin())
+                raise SceneError(
+                    name, "nan", f"sample {number} is missing: the teeth's histories need every sample"
+                )
             return values
 
         assert scene.mesh is not None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import re
 import warnings
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,13 +14,19 @@ from numpy.typing import NDArray
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
+from gearidae.scene.table_head import open_table
+from gearidae.scene.text_table import check_regular
 from gearidae.scene.units import from_text
 
-__all__ = ["Scan", "read_scan"]
+__all__ = ["Scan", "read_lines", "read_scan"]
 
 _TEXTS = (".csv", ".txt", ".dat")
-_SEPARATORS = ";\t,"
-_FEW_LINES = 100
+_LARGEST = 2**32  # bytes
+_MOST_POINTS = 100_000_000
+_SAID = re.compile(r"\s*(width|height|value units?)\s*[:=]\s*(.*?)\s*", re.IGNORECASE)
+"""What Gwyddion writes above the numbers."""
+_HEIGHTS = re.compile(r"\s*(?:heights?|z)\s*[\[(]\s*([^\])]+?)\s*[\])]", re.IGNORECASE)
+"""A heading with the unit of the heights."""
 
 
 class Scan(NamedTuple):
@@ -43,10 +51,12 @@ def read_scan(path: str | os.PathLike[str], unit: str | None = None) -> Scan:
     ----------
     path : str or path-like
         ``.npy``, or a table of numbers in text (``.csv``, ``.txt``, ``.dat``), a row of the map in each line:
-        separated by commas, semicolons, tabs or blanks, comments after ``#``, empty cells and ``nan`` for holes. Any
-        other format, such as those of microscopes, is read by SurfaceTopography, if that is installed.
+        separated by commas, semicolons, tabs or blanks, remarks after ``#``, empty cells and ``nan`` for holes.
+        Remarks above the numbers may say the extent and the unit, as Gwyddion writes them (``Width: 2 um``,
+        ``Height: 2 um``, ``Value units: nm``), or the unit alone (``heights [nm]``). Any other format, such as those of
+        microscopes, is read by SurfaceTopography, if that is installed.
     unit : str, optional
-        Unit of the heights in ``.npy`` and text files; metres without one. Other formats carry their own.
+        Unit of the heights in a file that does not say it; metres without one in ``.npy`` and text files.
 
     Returns
     -------
@@ -55,54 +65,82 @@ def read_scan(path: str | os.PathLike[str], unit: str | None = None) -> Scan:
     Raises
     ------
     SceneError
-        If the file cannot be read, or its unit is not a length.
+        If the file cannot be read, its unit is not a length, or is another than the one given.
     """
     path = Path(path)
-    if not path.is_file():
-        raise SceneError("surface scan", path, "no such file")
     ending = path.suffix.lower()
     try:
-        if ending == ".npy" or ending in _TEXTS:
-            heights = np.load(path, allow_pickle=False) if ending == ".npy" else _table(path)
-            return Scan(np.asarray(heights, dtype=np.float64) * _factor(unit), None)
+        check_regular(path, _LARGEST)
+        if ending == ".npy":
+            return Scan(_array(path) * _factor(unit or "m"), None)
+        if ending in _TEXTS:
+            return _text(path, unit)
+    except SceneError:
+        raise
     except (ValueError, TypeError, EOFError, OSError) as error:
-        if isinstance(error, SceneError):
-            raise
-        raise SceneError("surface scan", path, f"is no table of heights: {shorten(str(error))}") from None
-    if unit is not None:
-        raise SceneError("unit", unit, f"is for .npy and text files; {path.name} carries its own")
-    return _by_surface_topography(path)
+        raise SceneError("surface scan", path, f"is no table of heights: {error}") from None
+    return _by_surface_topography(path, unit)
 
 
-def _factor(unit: str | None) -> float:
-    if unit is None:
-        return 1.0
+def read_lines(path: Path, unit: str | None = None) -> Scan:
+    """Read a height map with the lines of the scan as its rows; in SurfaceTopography they are its columns.
+
+    Parameters
+    ----------
+    path, unit
+        As for `read_scan`.
+
+    Returns
+    -------
+    Scan
+    """
+    scan = read_scan(path, unit)
+    if path.suffix.lower() in (".npy", *_TEXTS):
+        return scan
+    return Scan(scan.heights.T, None if scan.size is None else scan.size[::-1])
+
+
+def _factor(unit: str) -> float:
     try:
         return from_text(f"1 {unit}", "m")
     except ValueError as error:
         raise SceneError("unit", unit, str(error)) from None
 
 
-def _table(path: Path) -> NDArray[np.float64]:
-    """Read numbers in lines, separated by what the first of them has."""
-    import pandas as pd
-
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
-        lines = (line for line, _ in zip(file, range(_FEW_LINES), strict=False))
-        first = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
-    separator = next((char for char in _SEPARATORS if char in first.strip()), r"\s+")
-    table = pd.read_csv(
-        path, sep=separator, header=None, comment="#", skip_blank_lines=True, dtype=np.float64, engine="c",
-        encoding="utf-8-sig",
-    )  # fmt: skip
-    if first.rstrip().endswith(separator):  # a separator at the end of each line makes no column
-        table = table.iloc[:, :-1]
-    heights: NDArray[np.float64] = table.to_numpy()
-    return heights
+def _array(path: Path) -> NDArray[np.float64]:
+    """Read an array, whose header may declare more than the file has, or than there is memory for."""
+    declared = np.load(path, mmap_mode="r", allow_pickle=False)
+    if declared.size > _MOST_POINTS:
+        raise ValueError(f"has {declared.size} points; there may be {_MOST_POINTS}")
+    return np.asarray(declared, dtype=np.float64)
 
 
-def _by_surface_topography(path: Path) -> Scan:
-    """Read a microscope's file with heights and sizes in their units."""
+def _text(path: Path, unit: str | None) -> Scan:
+    """Read numbers in lines, with what remarks above them say of the unit of the heights and the extent."""
+    table = open_table(path, largest=_LARGEST)
+    said = {match[1].lower(): match[2] for text in table.remarks if (match := _SAID.fullmatch(text))}
+    own = (
+        said.get("value units")
+        or said.get("value unit")
+        or next((match[1] for text in table.remarks if (match := _HEIGHTS.match(text))), None)
+    )
+    factor = _factor(unit or own or "m")
+    if unit is not None and own is not None and not math.isclose(factor, _factor(own)):
+        raise SceneError("unit", unit, f"the heights are in {own}, as {path.name} says: leave the unit out")
+    extent = [_length(path, said[name]) for name in ("height", "width") if name in said]
+    return Scan(table.numbers(holes=True) * factor, (extent[0], extent[-1]) if len(extent) == 2 else None)
+
+
+def _length(path: Path, text: str) -> float:
+    try:
+        return from_text(text, "m")
+    except ValueError as error:
+        reason = f"has the length {shorten(text)} in its header: {error}"
+        raise SceneError("surface scan", path, reason) from None
+
+
+def _by_surface_topography(path: Path, unit: str | None) -> Scan:
+    """Read a microscope's file with heights and sizes in their units, as far as it has any."""
     try:
         from SurfaceTopography import read_topography
     except ImportError:
@@ -112,10 +150,18 @@ def _by_surface_topography(path: Path) -> Scan:
             path,
             f"is read by SurfaceTopography: pip install 'gearidae[surfaces]'; without it {endings} are read",
         ) from None
+    sized = True
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # some of its readers leave files open
-            scan: Any = read_topography(str(path)).to_unit("m")
+            try:
+                scan: Any = read_topography(str(path))
+            except ValueError as error:
+                if "physical_sizes" not in str(error):
+                    raise
+                scan, sized = read_topography(str(path), physical_sizes=(1.0, 1.0)), False
+            own = scan.unit
+            scan = scan if own is None else scan.to_unit("m")
             heights = np.ma.array(scan.heights(), dtype=np.float64, copy=True)
             sizes = scan.physical_sizes
     except Exception as error:  # each of its forty readers fails in its own way
@@ -124,4 +170,12 @@ def _by_surface_topography(path: Path) -> Scan:
         ) from error
     if np.ndim(heights) != 2:
         raise SceneError("surface scan", path, "holds a line scan; a map is needed")
-    return Scan(np.ma.filled(heights, np.nan), (float(sizes[0]), float(sizes[1])))
+    if own is not None and unit is not None:
+        raise SceneError("unit", unit, f"is for files without a unit; {path.name} carries its own, {own}")
+    if own is None and unit is None:
+        raise SceneError(
+            "unit", "(none)", f"is needed: {path.name} does not say in which unit its heights are"
+        )
+    factor = 1.0 if unit is None else _factor(unit)
+    extent = (float(sizes[0]), float(sizes[1])) if sized and own is not None else None
+    return Scan(np.ma.filled(heights, np.nan) * factor, extent)

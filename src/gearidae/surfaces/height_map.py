@@ -11,6 +11,7 @@ from scipy import ndimage, sparse
 from scipy.sparse import linalg
 
 from gearidae.errors import SceneError
+from gearidae.surfaces.lines import aligned_rows, line_noise
 
 __all__ = ["FEWEST_POINTS", "HeightMap", "height_map"]
 
@@ -20,7 +21,6 @@ Flags = NDArray[np.bool_]
 FEWEST_POINTS = 64
 """Points along each side of a map that are needed at least: sixteen wavelengths of four points."""
 _MOST_HOLES = 0.2
-_HIGHEST = 0.1  # m; rougher than that is no surface of a gear but a wrong unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,8 @@ class HeightMap:
         Slope of the plane that was taken out [1].
     curvature : float
         Largest curvature, in magnitude, of the paraboloid that was taken out [1/m].
+    rows_aligned : bool
+        Whether rows have been shifted against each other.
     """
 
     heights: Floats
@@ -46,11 +48,24 @@ class HeightMap:
     size: tuple[float, float]
     tilt: float
     curvature: float
+    rows_aligned: bool = False
 
     @property
     def spacing(self) -> float:
         """Distance of neighbouring points, the larger of both directions [m]."""
         return float(max(length / count for length, count in zip(self.size, self.heights.shape, strict=True)))
+
+    @property
+    def steepness(self) -> float:
+        """Root mean square of the slopes from point to point, along the direction in which it is larger [1]."""
+        steps = (np.sqrt(np.square(np.diff(self.heights, axis=axis)).mean()) for axis in (0, 1))
+        spacings = (length / count for length, count in zip(self.size, self.heights.shape, strict=True))
+        return float(max(step / spacing for step, spacing in zip(steps, spacings, strict=True)))
+
+    @property
+    def line_noise(self) -> tuple[float, float]:
+        """Root mean square offsets of rows and of columns against each other [m]; 0 where there is no line noise."""
+        return (0.0, 0.0) if self.rows_aligned else line_noise(self.heights, self.size)
 
     @property
     def hole_count(self) -> int:
@@ -63,7 +78,7 @@ class HeightMap:
         return float(self.holes.mean())
 
 
-def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
+def height_map(heights: Any, size: tuple[float, float], *, align_rows: bool = False) -> HeightMap:
     """Level a measured map and fill its holes.
 
     Parameters
@@ -72,6 +87,8 @@ def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
         Heights [m]; NaN, or masked, where there is none.
     size : tuple of float
         Extent along both indices [m].
+    align_rows : bool, optional
+        Whether to shift the rows so that the medians of their differences vanish.
 
     Returns
     -------
@@ -92,15 +109,12 @@ def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
             f"({100 * holes.mean():.3g} % missing)",
             f"at most {100 * _MOST_HOLES:g} % of the points may be missing",
         )
+    measured = aligned_rows(measured) if align_rows else measured
     shape, coefficients = _paraboloid(measured, holes)
     levelled = measured - shape
     spread = float(np.nanstd(levelled))
     if not spread > 1e-9 * float(np.nanmax(np.abs(measured))):
         raise SceneError("surface scan", "(flat)", "the heights lie on a paraboloid: there is no roughness")
-    if spread > _HIGHEST:
-        raise SceneError(
-            "surface scan", f"(rms {spread:.3g} m)", "heights must be in metres: give their unit"
-        )
     _, b, c, d, e, f = coefficients
     half = [length / 2 for length in size]
     slopes = (b / half[0], c / half[1])
@@ -111,7 +125,7 @@ def height_map(heights: Any, size: tuple[float, float]) -> HeightMap:
         ]
     )
     largest = float(np.abs(np.linalg.eigvalsh(second)).max())
-    return HeightMap(_filled(levelled, holes), holes, size, float(np.hypot(*slopes)), largest)
+    return HeightMap(_filled(levelled, holes), holes, size, float(np.hypot(*slopes)), largest, align_rows)
 
 
 def _read(heights: Any) -> Floats:

@@ -23,6 +23,8 @@ __all__ = ["MeasuredSurface", "surface_from"]
 
 _DIGITS = 4
 """Significant digits of the numbers that go into a scene: sampling leaves two or three."""
+_STEEPEST = 10.0
+"""Root mean square of the slopes from point to point that no surface has: measured ones are below 2."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,6 +75,7 @@ class MeasuredSurface:
         words = (
             f"{self.source}: {rows} x {columns} points, {size}; cut-off wavelength "
             f"{with_prefix(self._chosen(), 'm', 4)}; by {self.by}; {flanks}"
+            f"{'; rows aligned' if ds.attrs['rows_aligned'] else ''}"
         )
         return "".join(char if char.isprintable() else "_" for char in words)
 
@@ -80,6 +83,17 @@ class MeasuredSurface:
     def remarks(self) -> tuple[str, ...]:
         """What to know before trusting the numbers, in sentences: holes, few summits, heights that are not Gaussian."""
         return remarks(self.statistics, self.cutoff)
+
+    @property
+    def planes(self) -> str:
+        """Where the summits' mean plane lies, from which a scene's gaps count, in a sentence."""
+        at = self.statistics.sel(cutoff=self._chosen(), by=self.by)
+        height = float(at["summit_plane"])
+        return (
+            f"The summits' mean plane lies {with_prefix(height, 'm')} above the mean plane of the surface "
+            f"({height / float(at['rms_height']):.2f} rms heights); initial.gap and mesh.backlash count from the "
+            "summits' mean plane."
+        )
 
     def fragment(self) -> str:
         """Write the part of a case file that follows from the map, with how it was made.
@@ -101,6 +115,7 @@ class MeasuredSurface:
             f"Measured surface: {self.provenance}",
             f"Taken out: tilt {attributes['tilt_removed']:.3g}, curvature {attributes['curvature_removed']:.3g} 1/m.",
             f"By {other} instead: {_in_words(self._asperities(other))}.",
+            self.planes,
             *self.remarks,
         ]
         return "".join(f"# {line}\n" for line in lines) + dump_keys("surface", settings)
@@ -137,6 +152,7 @@ def surface_from(
     *,
     by: str = "summits",
     both_flanks: bool = False,
+    align_rows: bool = False,
     source: str = "height map",
 ) -> MeasuredSurface:
     """Analyse a measured height map.
@@ -159,6 +175,9 @@ def surface_from(
     both_flanks : bool, optional
         Put the roughness of both flanks, independent and of the same kind, into the one rough surface of the model:
         roughness times sqrt(2), tip radius over sqrt(2). By default the map is the rough flank, the other one smooth.
+    align_rows : bool, optional
+        Shift the rows against each other, so that the median of the differences between neighbours is zero: for lines
+        of a scan that drift or noise has offset. Waves along the columns that are about as long as the map are lost.
     source : str, optional
         Where the heights come from; goes into the scene.
 
@@ -181,7 +200,13 @@ def surface_from(
     if by not in METHODS:
         raise SceneError("by", shorten(by), f"must be {' or '.join(METHODS)}")
     extent = _extent(size, np.shape(heights))
-    surface = height_map(heights, extent)
+    surface = height_map(heights, extent, align_rows=align_rows)
+    if surface.steepness > _STEEPEST:
+        raise SceneError(
+            "surface scan",
+            f"(rms slope {surface.steepness:.3g})",
+            f"slopes above {_STEEPEST:g} come from a wrong unit: heights must be in metres; give their unit",
+        )
     chosen = None if cutoff is None else _length("cutoff", cutoff)
     asked = usual_cutoffs(surface)
     if chosen is not None:

@@ -22,7 +22,7 @@ _HEIGHT_FACTOR = 0.8968
 
 
 class Asperities(NamedTuple):
-    """Three numbers of a rough surface, as a scene has them.
+    """Numbers of a rough surface: three that a scene has, and where the summits lie.
 
     Attributes
     ----------
@@ -32,11 +32,15 @@ class Asperities(NamedTuple):
         Summits per area, N [1/m^2].
     radius : float
         Mean tip radius, beta: the inverse of the mean curvature of the summits [m].
+    plane : float
+        Height of the summits' mean plane above that of the surface [m]. A scene does not have it: its gaps count from
+        the summits' mean plane.
     """
 
     roughness: float
     density: float
     radius: float
+    plane: float = math.nan
 
 
 def from_moments(m0: float, m2: float, m4: float) -> Asperities:
@@ -59,9 +63,10 @@ def from_moments(m0: float, m2: float, m4: float) -> Asperities:
     .. math::
 
         N = \frac{m_4}{6\pi\sqrt{3}\,m_2}, \qquad \beta = \frac{3\sqrt{\pi}}{8\sqrt{m_4}}, \qquad
-        \sigma^2 = \left(1 - \frac{0.8968}{\alpha}\right) m_0 .
+        \sigma^2 = \left(1 - \frac{0.8968}{\alpha}\right) m_0, \qquad
+        \bar z_s = 4 \sqrt{\frac{m_0}{\pi\alpha}} .
 
-    Source: McCool 1986.
+    Sources: McCool 1986; for the summits' mean height :math:`\bar z_s` Nayak 1971.
     """
     if not (m0 > 0.0 and m2 > 0.0 and m4 > 0.0):
         return Asperities(math.nan, math.nan, math.nan)
@@ -70,4 +75,5 @@ def from_moments(m0: float, m2: float, m4: float) -> Asperities:
         roughness=math.sqrt(variance) if variance > 0.0 else math.nan,
         density=m4 / (6.0 * math.pi * math.sqrt(3.0) * m2),
         radius=3.0 * math.sqrt(math.pi) / (8.0 * math.sqrt(m4)),
+        plane=4.0 * m2 / math.sqrt(math.pi * m4),
     )

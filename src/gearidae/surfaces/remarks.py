@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearidae.scene.prefixes import with_prefix
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -46,6 +48,15 @@ def remarks(ds: xr.Dataset, cutoff: float | None) -> tuple[str, ...]:
         share = 100.0 * ds.attrs["hole_share"]
         many = "1 hole" if holes == 1 else f"{holes} holes"
         said.append(f"{many} ({share:.2g} % of the points) filled by interpolation and not counted.")
+    for lines, noise in zip(("rows", "columns"), ds.attrs["line_noise"], strict=True):
+        if noise:
+            remedy = (
+                "align_rows, --align-rows" if lines == "rows" else "of the transposed map with align_rows"
+            )
+            said.append(
+                f"Line noise: {lines} are offset against each other by {with_prefix(noise, 'm')} rms, which makes "
+                f"summits and slopes that the surface has not; align them ({remedy})."
+            )
     if cutoff is not None:
         at = ds.sel(cutoff=cutoff)
         said += [*_shape(at), *_sampling(at)]

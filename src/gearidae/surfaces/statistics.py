@@ -12,7 +12,7 @@ from scipy import ndimage, stats
 from gearidae.errors import SceneError
 from gearidae.surfaces.filtering import Field, band_limited, cosine_sum, grid_points
 from gearidae.surfaces.height_map import HeightMap
-from gearidae.surfaces.moments import from_moments
+from gearidae.surfaces.moments import Asperities, from_moments
 from gearidae.surfaces.summits import find_summits
 
 __all__ = ["METHODS", "allowed_cutoffs", "statistics", "usual_cutoffs"]
@@ -41,8 +41,9 @@ _VARIABLES = {
     "roughness": ("m", "rms height of the summits, sigma"),
     "asperity_density": ("m-2", "summits per area, N"),
     "asperity_radius": ("m", "mean tip radius, beta"),
+    "summit_plane": ("m", "height of the summits' mean plane above that of the surface"),
 }
-_BY_METHOD = ("roughness", "asperity_density", "asperity_radius")
+_BY_METHOD = ("roughness", "asperity_density", "asperity_radius", "summit_plane")
 
 
 def allowed_cutoffs(surface: HeightMap) -> tuple[float, float]:
@@ -112,6 +113,8 @@ def statistics(surface: HeightMap, cutoffs: NDArray[np.float64]) -> xr.Dataset:
             "hole_share": surface.hole_share,
             "tilt_removed": surface.tilt,
             "curvature_removed": surface.curvature,
+            "rows_aligned": int(surface.rows_aligned),
+            "line_noise": list(surface.line_noise),
         },
     )
 
@@ -137,10 +140,16 @@ def _analysed(surface: HeightMap, amplitudes: NDArray[np.float64], cutoff: float
     count = len(summits.heights)
     enough = count >= _FEWEST_SUMMITS
     area = wanted.sum() * field.spacing[0] * field.spacing[1]
+    mean = float(field.heights[wanted].mean())
     counted = (
-        (float(summits.heights.std(ddof=1)), count / area, 1.0 / float(summits.curvatures.mean()))
+        Asperities(
+            float(summits.heights.std(ddof=1)),
+            count / area,
+            1.0 / float(summits.curvatures.mean()),
+            float(summits.heights.mean()) - mean,
+        )
         if enough
-        else (np.nan,) * 3
+        else Asperities(np.nan, np.nan, np.nan, np.nan)
     )
     by_method = zip(counted, from_moments(m0, m2, m4), strict=True)
     return {

@@ -1,4 +1,4 @@
-"""A motor whose torque falls linearly with its speed, as that of a DC motor at constant voltage does."""
+"""A motor whose torque falls linearly with its speed, for example a DC motor at constant voltage."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def motor(t: float, speed: float, p: Parameters) -> float:
     Parameters
     ----------
     t : float
-        Time [s]; of no influence.
+        Time [s]; without influence.
     speed : float
         Angular speed of the shaft [rad/s].
     p : ndarray, shape (2,)

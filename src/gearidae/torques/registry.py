@@ -1,12 +1,14 @@
-"""The torque laws by their names: what ``drive.law`` and ``load.law`` may say.
+"""The torque laws by their names: the values of ``drive.law.name`` and ``load.law.name``.
 
-Every file of this folder that registers a law is found by itself. A law from elsewhere is registered in each process
-that uses it, before scenes are made that name it.
+Every file of this folder that registers a law is found automatically. Each process that uses a law from elsewhere has
+to register it before it makes scenes that name it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import inspect
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, TypeVar
 
@@ -18,6 +20,7 @@ from gearidae.registry import Registry
 
 __all__ = [
     "MOST_PARAMETERS",
+    "Parameter",
     "Parameters",
     "TorqueLaw",
     "register_torque",
@@ -30,85 +33,155 @@ Parameters: TypeAlias = NDArray[np.float64]
 Law = TypeVar("Law", bound=Callable[..., Any])
 
 MOST_PARAMETERS: Final = 10_000
-"""Parameters of one law."""
+"""Largest number of parameters of a law."""
 
 
 @dataclass(frozen=True, slots=True)
-class TorqueLaw:
-    """A law that is known by a name.
+class Parameter:
+    """A parameter that a case file gives by its name.
 
     Attributes
     ----------
     name : str
-        What ``drive.law.name`` and ``load.law.name`` call it.
+        Letters, digits and underscores; not ``name`` and not ``parameters``.
+    unit : str
+        SI unit in pint's spelling, ``"1"`` for a pure number; if empty, texts with any unit are turned into SI.
+    default : float, optional
+        Its value where none is given; without one it is required.
+    over_time : bool
+        Whether it may be a linear schedule, which holds its end values outside its knots. Only the last parameter may
+        be one. The law reads its knots (time, value), from its place to the end of the array; a number is one knot at
+        time 0.
+    description : str
+        What it means.
+    """
+
+    name: str
+    unit: str = ""
+    default: float | None = None
+    over_time: bool = False
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueLaw:
+    """A registered law.
+
+    Attributes
+    ----------
+    name : str
+        Its name in ``drive.law.name`` and ``load.law.name``.
     function : callable
-        ``function(t, speed, p)``: torque [N m] of time [s], angular speed of the shaft [rad/s] and parameters.
+        ``function(t, speed, p)`` or ``function(t, angle, speed, p)``: torque [N m] of time [s], angle [rad] and speed
+        [rad/s] of the shaft and parameters.
     parameters : int
-        How many parameters it takes.
+        Number of its parameters.
+    named : tuple of Parameter
+        The parameters, if they have names; empty for a list of numbers.
+    takes_angle : bool
+        Whether the function has four arguments.
     """
 
     name: str
     function: Callable[..., Any]
     parameters: int
+    named: tuple[Parameter, ...] = ()
+    takes_angle: bool = False
 
 
 _LAWS: Final = Registry[TorqueLaw]("gearidae.torques", "law.name", "torque law")
 
 
-def register_torque(name: str, *, parameters: int = 0) -> Callable[[Law], Law]:
-    """Make a torque law known by a name; a decorator of its function.
+def register_torque(name: str, *, parameters: int | Iterable[str | Parameter] = 0) -> Callable[[Law], Law]:
+    """Register a torque law by a name; a decorator of its function.
 
-    The function is ``torque(t, speed, p)`` with the time [s], the angular speed of the shaft [rad/s] and the array of
-    parameters, shape (parameters,); it returns the torque [N m]. It is compiled by numba when a scene first uses it,
-    so it may use floats, `math`, the array and other compiled functions, and must not raise. The torque is added to
-    the shaft's other torques: that of a drive turns the pinion forward, that of a load resists the gear's motion,
-    whichever way it goes (a negative sum counts as none), so that a viscous load is ``c abs(speed)``.
+    The function is ``torque(t, speed, p)`` or ``torque(t, angle, speed, p)`` with the time [s], angle [rad] and angular
+    speed [rad/s] of the shaft, and the array of parameters in SI units; it returns the torque [N m]. The angle counts
+    from the start of the first run of a chain, is not wrapped, and continues through continued and resumed runs. Numba
+    compiles the function when a scene first uses it. It may use floats, `math`, the array and other compiled
+    functions, and must not raise. The torque is added to the other torques of the shaft. The torque of a drive turns
+    the pinion forward. The torque of a load resists the motion of the gear in both directions (a negative sum counts
+    as zero), so that a viscous load is ``c abs(speed)``.
 
-    It must be continuous in time and speed and finite at rest; it is also called a ten-thousandth of the scene's
-    natural time unit before and after a time, at the speed then. What varies much faster than gears and contacts do
-    belongs in ``harmonic``, and what jumps in ``schedule``: steps follow those two by their frequencies and knots.
-    Newton's iteration leaves the law's slope in the speed out, which it can do while a shaft needs many steps to
-    follow the law.
+    It must be continuous in time, angle and speed and finite at rest. The engine also calls it a ten-thousandth of the
+    scene's natural time unit before and after a time, along the current motion. Use ``harmonic`` for a torque that
+    varies much faster than gears and contacts, in time or with the angle, and ``schedule`` for one that jumps: the
+    steps resolve their frequencies, orders and knots. Newton's iteration leaves out the slopes of the law, which is
+    allowed if a shaft needs many steps to follow the law.
 
     Parameters
     ----------
     name : str
         Letters, digits and underscores.
-    parameters : int, optional
-        How many parameters the law takes, all of which a scene has to give.
+    parameters : int or iterable of str or Parameter, optional
+        Number of parameters, which a scene gives as a list of numbers ``parameters``; or their names, under which a
+        scene gives numbers in SI units or texts with a unit. All are required but those with a default.
 
     Returns
     -------
     callable
-        The decorator; it returns the function as it is.
+        The decorator; it returns the function unchanged.
 
     Raises
     ------
     SceneError
-        If the name is none, or that of another law, or the number of parameters is none.
+        If the name is not an identifier, or that of another law, or the parameters are neither a number in range nor
+        names, or the function takes neither three nor four arguments.
 
     Examples
     --------
     >>> import gearidae as gd
-    >>> @gd.register_torque("brake", parameters=1)
+    >>> @gd.register_torque("brake", parameters=("coefficient",))
     ... def brake(t, speed, p):
     ...     return -p[0] * speed
+    >>> scene = gd.preset("teodorescu2009").replace(
+    ...     {"drive.law": {"name": "brake", "coefficient": "1e-15 N m s/rad"}}
+    ... )
     >>> gd.unregister_torque("brake")
     """
     if not isinstance(name, str) or not name.isidentifier():
         raise SceneError("law.name", name, "must be a word of letters, digits and underscores")
-    if not isinstance(parameters, int) or not 0 <= parameters <= MOST_PARAMETERS:
-        raise SceneError("parameters", parameters, f"must be a whole number in 0..{MOST_PARAMETERS}")
+    named = () if isinstance(parameters, int) else _named(parameters)
+    count = parameters if isinstance(parameters, int) else len(named)
+    if not 0 <= count <= MOST_PARAMETERS:
+        raise SceneError("parameters", count, f"must be a whole number in 0..{MOST_PARAMETERS}")
 
     def register(function: Law) -> Law:
-        _LAWS.add(name, TorqueLaw(name, function, parameters))
+        arguments = len(inspect.signature(getattr(function, "py_func", function)).parameters)
+        if arguments not in (3, 4):
+            raise SceneError(
+                "law.name", name, f"takes {arguments} arguments; must take t, speed, p or t, angle, speed, p"
+            )
+        _LAWS.add(name, TorqueLaw(name, function, count, named, takes_angle=arguments == 4))
         return function
 
     return register
 
 
+def _named(parameters: object) -> tuple[Parameter, ...]:
+    """Read the declaration of named parameters."""
+    if isinstance(parameters, str) or not isinstance(parameters, Iterable):
+        raise SceneError(
+            "parameters", parameters, f"must be a whole number in 0..{MOST_PARAMETERS} or a list of names"
+        )
+    named = tuple(one if isinstance(one, Parameter) else Parameter(one) for one in parameters)
+    names = [one.name for one in named]
+    for one in names:
+        if not isinstance(one, str) or not re.fullmatch(r"[^\W\d]\w*", one) or one in ("name", "parameters"):
+            raise SceneError(
+                "parameters",
+                one,
+                "must be a word of letters, digits and underscores, not name and not parameters",
+            )
+    if len(set(names)) < len(names):
+        raise SceneError("parameters", ", ".join(names), "must be names that differ")
+    if any(one.over_time for one in named[:-1]):
+        raise SceneError("parameters", ", ".join(names), "only the last one may be a schedule")
+    return named
+
+
 def unregister_torque(name: str) -> None:
-    """Take a law out again.
+    """Remove a law.
 
     Parameters
     ----------
@@ -123,7 +196,7 @@ def unregister_torque(name: str) -> None:
 
 
 def torque_names() -> tuple[str, ...]:
-    """Return the names of all torque laws, in the order of the alphabet."""
+    """Return the names of all torque laws in alphabetical order."""
     return _LAWS.names()
 
 

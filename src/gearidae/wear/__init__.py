@@ -1,7 +1,7 @@
 """Loss laws of a coating: one file a law, registered by its name.
 
 A new law is a new file here (or anywhere, if it is imported): a frozen dataclass that derives from `LossLaw` and is
-decorated with `register_loss`. `gearidae.studies.life` and `gearidae life` know it by its name then.
+decorated with `register_loss`. `gearidae.studies.life` and `gearidae life` then accept its name.
 """
 
 from gearidae.wear.arrhenius import Arrhenius

@@ -18,10 +18,10 @@ BOLTZMANN = 1.380649e-23
 
 @dataclass(frozen=True)
 class Arrhenius(LossLaw):
-    r"""Another law times :math:`\exp(-(E_a - p V_a) / k_B T)`, at most times one.
+    r"""Another law times :math:`\exp(-(E_a - p V_a) / k_B T)`; the factor is at most one.
 
-    The pressure p is the largest nominal one of the place; what a single asperity feels is larger by nominal over real
-    area of contact, which the activation volume has to include.
+    The pressure p is the largest nominal pressure of the place. The pressure of a single asperity is larger by the
+    ratio of nominal to real contact area, which the activation volume has to include.
     """
 
     name: ClassVar[str] = "arrhenius"
@@ -31,8 +31,8 @@ class Arrhenius(LossLaw):
     )
 
     law: LossLaw
-    activation_energy: float = parameter("J", "energy that a loss has to overcome, Ea")
-    activation_volume: float = parameter("m^3", "by which pressure lowers that energy, Va")
+    activation_energy: float = parameter("J", "energy barrier of a loss, Ea")
+    activation_volume: float = parameter("m^3", "decrease of that barrier per pressure, Va")
     temperature: float = parameter("K", "temperature", above=0.0)
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""What a loss law is: the rate at which coverage is lost, from what a flank is exposed to in one passage."""
+"""Base class of loss laws: the change of coverage in one passage, from the exposure of the flank."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Floats: TypeAlias = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Exposure:
-    """What places of the flanks are exposed to when a tooth passes through mesh once; arrays of one shape.
+    """Exposure of places of the flanks in one passage of a tooth through mesh; arrays of one shape.
 
     Attributes
     ----------
@@ -47,21 +47,21 @@ def parameter(unit: str, description: str, **limits: Any) -> Any:
 
 @dataclass(frozen=True)
 class LossLaw(ABC):
-    """A law of how a coating is lost; its fields are its parameters, declared with `parameter`.
+    """A law of the loss of a coating; its fields are its parameters, declared with `parameter`.
 
     Parameters may be given as texts with a unit.
 
     Attributes
     ----------
     name : str
-        What the law is called.
+        Name of the law.
     source : str
-        Where it comes from, and what is known of its parameters.
+        Its source, and the knowledge of its parameters.
 
     Raises
     ------
     SceneError
-        If a parameter is none.
+        If a parameter is not a number within its limits.
     """
 
     name: ClassVar[str]
@@ -81,13 +81,13 @@ class LossLaw(ABC):
 
     @classmethod
     def parameter_units(cls) -> dict[str, str]:
-        """Return the SI units of the parameters, without those of a law within this one."""
+        """Return the SI units of the parameters, without those of a nested law."""
         known = {each.name: each.metadata.get("quantity") for each in fields(cls)}
         return {name: quantity.unit for name, quantity in known.items() if quantity is not None}
 
     @abstractmethod
     def rate(self, fraction: Floats, exposure: Exposure) -> Floats:
-        """Return what one passage adds to the coverage (it is negative).
+        """Return the change of coverage in one passage, negative for a loss.
 
         Parameters
         ----------

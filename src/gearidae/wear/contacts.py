@@ -1,4 +1,4 @@
-"""Loss by asperity contacts: each contact takes some of the coating with a probability."""
+"""Loss by asperity contacts: each contact removes some of the coating with a probability."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The loss laws by their names: what ``gearidae life --law`` may say."""
+"""The loss laws by their names: the values of ``gearidae life --law``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LAWS: Final = Registry[type[LossLaw]]("gearidae.wear", "law", "loss law")
 
 
 def register_loss(law: Law) -> Law:
-    """Make a loss law known by its name; a decorator of its class.
+    """Register a loss law by its name; a decorator of its class.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def register_loss(law: Law) -> Law:
 
 
 def unregister_loss(name: str) -> None:
-    """Take a law out again.
+    """Remove a law.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def unregister_loss(name: str) -> None:
 
 
 def loss_law_names() -> tuple[str, ...]:
-    """Return the names of all loss laws, in the order of the alphabet."""
+    """Return the names of all loss laws in alphabetical order."""
     return _LAWS.names()
 
 
@@ -72,7 +72,7 @@ def loss_law(name: str, **parameters: Any) -> LossLaw:
     Raises
     ------
     SceneError
-        If there is no such law, or its parameters are others.
+        If there is no such law, or a parameter is unknown, missing or out of range.
 
     Examples
     --------

@@ -20,10 +20,10 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 
-__all__ = ["LARGEST_SHARE", "book_points", "follow_nodes", "init_nodes", "join_nodes"]
+__all__ = ["book_points", "follow_nodes", "init_nodes", "join_nodes"]
 
 _MOVED = 1e-5  # roughnesses; over less than this the share of a node in the motion is undefined
-LARGEST_SHARE = 4.0
+_LARGEST_SHARE = 4.0
 """Largest share of a node in the motion of its pair."""
 
 
@@ -48,7 +48,7 @@ def follow_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
     for i in range(m.scene.nodes):
         h = gap + profile[i] + y[first + i]
         if abs(moved) > _MOVED:
-            share[i] = min(max((h - before[i]) / moved, 0.0), LARGEST_SHARE)
+            share[i] = min(max((h - before[i]) / moved, 0.0), _LARGEST_SHARE)
         before[i] = h
 
 

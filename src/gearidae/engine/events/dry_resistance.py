@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.record import record
-from gearidae.engine.model.state import LOAD, Floats, Model, V, W
-from gearidae.engine.motion.residual import mesh_forces
-from gearidae.engine.torques.torque import torque_force
+from gearidae.engine.model.state import Floats, Model, W
+from gearidae.engine.motion.dry_limit import NO_FORCE, dry_limit, push_on_gear
 from gearidae.records import EventKind, Flank
 
 __all__ = ["dry_guard", "note_slip", "stick_or_slip"]
 
-_NO_FORCE: Final = 1e-12  # of the reference load: less than this neither holds a gear nor moves it from rest
 _STICK, _SLIP, _NO_FLANK = float(EventKind.STICK), float(EventKind.SLIP), float(Flank.NONE)
 
 
@@ -30,14 +26,7 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
 @compiled_once(SOLVER)
 def _hold_guard(m: Model, t: float, y: Floats) -> float:
     """What is left of the dry resistance of a gear held at rest."""
-    return max(torque_force(m, LOAD, t, 0.0), 0.0) + 2.0 * _NO_FORCE - abs(_push(m, t, y))
-
-
-@compiled_once(SOLVER)
-def _push(m: Model, t: float, y: Floats) -> float:
-    """Force on a gear at rest, from the mesh."""
-    force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
-    return force + m.scene.damping * y[V] + relief
+    return dry_limit(m, t, y) + 2.0 * NO_FORCE - abs(push_on_gear(m, t, y))
 
 
 @compiled(inline=True)
@@ -52,9 +41,9 @@ def stick_or_slip(m: Model, t: float, y: Floats, events: Floats, count: int) -> 
     """Set-valued dry resistance: it holds the gear up to its limit, and slips in the direction of the load."""
     y[W] = 0.0
     m.state.slipping = 0
-    push = _push(m, t, y)
+    push = push_on_gear(m, t, y)
     slipping = m.state.slip != 0.0
-    if slipping and abs(push) <= max(torque_force(m, LOAD, t, 0.0), 0.0) + _NO_FORCE:
+    if slipping and abs(push) <= dry_limit(m, t, y) + NO_FORCE:
         m.state.slip = 0.0
         return record(m, events, count, t, _STICK, 0, _NO_FLANK, 0.0)
     m.state.slip = 1.0 if push > 0.0 else -1.0

@@ -52,6 +52,7 @@ from gearidae.engine.formulas.quadrature import (
 )
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
     history_of,
@@ -107,8 +108,8 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q.gear_travel, q.gear_speed, q.gear_acceleration = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     _note_resistance(m, t, q.gear_travel, y, yp)
     q.pinion_travel, q.pinion_speed, q.pinion_acceleration = _pinion(m, y, yp)
-    q.drive, q.drive_rate = _torque(m, DRIVE, t, q.pinion_speed, q.pinion_acceleration)
-    q.load, q.load_rate = _torque(m, LOAD, t, y[W], yp[W])
+    q.drive, q.drive_rate = _torque(m, DRIVE, t, y, q.pinion_speed, q.pinion_acceleration)
+    q.load, q.load_rate = _torque(m, LOAD, t, y, y[W], yp[W])
     _sample_radius_power(m, t, y)
 
 
@@ -230,7 +231,7 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _book_drive(m, h, t, y, yp)
     if m.scene.dry != 0:
-        dry, more = _book_dry(m, h, t, gear - q.gear_travel, w, w_rate)
+        dry, more = _book_dry(m, h, t, gear - q.gear_travel, y, w_rate)
         error += more
         exchange += dry
     q.gear_travel, q.gear_speed, q.gear_acceleration = gear, w, w_rate
@@ -259,7 +260,7 @@ def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[fl
     """Add the work of the drive; return the pinion's speed, the work's magnitude and its error estimate."""
     q = m.work.quadrature
     pinion, speed, acceleration = _pinion(m, y, yp)
-    force, rate = _torque(m, DRIVE, t, speed, acceleration)
+    force, rate = _torque(m, DRIVE, t, y, speed, acceleration)
     work, error = torque_work(
         h,
         pinion - q.pinion_travel,
@@ -273,10 +274,10 @@ def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[fl
 
 
 @compiled(inline=True)
-def _book_dry(m: Model, h: float, t: float, travel: float, w: float, w_rate: float) -> tuple[float, float]:
+def _book_dry(m: Model, h: float, t: float, travel: float, y: Floats, w_rate: float) -> tuple[float, float]:
     """Add the loss by dry resistance; return its magnitude and its error estimate."""
-    q = m.work.quadrature
-    force, rate = _torque(m, LOAD, t, w, w_rate)
+    q, w = m.work.quadrature, y[W]
+    force, rate = _torque(m, LOAD, t, y, w, w_rate)
     if min(force, q.load) < 0.0:  # a dry resistance never pushes: what is left of a straight line
         most = max(force, q.load, 0.0)
         dry = 0.5 * most * most / abs(force - q.load) * travel if most > 0.0 else 0.0
@@ -379,7 +380,9 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
         for shaft in range(2):
             if not is_constant(m, shaft):
                 speed = y[W] if shaft == LOAD else y[V] + y[W]
-                total += abs(torque_force(m, shaft, t, speed + 1.0) - torque_force(m, shaft, t, speed))
+                angle = torque_angle(m, shaft, y[U], y[PHASE])
+                faster = torque_force(m, shaft, t, angle, speed + 1.0)
+                total += abs(faster - torque_force(m, shaft, t, angle, speed))
     return total
 
 
@@ -397,8 +400,11 @@ def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
 
 
 @compiled
-def _torque(m: Model, shaft: int, t: float, speed: float, acceleration: float) -> tuple[float, float]:
+def _torque(
+    m: Model, shaft: int, t: float, y: Floats, speed: float, acceleration: float
+) -> tuple[float, float]:
     """A torque over its base radius, and its rate along the motion of its shaft."""
     if is_constant(m, shaft):
         return m.scene.torque[shaft].constant, 0.0
-    return torque_force(m, shaft, t, speed), torque_rate(m, shaft, t, speed, acceleration)
+    angle = torque_angle(m, shaft, y[U], y[PHASE])
+    return torque_force(m, shaft, t, angle, speed), torque_rate(m, shaft, t, angle, speed, acceleration)

@@ -128,9 +128,11 @@ def _best(n: int, a: Record, h: float, error: float, weights: Floats) -> tuple[i
 @compiled(inline=True)
 def _excitation(m: Model) -> float:
     """Angular frequency of the fastest torque, or of the mesh where a pair may touch; no step turns it by more."""
-    if in_flight(m):
+    flying = in_flight(m)
+    if flying and m.scene.angle_omega == 0.0:
         return float(m.scene.torque_omega)
-    along = m.scene.mesh_omega * m.scene.phase_rate * abs(m.work.adams.new_state[W])
+    per_pitch = m.scene.angle_omega if flying else max(m.scene.mesh_omega, m.scene.angle_omega)
+    along = per_pitch * m.scene.phase_rate * abs(m.work.adams.new_state[W])
     return float(max(m.scene.torque_omega, along))
 
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.engine.model.record_types import INT, MATERIALS, REAL, SCHEDULES, SLOTS_HIGH, record_type
+from gearidae.records import RUN_PARTS
 
 __all__ = [
     "ENERGY",
     "EXTREMES",
     "HISTORY",
     "PART",
-    "PARTS",
     "PROGRESS",
     "STATE",
     "STOPS",
@@ -72,9 +72,6 @@ PROGRESS: Final = record_type(  # of a driver
 STOPS: Final = ("time", "sticks", "turns")
 """What ends a run, by number."""
 
-PARTS: Final = (0.05, 0.5, 0.95)
-"""Where the parts of a run begin over which speeds are judged, as shares of it: start-up, half, last twentieth."""
-
 PART: Final = record_type(  # of a run, from where it begins to where the run stands
     ("begun", INT),  # 1 once it has begun
     ("lowest", REAL),  # lowest speed of the gear [sigma/tau]
@@ -91,7 +88,7 @@ EXTREMES: Final = record_type(  # of a run so far, at accepted times and located
     ("bottom", REAL),  # lowest speed since start-up [sigma/tau]
     ("fall", REAL),  # how far the speed has fallen below `top` [sigma/tau]
     ("rise", REAL),  # how far it has risen above `bottom` [sigma/tau]
-    ("part", PART, (len(PARTS),)),  # parts of the run
+    ("part", PART, (len(RUN_PARTS),)),  # parts of the run
     ("reversals", INT),  # how often the speed has fallen to zero
     ("is_stuck", INT),  # 1 while the gear has not turned on by half a pitch since a reversal
     ("stuck_time", REAL),  # time of the first such reversal [tau]
@@ -111,6 +108,11 @@ EXTREMES: Final = record_type(  # of a run so far, at accepted times and located
 STATE: Final = record_type(
     ("time", REAL),  # last accepted time [tau]
     ("turns", REAL),  # whole pitches taken out of the phase [pb]
+    (
+        "first_place",
+        REAL,
+    ),  # position of the gear where a chain of runs began, where shafts' angles are 0 [pb]
+    ("first_lead", REAL),  # u + e there: lead of the pinion's base circle over the gear's [sigma]
     ("mark_low", REAL),  # phase of the nearest mesh entry or exit below the present one [pb]
     ("mark_high", REAL),  # phase of the nearest one above [pb]
     ("slip", REAL),  # direction of the gear's slip against dry resistance, -1 or +1; 0 while it is stuck

@@ -48,10 +48,14 @@ TORQUE: Final = record_type(
     ("constant", REAL),  # over the base radius [F]
     ("harmonic_count", INT),  # [1]
     ("harmonics_at", INT),  # amplitude, angular frequency and phase of each, among the tables [index]
+    ("order_count", INT),  # harmonics of the shaft's angle [1]
+    ("orders_at", INT),  # amplitude, order and phase of each, among the tables [index]
+    ("takes_angle", INT),  # 1 if the torque depends on the shaft's angle
     ("law_count", INT),  # parameters of the law, whose address is in `WORK` [1]
     ("law_at", INT),  # the parameters among the tables [index]
     ("law_torque", REAL),  # unit of the law's torque [N m]
     ("law_speed", REAL),  # unit of the shaft's speed [rad/s]
+    ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
 )
 
 SCHEDULE: Final = record_type(
@@ -130,11 +134,8 @@ SCENE: Final = record_type(
     ("by_place", INT),  # 1 where shares change with tooth and place and are not in the force scales
     ("patches", INT),  # 1 where the pinion's fractions are those of the interface
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
-    ("loadings_at", INT),  # their loading branches over the pair's gap, in forces, side by side [index]
-    ("potentials_at", INT),  # the potentials of these [index]
-    ("numbers_at", INT),  # and numbers of asperities above the gap [index]
-    ("loading_at", INT),  # loading branch of all materials together, in forces [index]
-    ("potential_at", INT),  # potential of that branch [index]
+    ("loading_at", INT),  # loading branch of all materials, or with `by_place` of each, in forces [index]
+    ("potential_at", INT),  # potentials of these branches [index]
     ("population", POPULATION),  # real asperities on the flanks
     ("slots", INT),  # histories per flank in use, a power of two [1]
     ("histories", INT),  # histories of all flanks [1]
@@ -186,6 +187,7 @@ SCENE: Final = record_type(
     ("root_spacing", REAL),  # times 1 + t [tau]
     ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]
     ("longest_step", REAL),  # that a cubic schedule allows, flat where a pulse is to come; 0 for any [tau]
+    ("angle_omega", REAL),  # highest angular frequency of the torques of an angle [rad/pb]
     ("mesh_omega", REAL),  # highest angular frequency along the mesh [rad/pb]
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
     ("balance_span", REAL),  # over which they may last [tau]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearidae.compiled import name_type
-from gearidae.engine.model.checkpoint_record import ENERGY, EXTREMES, HISTORY, PARTS, PROGRESS, STATE, STOPS
+from gearidae.engine.model.checkpoint_record import ENERGY, EXTREMES, HISTORY, PROGRESS, STATE, STOPS
 from gearidae.engine.model.record_types import (
     COAST,
     DRIVE,
@@ -53,7 +53,6 @@ __all__ = [
     "MATERIALS",
     "MOST_ORDERS",
     "MOTION",
-    "PARTS",
     "PHASE",
     "PROGRESS",
     "ROLLER",

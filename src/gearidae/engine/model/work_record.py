@@ -208,24 +208,6 @@ SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminat
     ("before_rate", REAL),  # of the gap [sigma/tau]
 )
 
-PART: Final = (
-    record_type(  # of a cell, one side: before + change u^3 (10 - 15 u + 6 u^2), u = (place - origin) scale
-        ("origin", REAL),
-        ("scale", REAL),
-        ("before", REAL),
-        ("change", REAL),
-    )
-)
-
-CELL: Final = (
-    record_type(  # where fractions change with tooth and place: those of a pair between middles of places
-        ("number", REAL),  # of the pair, counted without end,
-        ("low", REAL),  # and the way along the path of contact in pitches; none at first
-        ("high", REAL),
-        ("side", PART, (2,)),  # of the pinion and of the gear
-    )
-)
-
 CONTACT: Final = record_type(  # of a population: the candidates of a pair
     ("known", INT),  # 1 where they have been chosen for the pair of the history
     ("gap", REAL),  # down to which they hold [sigma]
@@ -243,7 +225,6 @@ CONTACT: Final = record_type(  # of a population: the candidates of a pair
 )
 
 WORK: Final = record_type(
-    ("cell", CELL, (2 * SLOTS_HIGH,)),
     ("quadrature", QUADRATURE),  # of the energy balance
     ("resistance", RESISTANCE),  # of the energy balance
     ("track", TRACK),  # of the extremes

@@ -6,11 +6,13 @@ import math
 
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import mesh_forces, roller_force
+from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.motion.residual import is_stuck, mesh_forces, resisting_force, roller_force
 from gearidae.engine.motion.separation import separation
+from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
 from gearidae.engine.population.forces import asperities_joined
+from gearidae.engine.torques.torque import torque_force
 from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
 
 __all__ = ["observe"]
@@ -69,6 +71,12 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         touching += gap < m.scene.contact_gap
     row[GEAR.drive_gap], row[GEAR.coast_gap] = drive_gap * length, coast_gap * length
     row[GEAR.pairs_in_contact] = touching
+    turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
+    drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
+    resistance = force + relief if is_stuck(m) else resisting_force(m, t, u, phase, w)
+    row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
+    row[GEAR.load_torque] = resistance * unit * radius
+    row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)
     if m.scene.population.flanks != 0:
         row[GEAR_POPULATION.asperities_in_contact], row[GEAR.pairs_in_contact] = asperities_joined(m)
     elif row.size > GEAR.min_separation:

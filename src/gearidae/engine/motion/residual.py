@@ -22,6 +22,7 @@ from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.energy.radius import radius_force
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import WHOLE, note_shares, path_position, shares_of
+from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
     gap_and_rate,
@@ -122,7 +123,7 @@ def mesh_forces(
             else:
                 load, stiffness = node_force(m, k, known, t, y, gap, rate, length)
         else:
-            shares = shares_of(m, k, coast, pair, inside)
+            shares = shares_of(m, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
             if m.scene.bins > 0:
                 note_force(m, k, pair, inside, (gap, rate), (load, stiffness))
@@ -168,11 +169,12 @@ def note_force(
 
 
 @compiled
-def resisting_force(m: Model, t: float, w: float) -> float:
+def resisting_force(m: Model, t: float, u: float, phase: float, w: float) -> float:
     """Resistance at the gear over R2, scaled: dry in the direction of slip, and both drags (Eq. 2)."""
     force = m.scene.drag * w * abs(w) + m.scene.viscous * w
     if m.scene.dry != 0 and m.state.slip != 0.0:
-        force += m.state.slip * max(torque_force(m, LOAD, t, w), 0.0)
+        angle = torque_angle(m, LOAD, u, phase)
+        force += m.state.slip * max(torque_force(m, LOAD, t, angle, w), 0.0)
     return force
 
 
@@ -208,7 +210,7 @@ def motion(
     if m.scene.error_count != 0:
         _, _, e1, e2 = static_error(m, u, phase)
         turn = (v + w) / (1.0 - e1)
-    drive = torque_force(m, DRIVE, t, turn)
+    drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
     if m.scene.error_count == 0:
         pinion = m.scene.pinion_inverse_mass * (drive - force)
     else:
@@ -216,7 +218,7 @@ def motion(
     if is_stuck(m):
         out[W] = yp[W]
     else:
-        out[W] = yp[W] - m.scene.gear_inverse_mass * (force + relief - resisting_force(m, t, w))
+        out[W] = yp[W] - m.scene.gear_inverse_mass * (force + relief - resisting_force(m, t, u, phase, w))
     out[V] = yp[V] + yp[W] - pinion
     out[PHASE] = yp[PHASE] - m.scene.phase_rate * w
     return force_u, force_phase, relief_u, relief_phase
@@ -297,8 +299,8 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     """dF/dy + cj dF/dy' of the motion, dense, column by column (Fortran order).
 
     The static error's own slopes are left out: it is small, and the Jacobian only steers Newton's iteration. So are the
-    slopes of a torque law in the speed: a shaft takes many steps to follow a mild law, and each iteration reduces what
-    is left by the ratio of a step to that time. A drive that holds a speed is not mild, and its slope is there.
+    slopes of a torque in angle and speed: a shaft takes many steps to follow a mild law, and each iteration reduces
+    what is left by the ratio of a step to that time. A drive that holds a speed is not mild, and its slope is there.
 
     Parameters
     ----------

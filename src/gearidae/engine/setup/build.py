@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -29,12 +28,13 @@ from gearidae.engine.model.state import (
     blank_model,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
-from gearidae.engine.pairs.tooth_pairs import contact_length
+from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
 from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_population import add_population, population_rows
 from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop
 from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
+from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.setup.tables import Tables
 from gearidae.engine.torques.law import law_address
 from gearidae.engine.torques.schedule import (
@@ -45,17 +45,8 @@ from gearidae.records import sampled_columns
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.limits import check_reach, pairs_within_reach
 
-__all__ = ["Begin", "make_problem"]
+__all__ = ["make_problem"]
 
-
-class Begin(NamedTuple):
-    """When a run begins [s], and how far the gear has turned by then in pitches, if it is not where the scene says."""
-
-    time: float = 0.0
-    place: float | None = None
-
-
-AT_ONCE = Begin()
 LIGHTER = 0.25
 """Roughnesses above the bound of the asperity model; below, contacts count as deep while bodies are elastic."""
 
@@ -65,7 +56,7 @@ def make_problem(
     nodes: Nodes | None = None,
     digest: tuple[float, ...] | None = None,
     columns: tuple[str, ...] | None = None,
-    begin: Begin = AT_ONCE,
+    start: Start = AT_ONCE,
     light_gap: float = math.inf,
 ) -> Problem:
     """Scale a scene and tabulate its force laws.
@@ -79,7 +70,7 @@ def make_problem(
         Of the scene whose checkpoints these are, if it is not this one.
     columns : tuple of str, optional
         What that scene samples.
-    begin : Begin, optional
+    start : Start, optional
         Of a run that goes on from another; the problem's own start is then of no use.
     light_gap : float, optional
         Gap in the middle of elastic contacts, in roughnesses, above which the asperity model would do.
@@ -91,26 +82,26 @@ def make_problem(
     """
     make_part_ready(SOLVER)
     build = _gear_problem if scene.roller is None else _roller_problem
-    problem = build(scene, nodes, begin)
+    problem = build(scene, nodes, start)
     problem.columns = columns or problem.columns
     problem.method = scene.run.method
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
     # handed on by value: a problem that referred to itself would wait for the garbage collector with all its tables
-    told = (problem.digest, problem.columns, begin)
+    same = (problem.digest, problem.columns, start)
     problem.model.scene.light_gap = light_gap
     count, lowest = int(problem.model.scene.nodes), float(problem.model.scene.lowest_gap)
     if count > 0:
         problem.depth = 1 if nodes is None else nodes.depth
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
-            problem.deeper = lambda: make_problem(scene, deeper, *told, light_gap)
+            problem.deeper = lambda: make_problem(scene, deeper, *same, light_gap)
     elif scene.contact.model == "auto":
         bodies, light = scene.replace({"contact.model": "elastic"}), lowest + LIGHTER
-        problem.elastic = lambda: make_problem(bodies, None, *told, light)
+        problem.elastic = lambda: make_problem(bodies, None, *same, light)
     return problem
 
 
-def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
+def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
     assert gears
     assert mesh
@@ -165,6 +156,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     relief = float(0.5 * s.relief_curvature * outside**2)
     u = float(s.half_backlash) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
+    model.state.first_place = start.mesh_phase
+    model.state.first_lead = u + static_error(model, u, start.mesh_phase)[1]
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
@@ -173,7 +166,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
     return _begun(model, scene, [u, 0.0, start.mesh_phase, w], skipped)
 
 
-def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Begin) -> Problem:
+def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     roller = scene.roller
     assert roller is not None
     sigma = scene.surface.roughness

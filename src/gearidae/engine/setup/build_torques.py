@@ -12,6 +12,7 @@ from gearidae.engine.torques.harmonic import pack_harmonics
 from gearidae.engine.torques.law import largest_torque
 from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule
 from gearidae.scene import Drive, Knots, Load, Scene
+from gearidae.torques import torque_law
 
 __all__ = ["add_torques", "reference_force", "set_run", "set_stop"]
 
@@ -28,7 +29,7 @@ def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
     if isinstance(shaft, Load):
         steady += shaft.viscous * abs(speed)
     if shaft.law is not None:
-        steady += largest_torque(shaft.law.name, shaft.law.parameters, speed, duration)
+        steady += largest_torque(shaft.law.name, shaft.law.numbers(), speed, duration)
     return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
 
 
@@ -76,16 +77,25 @@ def add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
     fastest = 0.0
     for shaft, law, radius in shafts:
         own, unit = s.torque[shaft], force * radius
-        harmonics = [(h.amplitude, h.frequency, h.phase) for h in law.harmonic]
+        harmonics = [(h.amplitude, h.frequency, h.phase) for h in law.harmonic if h.frequency is not None]
+        orders = [(h.amplitude / unit, h.order, h.phase) for h in law.harmonic if h.order is not None]
         own.constant = law.torque / unit
         own.harmonic_count, own.harmonics_at = (
             len(harmonics),
             tables.add(pack_harmonics(harmonics, tau, unit)),
         )
         own.law_torque, own.law_speed = unit, float(s.length_unit) / tau / radius
+        own.order_count, own.orders_at = len(orders), tables.add([x for one in orders for x in one])
+        own.angle_unit = float(s.length_unit) / radius
+        highest = max((order for amplitude, order, _ in orders if amplitude != 0.0), default=0.0)
         if law.law is not None:
-            own.law_count, own.law_at = len(law.law.parameters), tables.add(law.law.parameters)
-        fastest = max([fastest, *(h.frequency for h in law.harmonic)])
+            numbers = law.law.numbers()
+            own.law_count, own.law_at = len(numbers), tables.add(numbers)
+            if torque_law(law.law.name).takes_angle:
+                own.takes_angle, highest = 1, max(highest, 1.0)
+        own.takes_angle = int(own.takes_angle or bool(orders))
+        s.angle_omega = max(float(s.angle_omega), highest * float(s.base_pitch) / radius)
+        fastest = max([fastest, *(frequency for _, frequency, _ in harmonics)])
     speed = float(s.length_unit) / tau / float(s.pinion_radius)
     schedules = (
         (DRIVE, scene.drive.schedule, force * float(s.pinion_radius)),
@@ -98,9 +108,10 @@ def add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
             omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
             fastest = max(fastest, omega / (2.0 * math.pi * tau))
     set_run(s, tables, scene, knots, begin)
-    # a torque that knows the speed vibrates with it, and is looked at in each step
-    knows_speed = scene.drive.law is not None or scene.load.law is not None or s.speed_gain != 0.0
-    s.balance_steps = 1 if knows_speed else STRIDE
+    # a torque that knows the motion vibrates with it, and is looked at in each step
+    laws = scene.drive.law is not None or scene.load.law is not None
+    knows_motion = laws or s.speed_gain != 0.0 or s.torque["takes_angle"].any()
+    s.balance_steps = 1 if knows_motion else STRIDE
     s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
 
 
@@ -117,11 +128,12 @@ def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: 
 def set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: float) -> None:
     """Set start and end of the run, its knots and checkpoints, and what counts as chatter."""
     tau = float(s.time_unit)
-    s.start, s.end = begin / tau, (begin + scene.run.duration) / tau
+    start, end = begin / tau, (begin + scene.run.duration) / tau
+    s.start, s.end = start, end
     kept = {t / tau for t in scene.run.checkpoints}
-    times = sorted(t for t in knots | kept if s.start < t < s.end)
+    times = sorted(t for t in knots | kept if start < t < end)
     # of knots that the solver cannot tell apart the last one serves for all: schedules enter every segment up to it
-    following = [*times[1:], float(s.end)]
+    following = [*times[1:], end]
     apart: list[float] = []
     marks: list[float] = []
     marked = False

@@ -4,7 +4,8 @@ A checkpoint holds state only: a header (layout, scene, contact model, sizes), t
 of an elastic contact what its nodes remember, the exposures of the flanks where they are kept, and of a population the
 asperities that are joined, with a digest of all. Constants, offsets
 and addresses are made from the scene by the process that resumes, never read, and so is what follows from the state.
-Every number is compared with what the scene allows (`gearidae.engine.setup.checkpoint_checks`) before anything runs.
+What compiled code uses as an index, a count or a flag is bounded (`gearidae.engine.setup.checkpoint_checks`) before
+anything runs.
 """
 
 from __future__ import annotations
@@ -14,16 +15,10 @@ from typing import Final
 
 import numpy as np
 
-from gearidae.engine.elastic.kept_rows import KEPT_ROWS, check_rows, kept_rows, restore_rows
+from gearidae.engine.elastic.kept_rows import KEPT_ROWS, kept_rows, restore_rows
 from gearidae.engine.followers.exposures.bins import exposures_of
 from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, copied, empty_history
-from gearidae.engine.setup.checkpoint_checks import (
-    check_histories,
-    check_state,
-    current_pairs,
-    refused,
-    require,
-)
+from gearidae.engine.setup.checkpoint_checks import check, refused
 from gearidae.engine.setup.kept_asperities import asperity_words, joined_in, kept_asperities
 
 __all__ = [
@@ -96,7 +91,7 @@ def depth_of(checkpoint: Floats, digest: tuple[float, ...]) -> int:
 
 
 def unpack(m: Model, checkpoint: Floats, y: Floats) -> Floats:
-    """Take a checkpoint back, once all its numbers have been checked against the scene.
+    """Take a checkpoint back, once its bounds have been checked.
 
     Parameters
     ----------
@@ -115,7 +110,7 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> Floats:
     Raises
     ------
     SceneError
-        If a number is none that a run of this scene could have left.
+        If it is of another size, or `check` refuses it.
     """
     nodes = kept_rows(m).size
     count = (
@@ -132,13 +127,7 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> Floats:
     vector, rows = checkpoint[ends[1] : ends[2]].copy(), checkpoint[ends[2] :].copy()
     rows, exposures, asperities = np.split(rows, [nodes, nodes + int(m.scene.exposures)])
     joined = joined_in(m, asperities)
-    require(bool(np.isfinite(vector).all()), "the state vector", "finite numbers")
-    require(bool(np.isfinite(rows).all()), "the nodes", "finite numbers")
-    require(bool((exposures >= 0.0).all() and (exposures < 1e100).all()), "the exposures", "finite sums")
-    check_state(m, state, vector)
-    check_histories(m, state, vector)
-    fault = check_rows(m, state, vector, rows, current_pairs(m, state, vector))
-    require(not fault, "the nodes", fault)
+    check(m, state, vector, rows, exposures)
     assign(m.state, state)
     y[:] = vector
     restore_rows(m, rows)

@@ -1,4 +1,4 @@
-"""Harmonics of a torque: ``amplitude cos(omega t + phase)``."""
+"""Harmonics of a torque: ``amplitude cos(omega t + phase)``, and ``amplitude cos(order angle + phase)``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,14 @@ from collections.abc import Iterable
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model
 
-__all__ = ["fastest_harmonic", "harmonic_rate", "harmonic_value", "pack_harmonics"]
+__all__ = [
+    "fastest_harmonic",
+    "harmonic_rate",
+    "harmonic_value",
+    "order_rate",
+    "order_value",
+    "pack_harmonics",
+]
 
 
 def pack_harmonics(
@@ -46,6 +53,30 @@ def harmonic_rate(m: Model, shaft: int, t: float) -> float:
     rate = 0.0
     for _ in range(own.harmonic_count):
         rate -= m.tables[k] * m.tables[k + 1] * math.sin(m.tables[k + 1] * t + m.tables[k + 2])
+        k += 3
+    return rate
+
+
+@compiled
+def order_value(m: Model, shaft: int, angle: float) -> float:
+    """Sum of the harmonics of the shaft's angle [rad]."""
+    own = m.scene.torque[shaft]
+    k = own.orders_at
+    value = 0.0
+    for _ in range(own.order_count):
+        value += m.tables[k] * math.cos(m.tables[k + 1] * angle + m.tables[k + 2])
+        k += 3
+    return value
+
+
+@compiled
+def order_rate(m: Model, shaft: int, angle: float) -> float:
+    """Rate of change of these per radian."""
+    own = m.scene.torque[shaft]
+    k = own.orders_at
+    rate = 0.0
+    for _ in range(own.order_count):
+        rate -= m.tables[k] * m.tables[k + 1] * math.sin(m.tables[k + 1] * angle + m.tables[k + 2])
         k += 3
     return rate
 

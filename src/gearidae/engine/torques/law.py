@@ -30,9 +30,12 @@ __all__ = ["largest_torque", "law_address", "law_rate", "law_value"]
 STEP: Final = 1e-4
 """Over tau, by which a law's rate looks to either side: contacts vibrate with about a radian a tau."""
 LOOKS: Final = 65
-"""Times in a run at which the size of a law's torque is looked at."""
+"""Times in a run at which the size of a law's torque is looked at,"""
+ANGLES: Final = 24
+"""and angles of the shaft at each of them."""
 
 _SIGNATURE = types.float64(
+    types.float64,
     types.float64,
     types.float64,
     types.CPointer(types.float64),  # type: ignore[no-untyped-call]
@@ -57,7 +60,9 @@ def law_address(name: str) -> int:
 
 
 def largest_torque(name: str, parameters: Sequence[float], speed: float, duration: float) -> float:
-    """Largest size of a law's torque [N m] in a run, at rest and at a speed; values that are not finite do not count.
+    """Largest size of a law's torque [N m] in a run, at rest and at a speed, at angles all around.
+
+    Values that are not finite do not count.
 
     Parameters
     ----------
@@ -73,55 +78,70 @@ def largest_torque(name: str, parameters: Sequence[float], speed: float, duratio
     handed = numbers.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
     law = _callback(name).ctypes
     times = np.linspace(0.0, duration, LOOKS)
-    values = [abs(law(float(t), w, handed, numbers.size)) for t in times for w in (0.0, speed)]
+    angles = (
+        np.linspace(0.0, 2.0 * math.pi, ANGLES, endpoint=False) if torque_law(name).takes_angle else (0.0,)
+    )
+    values = [
+        abs(law(float(t), float(a), w, handed, numbers.size))
+        for t in times
+        for a in angles
+        for w in (0.0, speed)
+    ]
     return max((value for value in values if math.isfinite(value)), default=0.0)
 
 
 def _callback(name: str) -> Any:
     try:
-        return _compile(torque_law(name).function)
+        law = torque_law(name)
+        return _compile(law.function, law.takes_angle)
     except NumbaError as error:
         reason = str(error).strip().partition("\n")[0]
         raise SceneError("law.name", name, f"numba cannot compile this torque law: {reason}") from error
 
 
 @cache
-def _compile(function: Callable[..., Any]) -> Any:
+def _compile(function: Callable[..., Any], takes_angle: bool) -> Any:
     """Compile a law; what has been compiled stays, as its address may be in use."""
     law: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
 
-    def torque(t: float, speed: float, parameters: Any, count: int) -> float:
+    def torque(t: float, angle: float, speed: float, parameters: Any, count: int) -> float:
+        return law(t, angle, speed, carray(parameters, (count,)))
+
+    def torque_of_speed(t: float, angle: float, speed: float, parameters: Any, count: int) -> float:
         return law(t, speed, carray(parameters, (count,)))
 
-    return numba.cfunc(_SIGNATURE)(torque)
+    return numba.cfunc(_SIGNATURE)(torque if takes_angle else torque_of_speed)
 
 
-def _typed(typing: Any, address: Any, t: Any, speed: Any, numbers: Any, at: Any, count: Any) -> Any:
+def _typed(  # the arguments of the law, and where its parameters are
+    typing: Any, address: Any, t: Any, angle: Any, speed: Any, numbers: Any, at: Any, count: Any
+) -> Any:
     """Type of a call of the law at an address, and the code that makes it."""
     if numbers.layout != "C":
         raise TypingError(f"the array must be contiguous, and {numbers} may not be")
 
     def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        address, t, speed, numbers, at, count = values
-        array = context.make_array(signature.args[3])(context, builder, numbers)
-        handed = [t, speed, builder.gep(array.data, [at]), count]
+        address, t, angle, speed, numbers, at, count = values
+        array = context.make_array(signature.args[4])(context, builder, numbers)
+        handed = [t, angle, speed, builder.gep(array.data, [at]), count]
         kind = ir.FunctionType(ir.DoubleType(), [value.type for value in handed])
         return builder.call(builder.inttoptr(address, kind.as_pointer()), handed)
 
     real, whole = types.float64, types.int64
-    return real(whole, real, real, numbers, whole, whole), call
+    return real(whole, real, real, real, numbers, whole, whole), call
 
 
 _call: Any = intrinsic(_typed)
 
 
 @compiled
-def law_value(m: Model, shaft: int, t: float, speed: float) -> float:
-    """Torque of a shaft's law over base radius at a scaled time and speed, in units of the reference load."""
+def law_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> float:
+    """Torque of a shaft's law over base radius and reference load, at a scaled time and speed and an angle [rad]."""
     own = m.scene.torque[shaft]
     torque = _call(
         m.work.torque_law[shaft],
         t * m.scene.time_unit,
+        angle,
         speed * own.law_speed,
         m.tables,
         own.law_at,
@@ -131,9 +151,10 @@ def law_value(m: Model, shaft: int, t: float, speed: float) -> float:
 
 
 @compiled
-def law_rate(m: Model, shaft: int, t: float, speed: float, acceleration: float) -> float:
+def law_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float) -> float:
     """Rate of change of `law_value` along the motion, by a central difference; one-sided where the run begins."""
     low, high = max(t - STEP, 0.0), t + STEP
-    before = law_value(m, shaft, low, speed - (t - low) * acceleration)
-    after = law_value(m, shaft, high, speed + (high - t) * acceleration)
+    turn = speed * m.scene.torque[shaft].angle_unit
+    before = law_value(m, shaft, low, angle - (t - low) * turn, speed - (t - low) * acceleration)
+    after = law_value(m, shaft, high, angle + (high - t) * turn, speed + (high - t) * acceleration)
     return (after - before) / (high - low)

@@ -265,4 +265,4 @@ def _force(
     if m.scene.nodes > 0:
         note_shares(m, k, coast, pair, inside)
         return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
-    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
+    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, coast, pair, inside))

@@ -5,8 +5,15 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.followers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
 from gearidae.engine.followers.extremes.separations import follow_separation, note_separation
-from gearidae.engine.followers.extremes.speeds import follow_speed, next_part, note_speed, stand
+from gearidae.engine.followers.extremes.speeds import (
+    come_to_stand,
+    follow_speed,
+    next_part,
+    note_hold,
+    note_speed,
+)
 from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.motion.dry_limit import is_pulled_back
 from gearidae.engine.motion.separation import separation
 
 __all__ = ["begin", "note_present", "resume", "step"]
@@ -34,7 +41,7 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) 
         _set_point(m, here, t, y, yp)
         last, now = k.point[k.last], k.point[here]
         if m.scene.kind == GEARS:
-            follow_speed(m, last, now)
+            follow_speed(m, last, now, y)
         follow_separation(m, last, now, y)
         if k.smooth > 1:
             follow_force(m, k.point[k.last - 1 if k.last > 0 else 2], last, now, spare)
@@ -69,11 +76,13 @@ def note_present(m: Model, y: Floats) -> None:
 
 @compiled
 def resume(m: Model, t: float, y: Floats) -> None:
-    """Note that an event has brought the gear to rest."""
+    """Note that an event has brought the gear to rest, and that dry resistance holds it."""
     p = m.work.track.point[m.work.track.last]
     if m.scene.kind == GEARS and y[W] <= 0.0 < p.speed:
-        stand(m, t, y[PHASE] + m.state.turns)
+        come_to_stand(m, t, y[PHASE] + m.state.turns, is_pulled_back(m, t, y))
         p.speed = y[W]
+    if m.scene.dry != 0 and m.state.slip == 0.0:
+        note_hold(m, t)
 
 
 @compiled

@@ -14,6 +14,7 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.residual import mesh_forces, roller_force
+from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
 from gearidae.engine.torques.torque import torque_force
 
@@ -38,11 +39,12 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
     if in_flight(m):
         return m.scene.damping * y[V]
     acceleration, turn = yp[V] + yp[W], y[V] + y[W]
+    angle = torque_angle(m, DRIVE, y[U], y[PHASE])
     if m.scene.error_count == 0:
-        return torque_force(m, DRIVE, t, turn) - acceleration / m.scene.pinion_inverse_mass
+        return torque_force(m, DRIVE, t, angle, turn) - acceleration / m.scene.pinion_inverse_mass
     _, _, e1, e2 = static_error(m, y[U], y[PHASE])
     turn /= 1.0 - e1
-    drive = torque_force(m, DRIVE, t, turn)
+    drive = torque_force(m, DRIVE, t, angle, turn)
     pinion = (acceleration + e2 * turn * turn) / ((1.0 - e1) * m.scene.pinion_inverse_mass)
     return (drive - pinion) / (1.0 - e1)
 

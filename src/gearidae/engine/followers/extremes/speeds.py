@@ -12,9 +12,11 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
-from gearidae.engine.model.state import PARTS, Model, Record
+from gearidae.engine.model.state import Floats, Model, Record
+from gearidae.engine.motion.dry_limit import is_pulled_back
+from gearidae.records import RUN_PARTS
 
-__all__ = ["follow_speed", "next_part", "note_speed", "stand"]
+__all__ = ["come_to_stand", "follow_speed", "next_part", "note_hold", "note_speed"]
 
 HELD_WITHIN: Final = 0.5
 """Pitches that a gear must turn on by before it counts as free again."""
@@ -27,7 +29,7 @@ def note_speed(m: Model, w: float) -> None:
     """Note a speed; extremes have to come in the order of time."""
     e = m.state.extremes
     e.lowest_speed, e.highest_speed = min(e.lowest_speed, w), max(e.highest_speed, w)
-    for i in range(len(PARTS)):
+    for i in range(len(RUN_PARTS)):
         if e.part[i].begun != 0:
             e.part[i].lowest, e.part[i].highest = min(e.part[i].lowest, w), max(e.part[i].highest, w)
     if e.part[0].begun != 0:
@@ -38,26 +40,26 @@ def note_speed(m: Model, w: float) -> None:
 @compiled
 def next_part(m: Model) -> float:
     """Time at which the coming part of the run begins."""
-    for i in range(len(PARTS)):
+    for i in range(len(RUN_PARTS)):
         if m.state.extremes.part[i].begun == 0:
-            return float(m.scene.start + PARTS[i] * (m.scene.end - m.scene.start))
+            return float(m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start))
     return math.inf
 
 
 @compiled(inline=True)
-def follow_speed(m: Model, last: Record, now: Record) -> None:
-    """Follow the gear's speed from the last accepted time to this one, given as ``POINT``."""
+def follow_speed(m: Model, last: Record, now: Record, y: Floats) -> None:
+    """Follow the gear's speed from the last accepted time to this one, given as ``POINT`` and as a state."""
     if now.time >= m.work.track.next_part:
         _begin_parts(m, last, now)
     turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
     if turned or (now.speed <= 0.0 < last.speed):
-        _look_inside(m, last, now, turned)
+        _look_inside(m, last, now, y, turned)
     if m.state.extremes.is_stuck != 0 and now.position - m.state.extremes.stuck_position > HELD_WITHIN:
         m.state.extremes.is_stuck = 0  # it has turned on
 
 
 @compiled
-def _look_inside(m: Model, last: Record, now: Record, turned: bool) -> None:
+def _look_inside(m: Model, last: Record, now: Record, y: Floats, turned: bool) -> None:
     """Locate an extremum of the speed within a step, and where it falls to zero."""
     h, extreme = now.time - last.time, now.speed
     if turned:
@@ -65,9 +67,8 @@ def _look_inside(m: Model, last: Record, now: Record, turned: bool) -> None:
     if last.speed > 0.0 and min(now.speed, extreme) <= 0.0:
         share = _falls_to_zero(h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         time = last.time + share * h
-        stand(m, time, last.position + share * h * 0.5 * last.speed * m.scene.phase_rate)
-        if last.travel > 0.0:  # the drive flank is the nearer
-            _turn_back(m, time)
+        position = last.position + share * h * 0.5 * last.speed * m.scene.phase_rate
+        come_to_stand(m, time, position, is_pulled_back(m, now.time, y))
     if turned:
         note_speed(m, extreme)
 
@@ -94,23 +95,27 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
 
 
 @compiled
-def stand(m: Model, t: float, position: float) -> None:
-    """Note that the speed has fallen to zero."""
+def come_to_stand(m: Model, t: float, position: float, pulled: bool) -> None:
+    """Note that the speed has fallen to zero, and whether teeth that cling to each other turn the gear back there."""
     e = m.state.extremes
     e.reversals += 1
     note_speed(m, 0.0)
     if e.is_stuck == 0:
         e.is_stuck, e.stuck_time, e.stuck_position, e.stuck_exits = 1, t, position, e.mesh_exits
         e.turn_backs = 0
+    if pulled:
+        if e.turn_backs > 0:
+            e.adhering += t - e.turn_back_time
+        e.turn_backs, e.turn_back_time = e.turn_backs + 1, t
 
 
 @compiled
-def _turn_back(m: Model, t: float) -> None:
-    """Note that teeth which cling to each other have turned the gear back, where it has just come to stand."""
+def note_hold(m: Model, t: float) -> None:
+    """Note that dry resistance holds the gear: adhesion does not, from there on."""
     e = m.state.extremes
-    if e.turn_backs > 0:
+    if e.turn_backs > 1:
         e.adhering += t - e.turn_back_time
-    e.turn_backs, e.turn_back_time = e.turn_backs + 1, t
+    e.turn_backs = 0
 
 
 @compiled
@@ -118,8 +123,8 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
     """Begin those parts of the run whose time has come."""
     e, scale = m.state.extremes, m.scene.phase_rate
     h = now.time - last.time
-    for i in range(len(PARTS)):
-        time = m.scene.start + PARTS[i] * (m.scene.end - m.scene.start)
+    for i in range(len(RUN_PARTS)):
+        time = m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start)
         if e.part[i].begun != 0 or now.time < time:
             continue
         share = (time - last.time) / h if h > 0.0 else 1.0

@@ -1,4 +1,4 @@
-"""What a run of a sweep leaves behind, and runs that are solved elsewhere."""
+"""Results of the runs of a sweep, and runs that are solved elsewhere."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from gearidae.records import Solution
 from gearidae.runs.running import solve, unsolved
 from gearidae.scene import Scene
 
-__all__ = ["Left", "crashed", "leave", "solve_and_leave", "solve_group"]
+__all__ = ["RunResult", "crashed", "leave", "solve_and_leave", "solve_group"]
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
-    """What a run leaves behind.
+class RunResult:
+    """Result of a run in a sweep: what is kept of it, with its verdict.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Left:
 
 def solve_and_leave(
     scene: Scene, backend: str, keep: Keep, on_progress: Callable[[float, int], None] | None = None
-) -> Left:
+) -> RunResult:
     """Run a scene, judge it, and drop what is not kept, where it was run.
 
     Parameters
@@ -51,24 +51,24 @@ def solve_and_leave(
 
     Returns
     -------
-    Left
+    RunResult
     """
     return leave(scene, solve(scene, backend, on_progress), keep)
 
 
-def leave(scene: Scene, solution: Solution, keep: Keep) -> Left:
+def leave(scene: Scene, solution: Solution, keep: Keep) -> RunResult:
     """Judge a run and drop what is not kept of it."""
     if keep.names is None:
-        return Left(solution)
-    return Left(keep.thinned(solution), *verdict_of(scene, solution))
+        return RunResult(solution)
+    return RunResult(keep.thinned(solution), *verdict_of(scene, solution))
 
 
-def crashed(scene: Scene, error: Exception, keep: Keep) -> Left:
+def crashed(scene: Scene, error: Exception, keep: Keep) -> RunResult:
     """Return what is left of a run that died, such as of memory that ran out."""
     return leave(scene, unsolved("crashed", f"{type(error).__name__}: {error}"), keep)
 
 
-def solve_group(scenes: Sequence[Scene], backend: str, keep: Keep) -> list[Left]:
+def solve_group(scenes: Sequence[Scene], backend: str, keep: Keep) -> list[RunResult]:
     """Run scenes one after the other; one that dies is no end of the others.
 
     Parameters
@@ -80,10 +80,10 @@ def solve_group(scenes: Sequence[Scene], backend: str, keep: Keep) -> list[Left]
 
     Returns
     -------
-    list of Left
+    list of RunResult
         Up to the first that was interrupted.
     """
-    found: list[Left] = []
+    found: list[RunResult] = []
     for scene in scenes:
         try:
             found.append(solve_and_leave(scene, backend, keep))

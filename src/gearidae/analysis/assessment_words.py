@@ -1,0 +1,127 @@
+"""What an assessment of the coating says: why a record tells nothing, and what it rests on where it tells."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gearidae.analysis.fitting import SPEED_RANGE, Fit, RingSet
+from gearidae.analysis.map_model import BEFORE, MapModel
+from gearidae.analysis.ringing import Ring
+from gearidae.analysis.signal import Floats
+
+__all__ = [
+    "calibration_words",
+    "listed",
+    "misfit",
+    "other_speed",
+    "silence",
+    "stop_words",
+    "tone_words",
+    "torque_words",
+    "what_would_tell",
+]
+
+
+def silence(rings: list[Ring]) -> str:
+    """Why a record without ringing says nothing."""
+    why = (
+        "no mesh impact rings above the noise"
+        if any(math.isfinite(ring.time) for ring in rings)
+        else "the gear does not turn through a mesh impact"
+    )
+    return why + ", so the signal says nothing about the coating"
+
+
+def stop_words(stopped: str, rings: RingSet) -> str:
+    """Why a gear that stops says nothing by its ringing."""
+    return (
+        f"{stopped}: adhesion holds it, or nothing drives it; that impacts ring at {listed(rings.frequency)} Hz "
+        "then says nothing about the coating"
+    )
+
+
+def tone_words(rings: RingSet) -> str:
+    """Why a tone says nothing about the contact."""
+    return (
+        f"what stands out after the impacts, at {listed(rings.frequency)} Hz, is there before them too: a tone of "
+        "something else, and no response to the impacts"
+    )
+
+
+def calibration_words(spacing: float, calibration: float, frequencies: list[float]) -> str:
+    """Why a record whose bursts are no pitch apart says nothing."""
+    return (
+        f"impacts ring at {listed(np.array(frequencies))} Hz, but {spacing:.3f} pitches of the gear apart by the "
+        f"speed, which then reads {100.0 * abs(spacing - 1.0):.2g} % too {'high' if spacing > 1.0 else 'low'} where an "
+        f"error of {100.0 * calibration:.2g} % is assumed: correct the speed, or state its error"
+    )
+
+
+def other_speed(fit: Fit, model: MapModel, rings: RingSet) -> str:
+    """Say so if the gear turns so much faster or slower than in the map that this is no comparison."""
+    if model.torques is not None:
+        low, high = float(np.nanmin(model.speeds)), float(np.nanmax(model.speeds))
+        if low * (1.0 - rings.common) <= rings.speed <= high * (1.0 + rings.common):
+            return ""
+        return (
+            f"the gear turns at {rings.speed:.3g} rad/s where the map has {low:.3g} to {high:.3g} rad/s: another "
+            "torque"
+        )
+    expected = float(model.speeds[0, fit.best])
+    if not abs(rings.speed - expected) > SPEED_RANGE * expected:  # NaN where the map's own gear sticks
+        return ""
+    return (
+        f"the gear turns at {rings.speed:.3g} rad/s where the map has {expected:.3g} rad/s: another torque or load, "
+        "which shifts the frequencies"
+    )
+
+
+def what_would_tell(fit: Fit, model: MapModel, rings: RingSet) -> str:
+    """What else would tell fractions apart that explain a record alike."""
+    expected = float(model.speeds[0, fit.best])
+    if model.torques is None and abs(rings.speed - expected) > rings.common * expected:
+        return (
+            f"the gear turns at {rings.speed:.3g} rad/s where the map has {expected:.3g} rad/s, so the torque is "
+            "another; a map over drive.torque"
+        )
+    return "a record with more impacts, or from the start,"
+
+
+def torque_words(fit: Fit, model: MapModel, rings: RingSet) -> str:
+    """What the gear's speed says about the torque."""
+    if model.torques is not None:
+        return f", the torque being {model.torque_at(rings.speed):.3g} N m by the gear's speed"
+    expected = float(model.speeds[0, fit.best])
+    if not abs(rings.speed - expected) > rings.common * expected:
+        return ""
+    return (
+        f"; the gear turns at {rings.speed:.3g} rad/s where the map has {expected:.3g} rad/s, and the interval allows "
+        "for another torque"
+    )
+
+
+def misfit(fit: Fit, model: MapModel, rings: RingSet) -> tuple[str, str]:
+    """Verdict where no fraction explains a signal, and why."""
+    first = np.exp(model.sequences[..., BEFORE])
+    lowest, highest = float(np.nanmin(first)), float(np.nanmax(np.exp(model.sequences)))
+    at, measured = listed(rings.frequency), rings.frequency
+    if np.all(measured < lowest * (1.0 - 3.0 * rings.common)):
+        return (
+            "outside the map",
+            f"impacts ring at {at} Hz, lower than anything in the map (from {lowest:.4g} Hz)",
+        )
+    if measured[0] > float(np.nanmax(first)) and fit.best == 0:
+        why = (
+            f"impacts ring at {at} Hz, higher than the map's most worn coating, {fit.fractions[0]:.3g}, does "
+            f"(up to {highest:.4g} Hz): less is left, or the gears have run longer"
+        )
+        return "outside the map", why
+    return "does not fit", f"impacts ring at {at} Hz, a sequence that no SAM fraction of the map explains"
+
+
+def listed(frequencies: Floats) -> str:
+    """Show the first frequencies [Hz]."""
+    text = ", ".join(f"{value:.4g}" for value in frequencies[:5])
+    return text + (" ..." if len(frequencies) > 5 else "")

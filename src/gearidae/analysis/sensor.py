@@ -1,0 +1,95 @@
+"""What is known of a record beside its samples: where it begins, and how its sensor measures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from gearidae.analysis.signal import CALIBRATION
+from gearidae.errors import SceneError
+from gearidae.scene.group import shorten
+from gearidae.scene.quantity import Quantity
+
+__all__ = ["Sensor", "check_sensor"]
+
+_HISTORIES: Final = ("auto", "start", "unknown")
+_CALIBRATION: Final = Quantity(unit="1", at_least=0.0, at_most=0.1)
+_OFFSET: Final = Quantity(unit="rad/s", at_least=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Sensor:
+    """What is known of a record.
+
+    Attributes
+    ----------
+    history : str
+        ``auto``, ``start`` or ``unknown``.
+    cutoff : float
+        Cut-off frequency of the filter before the sampling [Hz]; infinite if none is known.
+    calibration : float
+        Relative standard uncertainty of the speed [1].
+    offset : float
+        Standard uncertainty of the speed's zero [rad/s].
+    """
+
+    history: str
+    cutoff: float
+    calibration: float
+    offset: float
+
+    def uncertainty(self, speed: float) -> float:
+        """Relative standard uncertainty at a speed [rad/s]."""
+        return math.hypot(self.calibration, self.offset / speed if speed > 0.0 else 0.0)
+
+
+def check_sensor(
+    history: str = "auto",
+    anti_alias_filter: float | None = None,
+    calibration: float | str = CALIBRATION,
+    offset: float | str = 0.0,
+) -> Sensor:
+    """Refuse what a sensor cannot be.
+
+    Parameters
+    ----------
+    history, anti_alias_filter, calibration, offset
+        As for `gearidae.analysis.assess`.
+
+    Returns
+    -------
+    Sensor
+
+    Raises
+    ------
+    SceneError
+        Naming the setting.
+    """
+    if history not in _HISTORIES:
+        raise SceneError("history", history, f"must be one of {', '.join(_HISTORIES)}")
+    return Sensor(
+        history,
+        _cutoff(anti_alias_filter),
+        _number("calibration", calibration, _CALIBRATION),
+        _number("offset", offset, _OFFSET),
+    )
+
+
+def _cutoff(anti_alias_filter: float | None) -> float:
+    if anti_alias_filter is None:
+        return math.inf
+    try:
+        cutoff = float(anti_alias_filter)
+    except (TypeError, ValueError):
+        cutoff = math.nan
+    if not cutoff > 0.0:
+        raise SceneError("anti_alias_filter", anti_alias_filter, "must be a frequency in Hz, above zero")
+    return cutoff
+
+
+def _number(name: str, value: float | str, allowed: Quantity) -> float:
+    try:
+        return allowed.read(value)
+    except ValueError as error:
+        raise SceneError(name, shorten(value), str(error)) from None

@@ -1,0 +1,192 @@
+"""Files to be written: refused before anything is computed if they cannot be, and then written whole or not at all."""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Final, ParamSpec, TypeVar
+
+from gearidae.archive.disk import DiskError, part_beside, sync
+from gearidae.archive.lock import claimed
+from gearidae.errors import SceneError
+
+__all__ = ["as_path", "check_target", "claims_archive", "claims_target", "whole_file"]
+
+_USUAL_LONGEST: Final = 255
+"""Bytes of a file's name, where the system does not say."""
+
+_CLAIMED: Final[ContextVar[frozenset[Path]]] = ContextVar("claimed", default=frozenset())
+"""Archives that the studies under way in this thread will save."""
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def as_path(path: str | os.PathLike[str], name: str = "archive") -> Path:
+    """Return a path whose name the libraries for files can write.
+
+    Parameters
+    ----------
+    path : path-like
+    name : str, optional
+        How the error calls it.
+
+    Raises
+    ------
+    SceneError
+        If it is no file name, or has characters that this locale's encoding lacks.
+    """
+    try:
+        place = Path(path)
+        str(place).encode(sys.getfilesystemencoding())
+    except TypeError as error:
+        raise SceneError(name, path, "must be a file name") from error
+    except UnicodeEncodeError:
+        shown = ascii(os.fspath(path)).strip("'\"")
+        allowed = f"must be a name in this locale's encoding ({sys.getfilesystemencoding()})"
+        raise SceneError(name, shown, allowed) from None
+    return place
+
+
+def check_target(
+    path: str | os.PathLike[str], *, overwrite: bool = False, name: str = "archive", remedy: str = ""
+) -> Path:
+    """Make sure, before anything is computed, that a file can be written.
+
+    Parameters
+    ----------
+    path : path-like
+        Where the file is to go.
+    overwrite : bool, optional
+        Whether a file that is there may be replaced.
+    name : str, optional
+        How the error calls the file.
+    remedy : str, optional
+        What the error advises where there is a file already.
+
+    Returns
+    -------
+    Path
+        The file to write, links followed.
+
+    Raises
+    ------
+    SceneError
+        If the file exists and may not be replaced, what is there is no regular file, or its folder is missing or cannot
+        be written to.
+    """
+    target = as_path(path, name)
+    if not target.parent.is_dir():
+        raise SceneError(name, path, f"there is no folder {target.parent}")
+    if target.name and len(os.fsencode(part_beside(target).name)) > _longest_name(target.parent):
+        raise SceneError(name, path, "is too long a name: the files beside it have longer ones")
+    if target.is_dir():
+        raise SceneError(name, path, "is a folder: name a file")
+    if target.exists() and not target.is_file():
+        raise SceneError(name, path, "is no regular file and cannot be replaced: name another")
+    if target.exists() and not overwrite:
+        usual = "name another with -o (archive=), or allow --overwrite (overwrite=True)"
+        raise SceneError(name, path, f"exists already: {remedy or usual}")
+    if not os.access(target.parent, os.W_OK | os.X_OK):
+        raise SceneError(name, path, f"the folder {target.parent} cannot be written to")
+    return Path(os.path.realpath(target))
+
+
+@contextmanager
+def claims_target(
+    path: str | os.PathLike[str], *, overwrite: bool = False, name: str = "archive", remedy: str = ""
+) -> Iterator[Path]:
+    """Hold the right to write a file from before it is checked until it is written, so that nobody else does meanwhile.
+
+    Parameters
+    ----------
+    path, overwrite, name, remedy
+        As for `check_target`.
+
+    Yields
+    ------
+    Path
+        The file to write, links followed.
+
+    Raises
+    ------
+    SceneError
+        As `check_target` does, or if another process or thread is writing the file.
+    """
+    with claimed(check_target(path, overwrite=True, name=name), name):
+        yield check_target(path, overwrite=overwrite, name=name, remedy=remedy)
+
+
+def claims_archive(study: Callable[P, R]) -> Callable[P, R]:
+    """Have a study hold the right to write its argument ``archive``, if that is given, to its end."""
+
+    @functools.wraps(study)
+    def claiming(*args: P.args, **kwargs: P.kwargs) -> R:
+        archive = kwargs.get("archive")
+        if archive is None:
+            return study(*args, **kwargs)
+        with claims_target(archive, overwrite=True) as target:  # type: ignore[arg-type]
+            token = _CLAIMED.set(_CLAIMED.get() | {target})
+            try:
+                return study(*args, **kwargs)
+            finally:
+                _CLAIMED.reset(token)
+
+    return claiming
+
+
+@contextmanager
+def whole_file(
+    path: str | os.PathLike[str],
+    *,
+    overwrite: bool = False,
+    name: str = "archive",
+    remedy: str = "",
+    ending: str = "",
+) -> Iterator[Path]:
+    """Let a file be written that appears whole or not at all.
+
+    Parameters
+    ----------
+    path, overwrite, name, remedy
+        As for `check_target`.
+    ending : str, optional
+        Which the file that is written first must have.
+
+    Yields
+    ------
+    Path
+        What to write: a file beside the target, which takes its place when it is whole and on the disk.
+
+    Raises
+    ------
+    SceneError
+        As `claims_target` does, unless a study of this thread has claimed the file; if the disk does not take the data.
+    """
+    target = check_target(path, overwrite=overwrite, name=name, remedy=remedy)
+    own = target in _CLAIMED.get()
+    with nullcontext() if own else claims_target(path, overwrite=overwrite, name=name, remedy=remedy):
+        part = part_beside(target.with_name(target.name.removesuffix(ending)), ending)
+        try:
+            yield part
+            sync(part)
+            part.replace(target)
+            sync(target.parent)
+        except (DiskError, OSError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise SceneError(name, path, f"could not be written ({reason})") from error
+        finally:
+            part.unlink(missing_ok=True)
+
+
+def _longest_name(folder: Path) -> int:
+    """Bytes that the name of a file in a folder may have."""
+    try:
+        return os.pathconf(folder, "PC_NAME_MAX")
+    except (AttributeError, OSError, ValueError):
+        return _USUAL_LONGEST
