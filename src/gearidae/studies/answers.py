@@ -15,7 +15,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.verdict_codes import Outcome
+from gearidae.analysis.verdict.codes import Outcome
 from gearidae.archive.select import scene_of
 from gearidae.scene import describe_key
 from gearidae.scene.prefixes import with_prefix

@@ -13,7 +13,6 @@ import xarray as xr
 
 from gearidae.archive import open_archive
 from gearidae.archive.dataset import dimension_names
-from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
@@ -212,7 +211,6 @@ def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
     if not head.startswith(_HEADERS):
         allowed = f"is no {about.words} but another kind of file; make one with {about.maker}"
         raise SceneError(_last(kind), path, allowed)
-    check_heaps(_last(kind), source)
     try:
         return loaded(source)
     except Exception as error:
