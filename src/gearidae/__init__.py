@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from gearidae.archive import open_archive, save
     from gearidae.archive.concat import concat
     from gearidae.errors import GearidaeError, Interrupted, SceneError, SolverError
+    from gearidae.population import population
     from gearidae.report import write_report
     from gearidae.runs.simulation import simulate
     from gearidae.runs.sweeping import sweep
@@ -46,6 +47,7 @@ __all__ = [
     "open_archive",
     "outcomes",
     "plot",
+    "population",
     "preset",
     "register_torque",
     "report",
@@ -80,6 +82,7 @@ _HOME: dict[str, str | None] = {
     "open_archive": "archive",
     "outcomes": "analysis.verdict",
     "plot": None,
+    "population": "population",
     "preset": "scene",
     "register_torque": "torques",
     "report": None,

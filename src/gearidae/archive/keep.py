@@ -13,12 +13,11 @@ from gearidae.archive.variables import (
     ENERGY_BALANCE,
     EVENTS,
     EXPOSURES,
-    EXTREMES,
     OF_SWEPT_RUN,
-    ROLLER_EXTREMES,
     RUN,
     VERDICT,
     columns,
+    extreme_names,
 )
 from gearidae.errors import SceneError
 from gearidae.records import Events, Solution
@@ -110,7 +109,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     if not isinstance(asked, Iterable):
         raise SceneError("keep", shorten(keep), "must be a list of variables, such as verdict or gear_speed")
     asked = list(asked)
-    extremes = list(EXTREMES if scene.roller is None else ROLLER_EXTREMES)
+    extremes = list(extreme_names(scene.roller is not None, scene.contact.model))
     members: dict[str, tuple[str, ...]] = {
         "verdict": tuple(VERDICT),
         "extremes": tuple(extremes),
@@ -151,4 +150,4 @@ def kept_in(attributes: Any, scene: Scene) -> Keep:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(scene.roller is not None, scene.contact.model == "elastic")
+    return columns(scene.roller is not None, scene.contact.model)

@@ -108,6 +108,20 @@ def _landmarks(zone: float) -> tuple[float, float, float, float]:
     return end, apart, least, pull
 
 
+@lru_cache(maxsize=64)
+def _detachment_energy(zone: float) -> float:
+    """Integral of the load over the displacement from free surfaces to the fold, in units of adhesion."""
+    fold = 8.0 * zone / (3.0 * math.pi)
+    radius = min(fold, 2.0 / (4.0 / 3.0 * zone**2 * (HALF_PI - 1.0) + math.sqrt(_zone_square(zone))))
+    apart = -HALF_PI * zone * (radius**4 / 4.0 - fold * radius**3 / 3.0)
+    end = _landmarks(zone)[0]
+    x, w = np.polynomial.legendre.leggauss(64)
+    half = 0.5 * math.log(end / Z_TOUCH)  # 0 where it lets go before it touches
+    z = Z_TOUCH * np.exp(half * (x + 1.0))
+    _, load, rate = branch_at(z, zone)
+    return float(apart + half * (w * z * load * rate).sum())
+
+
 def _zone_square(zone: float) -> float:
     """Discriminant of the zone's equation where the tip begins to touch."""
     return (4.0 / 3.0 * zone**2 * (HALF_PI - 1.0)) ** 2 + math.pi * zone
@@ -181,11 +195,14 @@ class Maugis(AsperityLaw):
         return 12
 
     @property
-    def kink(self) -> float:
-        """Where a tip that is drawn away ceases to touch before it lets go."""
-        join = -2.0 / (math.pi * self.zone)
-        _, touch, fold, _ = self._marks
-        return math.sqrt((touch - fold) / (join - fold)) if fold < touch < join else 1.0
+    def touch(self) -> float:
+        """Where a tip that is drawn away ceases to touch, if that is before it lets go."""
+        return self.length * self._marks[1]
+
+    @property
+    def detachment_energy(self) -> float:
+        """Energy at the fold: the integral along the unstable branch, without contact first, from no zone at all on."""
+        return self.length**2.5 * _detachment_energy(self.zone)
 
     def load(self, displacement: ArrayLike) -> Floats:
         """Load of an asperity on its stable branch; see `AsperityLaw.load`."""

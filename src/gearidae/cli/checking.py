@@ -163,7 +163,7 @@ def _run(scene: Scene) -> Rows:
     yield "Run", "", ""
     yield "duration", f"{run.duration * 1e3:g} ms", ""
     expected = run_time(scene)
-    numbers = 1 + len(columns(scene.roller is not None, scene.contact.model == "elastic"))  # with the time
+    numbers = 1 + len(columns(scene.roller is not None, scene.contact.model))  # with the time
     event = sum(np.dtype(variable.dtype).itemsize for variable in EVENTS.values())
     sizes = 8e-6 * numbers * run.sample_count, 1e-6 * event * expected.events
     yield "samples", f"{run.sample_count}", f"{sizes[0]:.3g} MB, and some {sizes[1]:.1g} MB of events"

@@ -14,6 +14,7 @@ from gearidae.compiled import compiles
 from gearidae.engine.changeover import change_over, deepen, lighten
 from gearidae.engine.continuing import checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.integrate.driver import Block, Ending
 from gearidae.engine.run_ends import Ended, OnBlock
 from gearidae.engine.setup.problem import Problem
@@ -209,13 +210,16 @@ def follow(
         ready_driver(name, problem)
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
-        resume, at_start = start.checkpoint, np.empty((0, 5))
+        resume, at_start = start.checkpoint, np.empty((0, EVENT_NUMBERS))
         if resume is None and start.scene is not None:
             resume = checkpoint_of_start(scene, start)
             at_start = knots_at_start(problem)
         for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
             if len(at_start):
-                block.events, at_start = np.concatenate([at_start, block.events]), np.empty((0, 5))
+                block.events, at_start = (
+                    np.concatenate([at_start, block.events]),
+                    np.empty((0, EVENT_NUMBERS)),
+                )
             take(block, statistics, start.wall_time + time.perf_counter() - started)
             reached = block.time
             balance, extremes = block.balance or balance, block.extremes or extremes
@@ -281,8 +285,8 @@ def solve(
     given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
-    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
-    rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
+    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
+    rows, events = [np.empty((0, len(columns)))], [np.empty((0, EVENT_NUMBERS))]
 
     def take(block: Block, statistics: Statistics, wall_time: float) -> None:
         rows.append(block.rows)
@@ -371,4 +375,5 @@ def _events(table: NDArray[np.float64]) -> Events:
         pair=table[:, 2].astype(np.int64),
         flank=table[:, 3].astype(np.int8),
         gap_rate=np.ascontiguousarray(table[:, 4]),
+        asperity=table[:, 5].astype(np.int64),
     )

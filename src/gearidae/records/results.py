@@ -26,8 +26,8 @@ class Block:
     ----------
     rows : ndarray, shape (n, columns)
         Samples after those of the previous block, SI units.
-    events : ndarray, shape (m, 5)
-        Time [s], kind, pair, flank, gap rate [m/s].
+    events : ndarray, shape (m, 6)
+        Time [s], kind, pair, flank, gap rate [m/s], asperity by its place on its flank or -1.
     time : float
         Simulated time reached [s].
     checkpoint : ndarray of 8-byte words, optional

@@ -192,6 +192,8 @@ def value_text(key: str, value: object) -> str:
 
 
 def _list(key: str, value: list[Any] | tuple[Any, ...]) -> str:
+    if key.startswith("contact.asperities."):
+        return f"{len(value)} cells"
     if value and isinstance(value[0], (list, tuple)) and key.endswith("_table"):
         return f"{len(value)} rows of {len(value[0])}"
     if value and isinstance(value[0], (list, tuple)):

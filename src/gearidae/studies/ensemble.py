@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.variables import EXTREMES, ROLLER_EXTREMES
+from gearidae.archive.variables import extreme_names
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution
 from gearidae.runs.running import prepare
@@ -124,7 +124,7 @@ def figure_names(scene: Scene) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    return ("sticks", "impacts", *(EXTREMES if scene.roller is None else ROLLER_EXTREMES))
+    return ("sticks", "impacts", *extreme_names(scene.roller is not None, scene.contact.model))
 
 
 def _check_figure(scene: Scene, of: str | None) -> None:

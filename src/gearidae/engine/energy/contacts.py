@@ -20,6 +20,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pair_at,
     pair_gap,
 )
+from gearidae.engine.population.forces import population_energy
 
 __all__ = ["free_energies", "joining_losses", "stored_energies", "stored_energy"]
 
@@ -40,6 +41,8 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
     stored, pending : float
         Scaled; the true stored energy is their difference.
     """
+    if m.scene.population.flanks != 0:
+        return population_energy(m, y), 0.0
     stored = pending = 0.0
     reach = all_pairs(m, y)
     for i in range(reach.total):

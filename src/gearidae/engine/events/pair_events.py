@@ -94,7 +94,7 @@ def take_event(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, 
     y : ndarray, shape (n,)
         State there.
     found : PairEvent
-    events : ndarray, shape (n, 5)
+    events : ndarray, shape (n, EVENT_NUMBERS)
     count : int
         See `gearidae.engine.events.record`.
     """

@@ -158,6 +158,8 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
+    if m.scene.population.flanks != 0:  # forces jump
+        return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
         return False
     if crossed_mark(m, y) or (m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0):

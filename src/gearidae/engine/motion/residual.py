@@ -33,6 +33,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_touching,
     static_error,
 )
+from gearidae.engine.population.forces import mesh_sums, roller_sum
 from gearidae.engine.torques.torque import torque_force
 
 __all__ = [
@@ -54,6 +55,8 @@ __all__ = [
 @compiled_once(SOLVER)
 def roller_force(m: Model, t: float, y: Floats, settling: bool) -> tuple[float, float]:
     """Force on a roller and its slope in the height, scaled; `settling` as for `mesh_forces`."""
+    if m.scene.population.flanks != 0:
+        return roller_sum(m, y)
     height, speed = y[U], y[V]
     elastic = m.scene.nodes > 0
     if elastic:
@@ -92,6 +95,8 @@ def mesh_forces(
     force_u, force_phase, relief_u, relief_phase : float
         Their partial derivatives in u and phase.
     """
+    if m.scene.population.flanks != 0:
+        return mesh_sums(m, y)
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
     u, v, phase, w = y[U], y[V], y[PHASE], y[W]
     cutoff = m.scene.cutoff

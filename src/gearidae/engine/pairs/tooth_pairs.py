@@ -12,7 +12,7 @@ tables are read, and nowhere else.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap, joined_height
@@ -40,6 +40,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.pairs.coverage import Shares, loading_of
 
 __all__ = [
+    "NO_PAIRS",
     "Reach",
     "all_pairs",
     "contact_length",
@@ -52,6 +53,7 @@ __all__ = [
     "pair_force",
     "pair_gap",
     "pairs_near",
+    "pairs_on_path",
     "pairs_touching",
     "set_joined",
     "static_error",
@@ -77,6 +79,9 @@ class Reach(NamedTuple):
     drive_count: int
     coast_first: int
     total: int
+
+
+NO_PAIRS: Final = Reach(0, 0, 0, 0)
 
 
 @compiled(inline=True)
@@ -134,6 +139,17 @@ def history_of(m: Model, coast: int, pair: int) -> int:
     """Index of a pair's history; they go round, with at least as many of them as pairs can be within reach."""
     slots = m.scene.slots
     return coast * slots + (pair & (slots - 1))
+
+
+@compiled
+def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
+    """First and last number of a flank's pairs on the path of contact.
+
+    The last two mesh marks tell, so that a step that ends at a mark sees the side it comes from.
+    """
+    between = 0.5 * (m.state.mark_low + m.state.mark_high)
+    lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
+    return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
 # -- kinematics ------------------------------------------------------------------------------------------------------

@@ -50,7 +50,7 @@ def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | 
         lowest, enough = rigid_limit(scene, bounds)
         model = "asperity" if enough else "elastic"
         s.lowest_gap = lowest
-    if model == "asperity":
+    if model in ("asperity", "population"):
         return None
     if nodes is None:
         deepest, count = min(deepest_gap(scene, bounds), 0.0), None
