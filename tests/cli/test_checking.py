@@ -11,8 +11,8 @@ import xarray as xr
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.cli.tables import show_outcomes
-from gearidae.cli.threshold import _rows as threshold_rows
 from gearidae.report.tables import outcome_table
+from gearidae.studies.answers import answer
 
 CASE = str(Path(__file__).parents[2] / "cases" / "low_speed.toml")
 
@@ -116,5 +116,5 @@ def test_digits_tell_the_ends_of_a_bracket_apart(sticks, passes, shown):
         },
         {"exits": [100], "run": [0.0]},
     )
-    found["limit"].attrs["units"] = unit
-    assert any(shown in remark for _, _, remark in threshold_rows(found, "drive.torque"))
+    found["limit"].attrs.update(units=unit, long_name="sticking limit of drive.torque")
+    assert any(shown in remark for _, _, remark in answer(found, "sticking_threshold").rows)

@@ -356,6 +356,27 @@ MUTANTS = (
         ("surfaces/test_measured.py",),
     ),
     Mutant(
+        "a row with more cells than there are headings taken for one without the last",
+        "scene/text_table.py",
+        "                    if len(cells) == width + 1 and not cells[-1]:",
+        "                    if len(cells) == width + 1:",
+        ("scene/test_text_table.py",),
+    ),
+    Mutant(
+        "a record cut at its first missing sample",
+        "analysis/signal.py",
+        "    end = len(values) - int(present[::-1].argmax()) if present.any() else 0",
+        "    end = len(values) if present.all() else int(present.argmin())",
+        ("analysis/test_ringing.py",),
+    ),
+    Mutant(
+        "impacts that are no pitch apart taken for those of a speed without error",
+        "analysis/impacts.py",
+        "    return spacing if told else 1.0",
+        "    return 1.0",
+        ("analysis/test_bad_records.py",),
+    ),
+    Mutant(
         "bands of a spectrum that add up their lines in place of the mean",
         "plot/bands.py",
         "means = np.add.reduceat(density[crowded], first) / count",

@@ -148,7 +148,7 @@ def test_cut_off_and_resumed_it_ends_alike(coverage, tmp_path):
     assert not folder_beside(target).exists()
     again = gd.studies.calibrate(LOW, COVERAGE, stuck, points=11, archive=target, resume=True)
     assert again.attrs["date_created"] == whole.attrs["date_created"]
-    with pytest.raises(gd.SceneError, match="something else"):
+    with pytest.raises(gd.SceneError, match="of another sweep or study"):
         gd.studies.calibrate(LOW, COVERAGE, stuck, points=12, archive=target, resume=True)
 
 

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from gearidae.analysis.online import OnlineAssessment
     from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies, impact_spectrum
     from gearidae.analysis.spectra import power_spectrum, spectrogram
-    from gearidae.studies.coating_map import coating_map, open_map
+    from gearidae.studies.coating_map import coating_map
     from gearidae.studies.equilibrium import contact_resonance
+    from gearidae.studies.products import open_map
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.tooth_contacts import tooth_contacts
 
@@ -50,7 +51,7 @@ _HOME = {
     "impact_frequencies": "ringing",
     "impact_spectrum": "ringing",
     "impact_windows": "impacts",
-    "open_map": "gearidae.studies.coating_map",
+    "open_map": "gearidae.studies.products",
     "power_spectrum": "spectra",
     "read_signal": "measured",
     "spectrogram": "spectra",

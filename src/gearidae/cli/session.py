@@ -25,7 +25,7 @@ __all__ = ["app", "session"]
 
 _WRITERS = (
     "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "report",
-    "run", "sweep", "threshold",
+    "run", "starting-torque", "sweep", "threshold",
 )  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 

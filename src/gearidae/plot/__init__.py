@@ -21,6 +21,7 @@ from gearidae.plot.posterior import posterior
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
 from gearidae.plot.surface import surface
+from gearidae.plot.threshold import sticking_threshold
 from gearidae.plot.torque import contact_torque
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ __all__ = [
     "spectrogram",
     "starting_torque",
     "sticking_probability",
+    "sticking_threshold",
     "surface",
     "teeth",
     "transmission_error",

@@ -16,7 +16,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.picture import PictureAxes, new_picture
 from gearidae.plot.style import POSITIVE, tidy
-from gearidae.studies.posterior_file import calibrated_keys
+from gearidae.studies.products import calibrated_keys
 
 __all__ = ["posterior"]
 

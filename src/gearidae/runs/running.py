@@ -16,7 +16,7 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "solve_to_end", "unsolved"]
+__all__ = ["early_end", "prepare", "solve", "solve_to_end", "unsolved"]
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
@@ -110,11 +110,6 @@ def solve_to_end(scene: Scene, backend: str, start: engine.Start = engine.AT_ONC
     if solution.status == "interrupted":
         raise KeyboardInterrupt
     return solution
-
-
-def runs_in_threads(backend: str, method: str) -> bool:
-    """Whether a backend solves outside Python's lock, so that threads of one process work side by side."""
-    return engine.choose_backend(backend, method) == "native"
 
 
 def unsolved(status: str, message: str) -> Solution:

@@ -151,7 +151,7 @@ def _asperities(rest: Rest) -> ValidityRow:
         parts = [(surface, share, offset) for surface, share, offset, _ in rest.contact.parts]
         needed = asperities_for_mean(rest.gap, parts, rest.contact.law)
         count = sum(_counts(rest))
-        limit = f"at least {_about(needed)} for a scatter of 10 %"
+        limit = f"at least {_about(needed)}"
         words = (
             "one pair's force is the mean to 10 %"
             if count >= needed

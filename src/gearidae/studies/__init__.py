@@ -17,18 +17,17 @@ if TYPE_CHECKING:
     from gearidae.runs.run_time import run_time
     from gearidae.runs.validity import validity
     from gearidae.studies.calibrate import calibrate
-    from gearidae.studies.coating_map import coating_map, open_map
+    from gearidae.studies.coating_map import coating_map
     from gearidae.studies.ensemble import ensemble
     from gearidae.studies.equilibrium import contact_resonance, natural_frequency
     from gearidae.studies.life import life
-    from gearidae.studies.life_file import open_life, open_lives
     from gearidae.studies.life_signals import assess_life
     from gearidae.studies.lives import lives
     from gearidae.studies.observation_files import read_observations
     from gearidae.studies.observations import Observation
     from gearidae.studies.operating_map import operating_map
-    from gearidae.studies.posterior_file import open_posterior
     from gearidae.studies.predict import predict
+    from gearidae.studies.products import open_life, open_lives, open_map, open_posterior
     from gearidae.studies.sensitivity import sensitivity
     from gearidae.studies.starting_torque import starting_torque, static_starting_torque
     from gearidae.studies.sticking_probability import sticking_probability
@@ -80,10 +79,10 @@ _HOME = {
     "lives": "lives",
     "ensemble": "ensemble",
     "natural_frequency": "equilibrium",
-    "open_life": "life_file",
-    "open_lives": "life_file",
-    "open_map": "coating_map",
-    "open_posterior": "posterior_file",
+    "open_life": "products",
+    "open_lives": "products",
+    "open_map": "products",
+    "open_posterior": "products",
     "operating_map": "operating_map",
     "predict": "predict",
     "read_observations": "observation_files",

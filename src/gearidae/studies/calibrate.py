@@ -6,19 +6,17 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive import save
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.provenance import provenance
-from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
+from gearidae.runs.execution import Execution, run_kept
 from gearidae.runs.running import prepare
 from gearidae.scene import describe_key
 from gearidae.studies.distributions import read_distributions
@@ -26,11 +24,11 @@ from gearidae.studies.ensemble import figure_names
 from gearidae.studies.observations import Observation
 from gearidae.studies.posterior import grid_posterior, sampled_posterior
 from gearidae.studies.predicting import Predictor
-from gearidae.studies.product_file import read_product
-from gearidae.studies.study_run import Execution, interruptible
+from gearidae.studies.products import open_posterior
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
+    from gearidae.runs.kept_runs import KeptRuns
     from gearidae.scene import Scene
 
 __all__ = ["calibrate"]
@@ -40,7 +38,6 @@ Floats = NDArray[np.float64]
 METHODS: Final = ("auto", "grid", "emcee")
 
 
-@claims_archive
 def calibrate(
     scene: Scene,
     priors: Mapping[str, Any],
@@ -111,14 +108,9 @@ def calibrate(
     keys = tuple(each.key for each in distributions)
     chosen = _check(method, len(keys), points, steps, seed)
     seen = _checked(observations, base, keys)
-    how = Execution(
-        executor=executor, jobs=jobs, backend=backend, archive=archive, overwrite=overwrite, resume=resume
-    )
-    about = _attributes(
-        base, distributions, seen, {"method": chosen, "points": points, "steps": steps, "seed": seed}
-    )
-    if resume and archive is not None and Path(archive).exists():
-        return _whole(Path(archive), about)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    settings = {"method": chosen, "points": points, "steps": steps, "seed": seed}
+    about = _attributes(base, distributions, seen, settings)
     predictor = Predictor(base, keys, seen, how)
 
     def likelihood(values: Floats, shown: bool | SweepProgress = False) -> Floats:
@@ -127,22 +119,22 @@ def calibrate(
         return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
 
     names = list(dimension_names(keys).values())
-    with interruptible(None if predictor.kept is None else predictor.kept.folder):
+
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        predictor.kept = kept
         if chosen == "grid":
             ds = grid_posterior(distributions, names, points, lambda values: likelihood(values, progress))
         else:
             with sweep_progress(progress, steps) as report:
                 allowed = _where_allowed(base, keys, likelihood)
                 ds = sampled_posterior(distributions, names, steps, seed, allowed, report)
-    for key, name in zip(keys, names, strict=True):
-        info = describe_key(key)
-        ds[name].attrs.update(long_name=f"{key}: {info.description}", units=info.unit)
-    ds = ds.assign_attrs(about)
-    if archive is not None:
-        save(ds, archive, overwrite=overwrite or resume)
-    if predictor.kept is not None:
-        predictor.kept.remove()
-    return ds
+        for key, name in zip(keys, names, strict=True):
+            info = describe_key(key)
+            ds[name].attrs.update(long_name=f"{key}: {info.description}", units=info.unit)
+        return ds.assign_attrs(about)
+
+    depends = {name: about[name] for name in ("scene", "source", "calibration")}
+    return run_kept(how, predictor.store, work, depends, read=open_posterior)
 
 
 def _where_allowed(scene: Scene, keys: tuple[str, ...], likelihood: Any) -> Any:
@@ -215,15 +207,3 @@ def _attributes(
         "summary": f"Posterior of {', '.join(each.key for each in priors)}, given {len(seen)} observations.",
         "calibration": json.dumps(told),
     }
-
-
-def _whole(path: Path, about: Mapping[str, Any]) -> xr.Dataset:
-    """Return the posterior in a file if it is this one."""
-
-    def check(ds: xr.Dataset) -> xr.Dataset:
-        if any(ds.attrs.get(name) != about[name] for name in ("scene", "source", "calibration")):
-            allowed = "exists and is of something else: name another, or allow --overwrite (overwrite=True)"
-            raise SceneError("archive", path, allowed)
-        return ds
-
-    return read_product(path, "archive", "posterior", "gearidae calibrate", check)

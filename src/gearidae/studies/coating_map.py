@@ -6,11 +6,10 @@ Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Fig. 10: one line f
 from __future__ import annotations
 
 import itertools
+import json
 import os
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
-from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,22 +17,22 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from gearidae.analysis.impacts import WIDTH, check_width
-from gearidae.analysis.map_model import require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
-from gearidae.archive import dimension_names, save
+from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
-from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.scene import describe_key
 from gearidae.scene.keys import scene_value
-from gearidae.studies.product_file import read_product
+from gearidae.studies.products import open_map
+from gearidae.studies.requirements import require_gears
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
+    from gearidae.runs.kept_runs import KeptRuns
     from gearidae.runs.sweep_plan import SweepPlan
     from gearidae.scene import Scene
 
-__all__ = ["coating_map", "open_map", "require_map"]
+__all__ = ["coating_map"]
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
 _FRACTION = "coating.sam_fraction"
@@ -51,7 +50,6 @@ _SLOWEST = {
 }
 
 
-@claims_archive
 def coating_map(
     scene: Scene,
     sam_fraction: ArrayLike | None = None,
@@ -116,44 +114,32 @@ def coating_map(
     >>> chart = gd.analysis.coating_map(scene, [1.0, 0.8, 0.6, 0.5])  # doctest: +SKIP
     """
     # reading and drawing maps must not wait for the solver
-    from gearidae.runs.executors import check_executor, check_jobs
-    from gearidae.runs.sweeping import prepare_archive, run_plan
-    from gearidae.studies.study_run import interruptible
+    from gearidae.runs.execution import Execution, origin_of, run_kept
+    from gearidae.runs.kept_runs import KeptRuns
+    from gearidae.runs.sweeping import run_plan
 
-    if getattr(scene, "gears", None) is None:
-        raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
+    require_gears(scene)
     fractions = _fractions(sam_fraction)
     width = check_width(width)
     keys = _further_keys(scene, over)
-    check_jobs(jobs)
-    check_executor(executor)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, scene.run.method)
     plans = _plans(scene, fractions, keys, backend)
-    scenes = [one for plan in plans for one in plan.scenes]
     numbers = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
-    expected = _attributes(scene, (_FRACTION, *keys), {}), {_FRACTION: fractions, **numbers}, width
-    kept, whole = prepare_archive(
-        archive, scenes, backend, partial(_whole, expected), overwrite=overwrite, resume=resume
+
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        # one line at a time: what is kept of a run is a few numbers of some megabytes
+        lines = [_line(run_plan(plan, how, kept), width) for plan in plans]
+        return _assembled(lines, numbers).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
+
+    settings = json.dumps({_FRACTION: fractions, **numbers, "width": width})
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, plans[0].base, how.driver),
+        work,
+        {**origin_of(scene), "settings": settings},
+        read=open_map,
+        scenes=[one for plan in plans for one in plan.scenes],
     )
-    if whole is not None:
-        return whole
-    runs, lines = xr.Dataset(), list[xr.Dataset]()
-    with interruptible(None if kept is None else kept.folder, lambda: runs):
-        for plan in plans:
-            # one line at a time: what is kept of a run is a few numbers of some megabytes
-            runs, interrupted = run_plan(
-                plan, kept if resume else None, kept, executor, backend=backend, jobs=jobs, progress=progress
-            )
-            if interrupted:
-                raise KeyboardInterrupt
-            lines.append(_line(runs, width))
-        chart = _assembled(lines, numbers).assign_attrs(
-            _attributes(scene, (_FRACTION, *keys), lines[0].attrs)
-        )
-        if archive is not None and kept is not None:
-            save(chart, archive, overwrite=overwrite or resume)
-    if kept is not None:
-        kept.remove(scenes)
-    return chart
 
 
 def _plans(
@@ -171,46 +157,6 @@ def _plans(
         )
         plans.append(plan_sweep(base, {_FRACTION: fractions}))
     return plans
-
-
-def _whole(expected: tuple[dict[str, Any], dict[str, list[Any]], float], target: Path) -> xr.Dataset:
-    """Return the map in a file if it is this one; refuse any other file."""
-    attributes, values, width = expected
-    chart = open_map(target)
-    names = dimension_names(tuple(values))
-    same = all(chart.attrs.get(name) == attributes[name] for name in ("scene", "source"))
-    same &= float(chart.attrs["width"]) == width
-    same &= all(
-        name in chart.coords and chart[name].values.tolist() == values[key] for key, name in names.items()
-    )
-    if not same:
-        raise SceneError(
-            "archive",
-            target,
-            "exists and is of another map, other settings or another version: name another, or allow "
-            "--overwrite (overwrite=True)",
-        )
-    return chart
-
-
-def open_map(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read a coating map that was saved.
-
-    Parameters
-    ----------
-    path : path-like
-        A netCDF file, from `gearidae.archive.save` or ``gearidae coating-map``.
-
-    Returns
-    -------
-    Dataset
-
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or is no coating map.
-    """
-    return read_product(path, "map", "coating map", "coating-map", require_map)
 
 
 def _fractions(given: ArrayLike | None) -> list[float]:

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.target import claims_archive
 from gearidae.archive.variables import extreme_names
 from gearidae.errors import SceneError
+from gearidae.runs.execution import Execution
 from gearidae.runs.running import prepare
+from gearidae.runs.sweeping import run_study
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.studies.design import Design, check_design, pick_freeze_design, plain_design
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.indices import Indices, indices_of
 from gearidae.studies.members import along_members, member_plan, names_of
-from gearidae.studies.study_run import Execution, run_study
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["ensemble", "figure_names"]
 
 
-@claims_archive
 def ensemble(
     scene: Scene,
     vary: Mapping[str, Any],
@@ -100,15 +99,7 @@ def ensemble(
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
     distributions = read_distributions(base, vary)
-    how = Execution(
-        executor=executor,
-        jobs=jobs,
-        backend=backend,
-        progress=progress,
-        archive=archive,
-        overwrite=overwrite,
-        resume=resume,
-    )
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
     texts = names_of(distributions)
     values = {each.key: drawn.values[:, number] for number, each in enumerate(distributions)}

@@ -4,7 +4,7 @@ A window is some mesh cycles at a coverage that does not change; what its flanks
 (`gearidae.engine.followers.exposures.follow`) gives, by a loss law, the rate at which coverage is lost. The rates are
 integrated over passages (`gearidae.studies.cycle_jump`) until the gear sticks in a window, a coverage or a number of
 passages is reached. Passages in which the coverage changes too fast for that are simulated cycle by cycle
-(`gearidae.studies.life_direct`).
+(`gearidae.studies.life_rates`).
 """
 
 from __future__ import annotations
@@ -19,21 +19,18 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive import save
-from gearidae.archive.target import claims_archive
-from gearidae.archive.verdict import is_scheduled
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.executors import check_executor, check_jobs, own_executor
-from gearidae.runs.running import prepare, runs_in_threads
-from gearidae.runs.sweeping import kept_beside
+from gearidae.runs.execution import Execution, origin_of, run_kept
+from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import prepare
 from gearidae.studies.cycle_jump import Life, jump
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_dataset import life_dataset
-from gearidae.studies.life_direct import DirectCycles
-from gearidae.studies.life_states import MOST_STATES, Seen, Windows
+from gearidae.studies.life_rates import MOST_STATES, DirectCycles, StateResult, Windows
 from gearidae.studies.life_window import Cycles, window_scene
-from gearidae.studies.study_run import interruptible
+from gearidae.studies.products import open_life
+from gearidae.studies.requirements import require_constant, require_gears
 from gearidae.wear import LossLaw
 
 if TYPE_CHECKING:
@@ -46,7 +43,6 @@ Floats: TypeAlias = NDArray[np.float64]
 _PLACES: Final = 8
 
 
-@claims_archive
 def life(
     scene: Scene,
     law: LossLaw,
@@ -145,42 +141,39 @@ def life(
     coverage = coverage_of(base, resolved, places)
     length = Cycles(settle, count, tolerance)
     window = window_scene(base, length, places)
-    check_executor(executor)
-    workers = check_jobs(jobs)
-    kept = kept_beside(archive, window, backend, overwrite=overwrite, resume=resume)
-    threads = runs_in_threads(backend, scene.run.method)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     found = Life()
+    windows = Windows(window, coverage, law, length, starts, backend)
+    direct = DirectCycles(windows)
 
-    def keep(ds: xr.Dataset) -> xr.Dataset:
-        if archive is not None and ds.sizes:
-            save(ds, archive, overwrite=overwrite or resume)
-        return ds
-
-    with sweep_progress(progress, MOST_STATES) as report:
-        windows = Windows(window, coverage, law, length, starts, backend, executor, kept, report)
-        direct = DirectCycles(windows)
-        with interruptible(
-            None if kept is None else kept.folder, lambda: keep(_so_far(scene, direct, found))
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        windows.kept = kept
+        with (
+            sweep_progress(progress, MOST_STATES) as windows.report,
+            how.computing(starts) as windows.executor,
         ):
-            with own_executor(
-                min(workers, starts) if executor is None else 1, starts, releases_gil=threads
-            ) as own:
-                windows.executor = executor or own
-                jump(
-                    windows.rate,
-                    coverage.start,
-                    passages=passages,
-                    tolerance=tolerance,
-                    least=fraction,
-                    bracket=bracket,
-                    direct=direct,
-                    life=found,
-                )
-                ds = _dataset(scene, direct, found, frequency=frequency)
-            keep(ds)
-    if kept is not None:
-        kept.remove()
-    return ds
+            jump(
+                windows.rate,
+                coverage.start,
+                passages=passages,
+                tolerance=tolerance,
+                least=fraction,
+                bracket=bracket,
+                direct=direct,
+                life=found,
+            )
+            return _dataset(scene, direct, found, frequency=frequency)
+
+    settings = [law.describe(), passages, fraction, resolved, places, cycles, settle, starts]
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, window, how.driver),
+        work,
+        {**origin_of(scene), "settings": json.dumps([*settings, tolerance, bracket, frequency])},
+        read=open_life,
+        so_far=lambda: _so_far(scene, direct, found),
+        prepared=lambda ds: ds,
+    )
 
 
 def _dataset(scene: Scene, direct: DirectCycles, found: Life, *, frequency: bool) -> xr.Dataset:
@@ -209,7 +202,7 @@ def _dataset(scene: Scene, direct: DirectCycles, found: Life, *, frequency: bool
     )
 
 
-def _seen(direct: DirectCycles, state: Floats) -> Seen:
+def _seen(direct: DirectCycles, state: Floats) -> StateResult:
     """What the windows of a state have shown, or its cycle where the coverage was followed cycle by cycle."""
     own = direct.seen.get(state.tobytes())
     if own is not None and not direct.windows.turns(state):
@@ -242,10 +235,8 @@ def _check(
     resolved: str,
 ) -> int:
     """Refuse what is not allowed; return the mesh cycles of a window that count."""
-    if scene.gears is None or scene.drive is None or scene.load is None:
-        raise SceneError("scene", scene.name, "must be a scene with gears")
-    if is_scheduled(scene.to_dict()):
-        raise SceneError("drive.schedule", "a schedule", "must not be there: the windows of a life are alike")
+    require_gears(scene)
+    require_constant(scene, "a life", "its windows stand for all passages")
     if not isinstance(law, LossLaw):
         raise SceneError("law", type(law).__name__, "must be a loss law, see gearidae.wear.loss_law")
     if not 0.0 < passages < math.inf:
@@ -261,5 +252,6 @@ def _check(
         if not 1e-8 <= size <= 0.1:
             raise SceneError(name, size, "must lie in 1e-08..0.1")
     cycles = numbers[1]
+    assert scene.gears is not None
     teeth = scene.gears.pinion_teeth
     return math.ceil(cycles / teeth) * teeth if resolved == "tooth" else cycles

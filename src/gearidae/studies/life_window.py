@@ -113,7 +113,7 @@ class Window:
     start: engine.Start | None = None
 
 
-def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bool]:
+def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, str]:
     """Run a window.
 
     Parameters
@@ -128,8 +128,8 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     -------
     solution : Solution
         Without events, and with the exposures of a block.
-    sticks : bool
-        Whether the gear has come to stand, or has not passed the cycles in its time.
+    word : str
+        ``sticks`` if the gear has come to stand, or has not passed the cycles in its time; else ``turns``.
 
     Raises
     ------
@@ -139,8 +139,8 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     window = steady_window(scene, cycles, backend)
     found = replace(window.solution, events=unsolved("", "").events, checkpoint=None)
     if window.exposures is None:
-        return found, True
-    return with_exposures(found, window.exposures), False
+        return found, "sticks"
+    return with_exposures(found, window.exposures), "turns"
 
 
 def with_exposures(found: Solution, exposures: Floats) -> Solution:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+import re
+import shutil
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
@@ -15,23 +17,22 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive import check_target, dimension_names, save
+from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
-from gearidae.archive.target import claims_archive
 from gearidae.engine import choose_backend
 from gearidae.errors import SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
+from gearidae.runs.execution import Execution, origin_of, run_kept
+from gearidae.runs.executors import side_by_side
 from gearidae.runs.kept_runs import circumstances, name_of
-from gearidae.runs.running import prepare, runs_in_threads
+from gearidae.runs.running import prepare
 from gearidae.scene.group import did_you_mean
 from gearidae.studies.design import check_design, plain_design
 from gearidae.studies.distributions import Distribution, read_distributions
 from gearidae.studies.law_draws import drawn_laws, parameter_units
 from gearidae.studies.life import life
-from gearidae.studies.life_file import open_life
 from gearidae.studies.members import member_plan, names_of
-from gearidae.studies.study_run import interruptible
+from gearidae.studies.products import open_lives
 from gearidae.wear import LossLaw
 
 if TYPE_CHECKING:
@@ -53,6 +54,8 @@ _SETTINGS: Final = (
     "bracket",
 )
 """Arguments of `life` that hold for all members."""
+_LIFE: Final = re.compile(r"[0-9a-f]{64}\.nc(\.runs)?")
+"""Names of files of lives, and of the folders of windows beside them."""
 _COLUMNS: Final = {
     "passages_to_sticking": ("1", "passages of each tooth of the pinion by which the gear sticks"),
     "passages_turning": ("1", "passages up to which it turns, as far as it was followed"),
@@ -62,7 +65,6 @@ _COLUMNS: Final = {
 }
 
 
-@claims_archive
 def lives(
     scene: Scene,
     law: LossLaw,
@@ -129,8 +131,6 @@ def lives(
     """
     base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
     check_design(size, design, seed, indices=False)
-    check_executor(executor)
-    workers = check_jobs(jobs)
     _check_settings(law, settings)
     distributions = read_distributions(base, vary, parameter_units(law))
     texts = names_of(distributions)
@@ -138,39 +138,57 @@ def lives(
     values = {each.key: drawn[:, number] for number, each in enumerate(distributions)}
     laws = drawn_laws(law, values, int(size), texts)
     members = list(zip(_scenes(base, values, int(size), texts), laws, strict=True))
-    folder = _folder(archive, overwrite=overwrite, resume=resume)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
-    common = _Common(settings, backend, folder)
-    paths = [common.path(*each) for each in members]
-    with (
-        interruptible(folder),
-        _gone_if_empty(folder),
-        sweep_progress(progress, len(members)) as report,
-        own_executor(
-            workers if executor is None else 1,
-            len(members),
-            releases_gil=runs_in_threads(backend, scene.run.method),
-        ) as own,
-    ):
-        found = _followed(common, members, executor or own, report)
-    ds = _dataset(base, law, distributions, values, found).assign_attrs(ensemble=json.dumps(about))
-    if archive is not None and folder is not None:
-        save(ds, archive, overwrite=overwrite or resume)
-        with _gone_if_empty(folder):
-            for path in paths:
-                assert path is not None
-                path.unlink(missing_ok=True)
-    return ds
+
+    def work(kept: _KeptLives | None) -> xr.Dataset:
+        common = _Common(settings, backend, None if kept is None else kept.folder)
+        found: list[_Member] = []
+        with (
+            nullcontext() if kept is None else kept,
+            sweep_progress(progress, len(members)) as report,
+            how.computing(len(members)) as computing,
+        ):
+            for each in side_by_side(computing, _follow, members, [common] * len(members)):
+                found.append(each)
+                report(float(len(found)), len(members))
+        return _dataset(base, law, distributions, values, found)
+
+    depends = {"ensemble": json.dumps(about), "settings": json.dumps([law.describe(), settings])}
+    return run_kept(how, _KeptLives, work, {**origin_of(base), **depends}, read=open_lives)
 
 
-@contextmanager
-def _gone_if_empty(folder: Path | None) -> Iterator[None]:
-    """Remove a folder in which nothing is left after the block."""
-    try:
-        yield
-    finally:
-        if folder is not None and folder.is_dir() and not any(folder.iterdir()):
-            folder.rmdir()
+class _KeptLives:
+    """The lives of an unfinished ensemble, each in a file of its own beside the archive, in ``OUT.nc.lives``."""
+
+    def __init__(self, archive: Path) -> None:
+        self.folder = archive.with_name(f"{archive.name}.lives")
+
+    def __enter__(self) -> None:
+        self.folder.mkdir(exist_ok=True)
+
+    def __exit__(self, *_: object) -> None:
+        if not any(self.folder.iterdir()):  # refused, or interrupted at once
+            self.folder.rmdir()
+
+    def count(self) -> int:
+        """Count the lives, those that are unfinished included."""
+        return len({path.stem for path in self._files() if path.suffix == ".nc"})
+
+    def remove(self, _scenes: Sequence[Scene] | None = None) -> None:
+        """Delete the lives, and the folder if nothing else is in it."""
+        for path in self._files():
+            if path.is_dir():  # windows of a life that could not be finished
+                shutil.rmtree(path)
+            else:
+                path.unlink()
+        if self.folder.is_dir():
+            self.__exit__()
+
+    def _files(self) -> list[Path]:
+        if not self.folder.is_dir():
+            return []
+        return [path for path in self.folder.iterdir() if _LIFE.fullmatch(path.name)]
 
 
 @dataclass(frozen=True)
@@ -210,10 +228,6 @@ def _follow(member: tuple[Scene, LossLaw], common: _Common) -> _Member:
     scene, law = member
     path = common.path(scene, law)
     try:
-        if path is not None and path.is_file():
-            ds = open_life(path)
-            if ds.attrs["ending"] != "interrupted":
-                return _member(ds)
         ds = life(
             scene,
             law,
@@ -239,41 +253,6 @@ def _member(ds: xr.Dataset) -> _Member:
         float(last["coverage"].mean()),
         int(ds.attrs["windows"]),
     )
-
-
-def _followed(
-    common: _Common,
-    members: Sequence[tuple[Scene, LossLaw]],
-    executor: Executor | None,
-    report: SweepProgress,
-) -> list[_Member]:
-    """Follow all members, side by side where there is an executor."""
-    found: list[_Member] = []
-    for each in side_by_side(executor, _follow, members, [common] * len(members)):
-        found.append(each)
-        report(float(len(found)), len(members))
-    return found
-
-
-def _folder(archive: str | os.PathLike[str] | None, *, overwrite: bool, resume: bool) -> Path | None:
-    """Where the members' lives are kept: ``OUT.nc.lives``."""
-    if archive is None:
-        if resume:
-            raise SceneError("resume", resume, "needs an archive: the lives to go on from are kept beside it")
-        return None
-    target = check_target(archive, overwrite=overwrite or resume)
-    folder = target.with_name(f"{target.name}.lives")
-    if folder.is_dir() and any(folder.iterdir()) and not (overwrite or resume):
-        allowed = (
-            f"was cut off, its lives so far are in {folder.name}: go on with --resume (resume=True), or start anew "
-            "with --overwrite (overwrite=True)"
-        )
-        raise SceneError("archive", archive, allowed)
-    if overwrite and not resume and folder.is_dir():
-        for path in folder.glob("[0-9a-f]*.nc"):
-            path.unlink()
-    folder.mkdir(exist_ok=True)
-    return folder
 
 
 def _check_settings(law: LossLaw, settings: Mapping[str, Any]) -> None:

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, Outcome, sticking, verdict_codes
-from gearidae.archive.target import claims_archive
+from gearidae.analysis.verdict.codes import CODE_ATTRIBUTES, Outcome, sticking, verdict_codes
 from gearidae.errors import SceneError
+from gearidae.runs.execution import Execution
 from gearidae.runs.running import prepare
 from gearidae.runs.sweep_plan import plan_sweep
+from gearidae.runs.sweeping import run_study
 from gearidae.studies.members import STICKS
-from gearidae.studies.study_run import Execution, run_study
+from gearidae.studies.requirements import require_gears
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -34,7 +35,6 @@ _OUTCOME = {
 }
 
 
-@claims_archive
 def operating_map(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],
@@ -82,22 +82,13 @@ def operating_map(
     >>> ax = gd.plot.outcome_map(chart)  # doctest: +SKIP
     """
     base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
-    if base.gears is None:
-        raise SceneError("scene", base.name, "must be a scene with gears")
+    require_gears(base)
     if not isinstance(over, Mapping) or len(over) != 2:
         allowed = 'must be two keys and their values, {"drive.torque": [...], "coating.sam_fraction": [...]}'
         raise SceneError(
             "over", over if not isinstance(over, Mapping) else ", ".join(map(str, over)), allowed
         )
-    how = Execution(
-        executor=executor,
-        jobs=jobs,
-        backend=backend,
-        progress=progress,
-        archive=archive,
-        overwrite=overwrite,
-        resume=resume,
-    )
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     plan = plan_sweep(base, over)
 
     def finish(ds: xr.Dataset) -> xr.Dataset:

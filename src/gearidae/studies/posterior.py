@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gearidae.errors import SceneError
 from gearidae.studies.distributions import Distribution
 
-__all__ = ["LEVELS", "STEPS_WANTED", "grid_posterior", "sampled_posterior", "summary"]
+__all__ = ["LEVELS", "grid_posterior", "sampled_posterior", "summary"]
 
 Floats = NDArray[np.float64]
 LogLikelihood = Callable[[Floats], Floats]
@@ -24,8 +24,6 @@ LEVELS: Final = (0.025, 0.16, 0.5, 0.84, 0.975)
 _TAIL: Final = 2e-4
 """Share of the prior that a grid leaves out at each end."""
 _WALKERS: Final = 16
-STEPS_WANTED: Final = 50
-"""Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
 
 
 def grid_posterior(
@@ -113,7 +111,7 @@ def sampled_posterior(
     Dataset
         A variable for each key along ``draw``, and ``log_likelihood``; attributes ``acceptance``, ``steps_kept`` (of
         each walker) and ``autocorrelation_time`` (steps between independent draws, which is found too small where
-        fewer than `STEPS_WANTED` times as many are kept).
+        fewer than 50 times as many are kept).
 
     Raises
     ------

@@ -12,12 +12,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.dataset import dimension_names
-from gearidae.archive.target import claims_archive
+from gearidae.runs.execution import Execution
 from gearidae.runs.running import prepare
+from gearidae.runs.sweeping import run_study
 from gearidae.studies.design import check_design
 from gearidae.studies.members import along_members, member_plan
-from gearidae.studies.posterior_file import calibrated_keys
-from gearidae.studies.study_run import Execution, run_study
+from gearidae.studies.products import calibrated_keys
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["posterior_draws", "predict"]
 
 
-@claims_archive
 def predict(
     scene: Scene,
     posterior: xr.Dataset,
@@ -70,15 +69,7 @@ def predict(
     """
     check_design(size, "random", seed, indices=False)
     base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
-    how = Execution(
-        executor=executor,
-        jobs=jobs,
-        backend=backend,
-        progress=progress,
-        archive=archive,
-        overwrite=overwrite,
-        resume=resume,
-    )
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     values = posterior_draws(posterior, size, seed)
     source = dict.fromkeys(values, "the posterior")
     plan = member_plan(base, values, source)

@@ -28,10 +28,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearidae.errors import SceneError
+from gearidae.runs.execution import interruptible
 from gearidae.runs.executors import check_executor, side_by_side
 from gearidae.runs.simulation import simulate
 from gearidae.scene.keys import scene_value
-from gearidae.studies.study_run import interruptible
 
 if TYPE_CHECKING:
     import xarray as xr

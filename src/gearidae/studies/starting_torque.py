@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import math
+import os
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -15,12 +18,16 @@ from scipy.optimize import brentq
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError, SolverError
-from gearidae.runs.executors import check_jobs, own_executor, side_by_side
-from gearidae.runs.running import prepare, runs_in_threads, solve_to_end
+from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
+from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import prepare, solve_to_end, unsolved
+from gearidae.studies.products import open_product
 from gearidae.studies.release import holding_forces
-from gearidae.studies.study_run import interruptible
+from gearidae.studies.requirements import require_constant, require_gears
 
 if TYPE_CHECKING:
+    from gearidae.records import Solution
     from gearidae.scene import Scene
 
 __all__ = ["starting_torque", "static_starting_torque"]
@@ -89,17 +96,23 @@ def starting_torque(
     lowest: float | None = None,
     simulated: bool = True,
     tolerance: float = 0.1,
+    executor: Executor | None = None,
     jobs: int | None = None,
     backend: str = "auto",
+    progress: bool | SweepProgress = False,
+    archive: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
 ) -> xr.Dataset:
     """Smallest drive torque that takes the gear through the mesh, against SAM fraction.
 
     Parameters
     ----------
     scene : Scene
-        With gears. Its constant drive torque is replaced, a schedule taken away, its initial speed set to zero.
-    sam_fraction : array_like, optional
-        Fractions of the coating; by default 13 from 1 to 0.4.
+        With gears. Its constant drive torque is replaced, a schedule of the drive taken away, its initial speed set to
+        zero.
+    sam_fraction : array_like or 'own', optional
+        Fractions of the coating; by default 13 from 1 to 0.4. ``own`` stands for the scene's own coating as it is.
     impacts : int, optional
         Pitches to be turned, each with its mesh exit.
     lowest : float, optional
@@ -108,8 +121,8 @@ def starting_torque(
         Whether to simulate too.
     tolerance : float, optional
         Relative width at which the search among simulated torques ends, 0.001 .. 1.
-    jobs, backend
-        As for `sweep`.
+    executor, jobs, backend, progress, archive, overwrite, resume
+        As for `sweep`. With `archive`, finished runs are kept beside it until it is written.
 
     Returns
     -------
@@ -117,12 +130,13 @@ def starting_torque(
         ``static_torque``: without inertia, see `static_starting_torque`. ``simulated_torque``: a run from rest turns
         the gear by `impacts` pitches at this torque and not at ``simulated_stuck``, which is smaller by `tolerance` or
         less. Both are what the dry resistance takes where adhesion does not hold even at the lowest torque, and NaN
-        without `simulated`. All in N m on the pinion.
+        without `simulated`. All in N m on the pinion. The scene's own constant torque is the attribute
+        ``drive_torque``.
 
     Raises
     ------
     SceneError
-        If the scene has no gears or a setting is not allowed.
+        If the scene has no gears, its load follows a schedule, or a setting is not allowed.
     SolverError
         If a run could not be finished.
     Interrupted
@@ -136,49 +150,61 @@ def starting_torque(
     _require(scene, impacts)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
-    given = np.atleast_1d(np.asarray(_FRACTIONS if sam_fraction is None else sam_fraction, dtype=np.float64))
-    fractions = [float(value) for value in given]
-    scenes = [
-        prepare(
-            scene.replace({"coating.sam_fraction": fraction}),
-            rtol=None,
-            t_end=None,
-            samples=None,
-            backend=backend,
-        )
-        for fraction in fractions
-    ]
-    with interruptible():
-        static = [static_starting_torque(each, impacts=impacts, lowest=lowest) for each in scenes]
+    base = prepare(scene, rtol=None, t_end=None, samples=None, backend=backend)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    fractions, scenes = _coatings(base, sam_fraction)
+    least = _lowest(scene, lowest)
+
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        static = [static_starting_torque(each, impacts=impacts, lowest=least) for each in scenes]
         searches = [
-            _Search(each, impacts, _lowest(each, lowest), torque)
-            for each, torque in zip(scenes, static, strict=True)
+            _Search(each, impacts, least, torque) for each, torque in zip(scenes, static, strict=True)
         ]
         if simulated:
-            _search_all(searches, tolerance, check_jobs(jobs), backend)
-    values: dict[str, tuple[list[float], str]] = {
+            _search_all(searches, tolerance, how, kept)
+        found = [each.result if simulated else (math.nan, math.nan) for each in searches]
+        return _dataset(scene, fractions, static, found).assign_attrs(impacts=impacts, tolerance=tolerance)
+
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, base, how.driver),
+        work,
+        {**origin_of(scene), "settings": json.dumps([fractions, impacts, least, simulated, tolerance])},
+        read=lambda path: open_product(path, "starting_torque")[0],
+    )
+
+
+def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[Scene]]:
+    """Fractions of the coating, and the scenes with them."""
+    if isinstance(given, str):
+        if given != "own":
+            raise SceneError("sam_fraction", given, "must be a list of numbers, or 'own'")
+        return [float(np.mean(base.coating.fractions))], [base]
+    fractions = np.atleast_1d(np.asarray(_FRACTIONS if given is None else given, dtype=np.float64)).tolist()
+    return fractions, [base.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
+
+
+def _dataset(
+    scene: Scene, fractions: Sequence[float], static: Sequence[float], found: Sequence[tuple[float, float]]
+) -> xr.Dataset:
+    turns, sticks = zip(*found, strict=True)
+    columns = {
         "static_torque": (static, "starting torque without inertia"),
-        "simulated_torque": (
-            [each.result[0] if simulated else math.nan for each in searches],
-            "smallest simulated torque at which the gear turns from rest",
-        ),
-        "simulated_stuck": (
-            [each.result[1] if simulated else math.nan for each in searches],
-            "largest simulated torque at which the gear sticks",
-        ),
+        "simulated_torque": (turns, "smallest simulated torque at which the gear turns from rest"),
+        "simulated_stuck": (sticks, "largest simulated torque at which the gear sticks"),
     }
+    assert scene.drive is not None
     return xr.Dataset(
         {
             name: ("sam_fraction", np.array(numbers), {"units": "N m", "long_name": text})
-            for name, (numbers, text) in values.items()
+            for name, (numbers, text) in columns.items()
         },
         coords={"sam_fraction": ("sam_fraction", np.array(fractions), SAM_FRACTION.attributes)},
         attrs={
             **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
             "title": f"{scene.name}: starting torque",
             "summary": "Smallest drive torque that keeps the gear turning against adhesion, against SAM fraction.",
-            "impacts": impacts,
-            "tolerance": tolerance,
+            "drive_torque": scene.drive.torque,
         },
     )
 
@@ -219,29 +245,37 @@ class _Search:
         return (dry, dry) if self.sticks == 0.0 else (dry + self.turns, dry + self.sticks)
 
 
-def _search_all(searches: Sequence[_Search], tolerance: float, workers: int, backend: str) -> None:
+def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, kept: KeptRuns | None) -> None:
     """Narrow all brackets, the runs of each round side by side."""
-    threads = runs_in_threads(backend, searches[0].scene.run.method)
-    with own_executor(workers if threads else 1, len(searches), releases_gil=threads) as executor:
+    halvings = math.ceil(math.log2(math.log(_STRIDE) / math.log1p(tolerance)))
+    usual, done = len(searches) * (2 + max(halvings, 0)), 0
+    with sweep_progress(how.progress, usual) as report, how.computing(len(searches)) as executor:
         while True:
-            asked = [(each, each.next_torque(tolerance)) for each in searches]
-            todo = [(each, torque) for each, torque in asked if torque is not None]
+            wanted = [(each, each.next_torque(tolerance)) for each in searches]
+            todo = [(each, torque) for each, torque in wanted if torque is not None]
             if not todo:
                 return
-            arguments: list[list[Any]] = [list(column) for column in zip(*todo, strict=True)]
-            outcomes = side_by_side(executor, _turns, *arguments, [backend] * len(todo))
-            for (each, torque), turned in zip(todo, outcomes, strict=True):
-                each.learn(torque, turned)
+            scenes = [_from_rest(each, torque) for each, torque in todo]
+            found = solutions(kept, executor, _run_from_rest, scenes, _way(todo[0][0]), how.backend)
+            for (each, torque), (_, word) in zip(todo, found, strict=True):
+                each.learn(torque, word == "turns")
+                done += 1
+                report(float(min(done, usual)), usual)
 
 
-def _turns(search: _Search, torque: float, backend: str) -> bool:
-    """Whether the gear, from rest, comes through its pitches at a torque beyond the dry resistance."""
-    scene, geometry = search.scene, search.scene.geometry
+def _way(search: _Search) -> float:
+    """Angle through which the gear is to come [rad]."""
+    assert search.scene.gears is not None
+    return search.impacts * 2.0 * math.pi / search.scene.gears.gear_teeth
+
+
+def _from_rest(search: _Search, torque: float) -> Scene:
+    """Return the scene of a run from rest at a torque beyond the dry resistance, with the time that it gets."""
+    scene, geometry, way = search.scene, search.scene.geometry, _way(search)
     gears, load = scene.gears, scene.load
     assert gears is not None
     assert load is not None
     ratio = geometry.base_radius_gear / geometry.base_radius_pinion
-    way = search.impacts * 2.0 * math.pi / gears.gear_teeth
     inertia = gears.gear_inertia + gears.pinion_inertia * ratio**2
     duration = math.sqrt(2.0 * way * inertia / (torque * ratio))
     if load.drag > 0.0:
@@ -249,23 +283,31 @@ def _turns(search: _Search, torque: float, backend: str) -> bool:
     duration += way * load.viscous / (torque * ratio)
     others = ("schedule", "speed", "speed_gain")
     drive = {key: value for key, value in scene.to_dict()["drive"].items() if key not in others}
-    changes = {
-        "drive": {**drive, "torque": _dry(scene) + torque},
-        "initial.gear_speed": 0.0,
-        "run.duration": _PATIENCE * duration,
-        "run.samples": 101,
-    }
-    solution = solve_to_end(scene.replace(changes), backend)
+    return scene.replace(
+        {
+            "drive": {**drive, "torque": _dry(scene) + torque},
+            "initial.gear_speed": 0.0,
+            "run.duration": _PATIENCE * duration,
+            "run.samples": 101,
+        }
+    )
+
+
+def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, str]:
+    """Run a scene; ``turns`` if the gear comes that far, else ``sticks``."""
+    solution = solve_to_end(scene, backend)
     if solution.status != "finished":
+        assert scene.drive is not None
         raise SolverError(
-            f"the run at {_dry(scene) + torque:g} N m could not be finished: {solution.message or solution.status}",
+            f"the run at {scene.drive.torque:g} N m could not be finished: {solution.message or solution.status}",
             time=solution.reached or 0.0,
             state={},
             last_event="not kept",
             advice="try another rtol (run.rtol)",
         )
-    angle = solution.samples["gear_angle"]
-    return bool(angle.max() - angle[0] >= way)
+    angle, none = solution.samples["gear_angle"], unsolved("", "")
+    word = "turns" if angle.max() - angle[0] >= way else "sticks"
+    return replace(solution, time=none.time, samples=none.samples, events=none.events), word
 
 
 def _dry(scene: Scene) -> float:
@@ -279,13 +321,16 @@ def _lowest(scene: Scene, given: float | None) -> float:
     assert scene.drive is not None
     lowest = _LOWEST * abs(scene.drive.torque) if given is None else given
     if not 0.0 < lowest < math.inf:
-        allowed = "must be a positive torque; give it where the scene's own constant torque is 0"
+        allowed = (
+            "must be a positive torque; give the lowest to be tried (lowest=, --lowest) where the scene has no "
+            "constant drive torque, as with drive.schedule"
+        )
         raise SceneError("lowest", given, allowed)
     return lowest
 
 
 def _require(scene: Scene, impacts: int) -> None:
-    if getattr(scene, "gears", None) is None:
-        raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
+    require_gears(scene)
+    require_constant(scene, "a starting torque", "it holds against one load", ("load",))
     if not isinstance(impacts, int) or isinstance(impacts, bool) or impacts < 1:
         raise SceneError("impacts", impacts, "must be a whole number, 1 or more")

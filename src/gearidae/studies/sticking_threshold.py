@@ -6,6 +6,7 @@ run that sticks after k exits answers for all numbers of exits: it passes up to 
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -18,19 +19,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive import save
 from gearidae.archive.provenance import provenance
-from gearidae.archive.target import claims_archive
-from gearidae.archive.verdict import is_scheduled
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import steady_speed
-from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
+from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.running import prepare, runs_in_threads
-from gearidae.runs.sweeping import kept_beside
+from gearidae.runs.running import prepare
 from gearidae.scene.keys import find_key
-from gearidae.studies.study_run import interruptible
+from gearidae.studies.products import open_product
+from gearidae.studies.requirements import require_constant, require_gears
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
 if TYPE_CHECKING:
@@ -47,7 +45,6 @@ _PATIENCE = 1.5
 _USUAL = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
-@claims_archive
 def sticking_threshold(
     scene: Scene,
     over: str = "coating.sam_fraction",
@@ -114,11 +111,8 @@ def sticking_threshold(
     ends = _ends(base, over, between)
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
     _check(base, exits, width)
-    check_executor(executor)
-    workers = check_jobs(jobs)
     base = base.replace({"run.duration": _window(base, exits)})
-    kept = kept_beside(archive, base, backend, overwrite=overwrite, resume=resume)
-    threads = runs_in_threads(backend, scene.run.method)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
     most = 2 + (_PARTS - 1) * rounds * len(waits)
@@ -127,21 +121,20 @@ def sticking_threshold(
     def so_far() -> xr.Dataset:
         return _dataset(scene, over, runs, waits, ends, width)
 
-    with interruptible(None if kept is None else kept.folder, so_far):
-        with (
-            sweep_progress(progress, most) as report,
-            own_executor(
-                workers if executor is None and (threads or jobs) else 1, most, releases_gil=threads
-            ) as own,
-        ):
-            tell = partial(_tell, report, most)
-            _search(_Pool(base, over, exits, backend, executor or own, kept, tell, runs), ends, waits, width)
-        ds = so_far()
-        if archive is not None:
-            save(ds, archive, overwrite=overwrite or resume)
-    if kept is not None:
-        kept.remove()
-    return ds
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        with sweep_progress(progress, most) as report, how.computing(most) as computing:
+            pool = _Pool(base, over, exits, how.backend, computing, kept, partial(_tell, report, most), runs)
+            _search(pool, ends, waits, width)
+        return so_far()
+
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, base, how.driver),
+        work,
+        {**origin_of(scene), "settings": json.dumps([over, *ends, exits, width])},
+        read=lambda path: open_product(path, "sticking_threshold")[0],
+        so_far=so_far,
+    )
 
 
 def _tell(report: SweepProgress, most: int, done: int) -> None:
@@ -166,17 +159,9 @@ class _Pool:
         done = {each.value for each in self.runs}
         todo = sorted({value for value in values if value not in done})
         scenes = [self.scene.replace({self.over: value}) for value in todo]
-        taken = [None if self.kept is None else self.kept.take(each) for each in scenes]
-        found = [None if each is None else each[0] for each in taken]
-        left = [each for each, solution in zip(scenes, found, strict=True) if solution is None]
-        fresh = side_by_side(
-            self.executor, run_until, left, [self.exits] * len(left), [self.backend] * len(left)
-        )
-        for value, each, solution in zip(todo, scenes, found, strict=True):
-            new = next(fresh) if solution is None else solution
-            self.runs.append(ThresholdRun.of(value, new))
-            if solution is None and self.kept is not None:
-                self.kept.keep(each, new)
+        found = solutions(self.kept, self.executor, run_until, scenes, self.exits, self.backend)
+        for value, (solution, _) in zip(todo, found, strict=True):
+            self.runs.append(ThresholdRun.of(value, solution))
             self.report(len(self.runs))
 
 
@@ -284,11 +269,8 @@ def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, flo
 
 
 def _check(scene: Scene, exits: int, width: float) -> None:
-    if scene.gears is None or scene.drive is None or scene.load is None:
-        raise SceneError("scene", scene.name, "must be a scene with gears")
-    if is_scheduled(scene.to_dict()):
-        allowed = "must not be there: where torques or the held speed change, coming to rest is no sticking"
-        raise SceneError("drive.schedule", "a schedule", allowed)
+    require_gears(scene)
+    require_constant(scene, "a threshold", "a gear that is braked to rest has not stuck")
     if not isinstance(exits, int) or isinstance(exits, bool) or exits < 1:
         raise SceneError("exits", exits, "must be a whole number, 1 or more")
     if not 0.0 < width < math.inf:
