@@ -10,7 +10,7 @@ import gearidae as gd
 
 scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "150 ms", "run.samples": 15001})
 
-# The rig: 71.3 % of the monolayer, which nobody knows, and a sensor that is off by 5 mrad/s.
+# The rig: 71.3 % of the monolayer, unknown to the assessment, and a sensor that is off by 5 mrad/s.
 rig = gd.simulate(scene.replace({"coating.sam_fraction": 0.713}))
 measured = rig.gear_speed.values + np.random.default_rng(1).normal(0.0, 5e-3, rig.sizes["time"])
 np.savetxt(

@@ -20,7 +20,7 @@ for torque in torques:
         for did in outcomes(runs)
         if did.label["torque"] == torque and did.verdict == "sticks"
     ]
-    told = f"sticks at {max(stuck):g} and below" if stuck else f"runs down to {min(fractions):g}"
-    print(f"{torque:g} N m: {told}")
+    outcome = f"sticks at {max(stuck):g} and below" if stuck else f"runs down to {min(fractions):g}"
+    print(f"{torque:g} N m: {outcome}")
 
 gd.plot.write(gd.plot.overview(runs.sel(torque=4.5e-18)), "worn.png", overwrite=True)

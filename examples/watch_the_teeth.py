@@ -14,8 +14,8 @@ dip = float(run.gear_contact_torque.idxmin())
 (state,) = tooth_contacts(run, dip)
 print(f"at {state.time * 1e3:.2f} ms all pairs together give {state.mesh_force * 1e12:+.3f} pN")
 for pair in state.contacts:
-    told = f"{pair.gap * 1e9:.1f} nm, {pair.force * 1e12:+.3f} pN, {pair.state.name}"
-    print(f"  pair {pair.pair}, {pair.flank.name}: {told}")
+    numbers = f"{pair.gap * 1e9:.1f} nm, {pair.force * 1e12:+.3f} pN, {pair.state.name}"
+    print(f"  pair {pair.pair}, {pair.flank.name}: {numbers}")
 
 gd.plot.write(gd.plot.teeth(run, time=dip), "teeth.png", overwrite=True)
 gd.plot.animate_teeth(run, "teeth.gif", start=dip - 2e-3, stop=dip + 2e-3, frames=8, dpi=60, overwrite=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import io
 import random
+import shutil
 import tempfile
 import traceback
 from collections.abc import Callable
@@ -25,7 +26,8 @@ import numpy as np
 
 import gearidae as gd
 from gearidae.archive import growing
-from gearidae.archive.journal import Checkpoint
+from gearidae.archive.checkpoint import Checkpoint
+from gearidae.archive.store import Store
 from gearidae.cli import main
 from gearidae.cli.codes import BAD_INPUT, DONE, UNFINISHED
 from gearidae.engine.integrate import portable
@@ -74,7 +76,6 @@ def cut_off(scene: Scene, file: Path) -> None:
     with (
         patch.object(portable, "CHECKPOINT_STEPS", 20),
         patch.object(growing, "CHECKPOINT_SECONDS", 0.0),
-        patch.object(growing, "EVENT_ROOM", 16),
         contextlib.suppress(_CutOffError),
     ):
         gd.simulate(scene, archive=file, backend="sksundae", progress=cut)
@@ -96,25 +97,21 @@ def forge(file: Path, rng: random.Random, word: int | None = None) -> str:
     str
         What has been changed, in words.
     """
-    with netCDF4.Dataset(file, "a") as ds:
-        slots = ds["checkpoint"][:]
-        points = [Checkpoint.unpack(slot.astype("<f8").tobytes()) for slot in np.ma.getdata(slots)]
-        k = max(range(len(points)), key=lambda k: getattr(points[k], "sequence", 0))
-        point = points[k]
-        assert point is not None
-        state = np.array(point.state)
-        at = (rng.randrange(state.size) if word is None else word) % state.size
-        was = state[at]
-        words = state.view(np.int64)
-        if rng.random() < 0.5:  # as a whole number
-            words[at] = rng.choice([0, 1, -1, 2, int(words[at]) ^ 1, 2**40, -(2**40), rng.getrandbits(63)])
-        else:
-            state[at] = rng.choice(
-                [0.0, 1.0, -1.0, np.nan, np.inf, 1e300, -1e300, 1e-300, was * (1.0 + 1e-3), -was]
-            )
-        record = np.frombuffer(replace(point, state=state).pack(), "<f8")
-        slots[k, : record.size] = record
-        ds["checkpoint"][:] = slots
+    with netCDF4.Dataset(file) as ds:
+        run = str(ds.getncattr("run"))
+    point = Checkpoint.newest(file, run)
+    assert point is not None
+    state = np.array(point.state)
+    at = (rng.randrange(state.size) if word is None else word) % state.size
+    was = state[at]
+    words = state.view(np.int64)
+    if rng.random() < 0.5:  # as a whole number
+        words[at] = rng.choice([0, 1, -1, 2, int(words[at]) ^ 1, 2**40, -(2**40), rng.getrandbits(63)])
+    else:
+        state[at] = rng.choice(
+            [0.0, 1.0, -1.0, np.nan, np.inf, 1e300, -1e300, 1e-300, was * (1.0 + 1e-3), -was]
+        )
+    replace(point, state=state).keep(file, run)
     return f"word {at}: {was!r} to {state[at]!r}"
 
 
@@ -210,12 +207,14 @@ def _one(folder: str, seed: int, number: int, budget: int, reports: Connection, 
     rng, turn = random.Random(f"{seed} {number}"), number // _FORGED_EVERY
     name = list(FORGED_SCENES)[turn % len(FORGED_SCENES)]
     source, file = Path(folder) / f"{name}.nc", Path(folder) / f"changed_{number}.nc"
-    file.write_bytes(source.read_bytes())
+    shutil.copyfile(source, file)
+    shutil.copytree(Store(source).folder, Store(file).folder)
     word = turn // 2 if turn % 2 else None  # every second one in order, so that each field has its turn
     change = forge(file, rng, word) if is_forged(number) else damage(file, rng)
     pictures = number % _PICTURES_EVERY == 1
     complaint = read_by_commands(file, source.with_suffix(".toml"), pictures=pictures)
     status = "raised" if complaint else "finished"
+    shutil.rmtree(Store(file).folder, ignore_errors=True)
     for left in Path(folder).glob(f"changed_{number}.*"):
         left.unlink()
     reports.send(Outcome(number, status, f"{change}: {complaint}" if complaint else change))

@@ -20,7 +20,7 @@ from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import arm, watch
 from gearidae_bench.roots import (
     CALLS,
-    CROWDED,
+    CHATTER,
     CUBIC,
     DOP853,
     EVENTS,
@@ -289,7 +289,7 @@ def run_gauss(
         t = later
         if fallen:
             action = handle_event(m, t, y, room)
-            if action == CROWDED:
+            if action == CHATTER:
                 counts[FAILED] = action
                 return
         rates(m, t, y, zero, k[0])

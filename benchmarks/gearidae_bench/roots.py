@@ -17,8 +17,8 @@ from gearidae_bench.steps import dop853_value, gauss_step, hermite_value
 
 __all__ = [
     "CALLS",
+    "CHATTER",
     "CONTINUE",
-    "CROWDED",
     "CUBIC",
     "DOP853",
     "EVENTS",
@@ -43,7 +43,7 @@ STEPS, CALLS, EVENTS, FAILED = range(4)
 """Columns of the counters; FAILED is not zero where a run had to be given up: what `handle_event` returns, or -1 where
 steps became too small."""
 
-CONTINUE, RESTART, CROWDED = range(3)
+CONTINUE, RESTART, CHATTER = range(3)
 """What is to be done after an event: go on, begin anew, or give up as events follow without progress in time."""
 
 _ROOT_TOLERANCE = 1e-15  # of the step's end time
@@ -126,7 +126,7 @@ def find_root(
 
 @compiled()
 def handle_event(m: Model, t: float, y: Floats, room: Floats) -> int:
-    """Have the engine deal with the event at t, which `accept` has reached; `CONTINUE`, `RESTART` or `CROWDED`.
+    """Have the engine deal with the event at t, which `accept` has reached; `CONTINUE`, `RESTART` or `CHATTER`.
 
     The engine asks its own drivers to begin anew at a mesh mark where their steps are longer than the tip relief
     takes to part a pair. The other methods rely on their error test alone: no step is noted for them.
@@ -136,7 +136,7 @@ def handle_event(m: Model, t: float, y: Floats, room: Floats) -> int:
     m.scene.follow.balance = m.scene.follow.extremes = 0  # the other methods keep neither
     if handle(m, t, y, y, room):
         return RESTART
-    return CROWDED if driver.error != 0 else CONTINUE
+    return CHATTER if driver.error != 0 else CONTINUE
 
 
 @compiled()

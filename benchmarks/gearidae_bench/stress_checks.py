@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
 from gearidae.mesh.involute import curvature_radii, separation
-from gearidae.records import EnergyBalance, Extremes
+from gearidae.records import EnergyBalance, ExposureRows, Extremes
 from gearidae.scene import MATERIAL_NAMES, Scene
 
 __all__ = ["complaint_about", "complaint_about_exposures"]
@@ -89,13 +89,13 @@ def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Ex
     """
     if not extremes.exposures or scene.gears is None:
         return ""
-    count, teeth = len(MATERIAL_NAMES), scene.gears.pinion_teeth
-    sums = np.array(extremes.exposures).reshape(2, teeth, 2 * count + 2, scene.run.exposures)
+    rows = ExposureRows.of(len(MATERIAL_NAMES))
+    sums = np.array(extremes.exposures).reshape(-1, rows.total, scene.run.exposures)
     if not np.isfinite(sums).all() or (sums < 0.0).any():
         return "exposures that are negative or not finite"
     if scene.coating.by_place or balance.model_change != 0.0:
         return ""
-    work, loss = float(sums[:, :, count : 2 * count].sum()), balance.adhesion_loss
+    work, loss = float(sums[:, rows.adhesion : rows.sliding].sum()), balance.adhesion_loss
     # a gap may widen by an error of the motion before it is taken to turn: then the balance has lost less than joined
     tolerance = max(_ADHESION_TOLERANCE, scene.run.rtol)
     if scene.contact.model != "asperity":

@@ -12,6 +12,7 @@ import gearidae as gd
 from gearidae.analysis.verdict import IRREGULAR_ABOVE, outcomes
 from gearidae.archive import combine, to_dataset
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Events, Extremes, Solution, Statistics
+from reference.sampled_extremes import with_extremes
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 201})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 201})
@@ -37,7 +38,7 @@ def gear_run(speed, scene=LOW, **options):
     speed = speed[: len(solution.time)]
     solution.samples["gear_speed"] = speed
     solution.samples["gear_angle"] = np.cumsum(speed) * scene.run.duration / (scene.run.samples - 1)
-    return to_dataset(scene, solution)
+    return to_dataset(scene, with_extremes(scene, solution))
 
 
 def ripple(share):
@@ -188,7 +189,7 @@ def roller_run(speed, force, *, impacts, lets_go):
         kept = {field.name: getattr(events, field.name)[:-1] for field in dataclasses.fields(events)}
         assert kept["kind"][-1] == EventKind.ONSET
         solution = dataclasses.replace(solution, events=dataclasses.replace(events, **kept))
-    return to_dataset(ROLLER, solution)
+    return to_dataset(ROLLER, with_extremes(ROLLER, solution))
 
 
 def test_roller_rebounds_with_the_restitution_of_its_speeds():

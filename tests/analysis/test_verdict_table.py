@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome
-from gearidae.analysis.verdict_table import Outcomes
+from gearidae.analysis.verdict.table import Outcomes
 
 STUCK = GearOutcome({"sam_fraction": 0.47}, "finished", "sticks", -1.0, 1.5, 4, 0.1, 0.258, 5, 0.3)
 TURNED = GearOutcome({"sam_fraction": 1.0}, "finished", "turns smoothly", 1.4, 1.5, 5, 0.01, math.nan, 6, 0.3)

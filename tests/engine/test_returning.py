@@ -108,7 +108,7 @@ def test_a_run_can_be_resumed_before_between_and_after_the_changes(changes, driv
         parts = [each.rows for each in (*whole[: k + 1], *rest)]
         np.testing.assert_array_equal(np.concatenate(parts), rows)
         assert_same((rest[-1] if rest else whole[-1]).extremes, whole[-1].extremes)
-        assert outlook(SCENE, driver, block.checkpoint)[1]["elastic_deflection"] == made.count("change_over")
+        assert outlook(SCENE, driver, block.checkpoint)[0]["elastic_deflection"] == made.count("change_over")
     assert seen == {("change_over", "lighten"), ("lighten",), ()}
 
 

@@ -309,8 +309,8 @@ MUTANTS = (
     Mutant(
         "a joining loss recorded at the turning point, and taken from the radius's power at the next look",
         "engine/followers/joining.py",
-        "        _book_before(m, coast, pair, loss, length)",
-        "        pass",
+        "            _book_before(m, coast, pair, y[PHASE], losses)",
+        "            pass",
         ("engine/test_energy_balance.py",),
     ),
     Mutant(
@@ -354,6 +354,27 @@ MUTANTS = (
         "            inside &= far[np.ix_(*places)]",
         "            pass",
         ("surfaces/test_measured.py",),
+    ),
+    Mutant(
+        "a row with more cells than there are headings taken for one without the last",
+        "scene/text_table.py",
+        "                    if len(cells) == width + 1 and not cells[-1]:",
+        "                    if len(cells) == width + 1:",
+        ("scene/test_text_table.py",),
+    ),
+    Mutant(
+        "a record cut at its first missing sample",
+        "analysis/signal.py",
+        "    end = len(values) - int(present[::-1].argmax()) if present.any() else 0",
+        "    end = len(values) if present.all() else int(present.argmin())",
+        ("analysis/test_ringing.py",),
+    ),
+    Mutant(
+        "impacts that are no pitch apart taken for those of a speed without error",
+        "analysis/impacts.py",
+        "    return spacing if told else 1.0",
+        "    return 1.0",
+        ("analysis/test_bad_records.py",),
     ),
     Mutant(
         "bands of a spectrum that add up their lines in place of the mean",
@@ -406,7 +427,7 @@ MUTANTS = (
     ),
     Mutant(
         "error estimate of sliding work without effect",
-        "engine/followers/exposures/intervals.py",
+        "engine/followers/exposures/sliding.py",
         "    if error > 0.0:",
         "    if error > 1e300:",
         ("engine/test_exposures.py::test_sums_at_a_usual_tolerance_are_those_at_a_tight_one",),

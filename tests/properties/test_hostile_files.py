@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 import gearidae as gd
 from gearidae.analysis.measured import read_signal
 from gearidae.archive import growing, open_archive
+from gearidae.archive.store import Store
 from gearidae.cli import main
 from gearidae.engine.integrate import portable
 from gearidae.errors import SceneError
@@ -204,12 +205,17 @@ def partial(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(portable, "CHECKPOINT_STEPS", 100)
         patch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
-        patch.setattr(growing, "EVENT_ROOM", 16)
         with pytest.raises(_CutOffError):
             gd.simulate(PARTIAL, archive=file, backend="sksundae", progress=cut)
-    with netCDF4.Dataset(file) as ds:
-        assert "checkpoint" in ds.variables
-        assert np.any(ds["checkpoint"][:] != 0.0)
+    assert [path.suffix for path in Store(file).folder.iterdir()] == [".npz"]
+    return file
+
+
+def copied(partial, folder):
+    """The archive and the checkpoint beside it, for a test to change."""
+    file = folder / partial.name
+    shutil.copyfile(partial, file)
+    shutil.copytree(Store(partial).folder, Store(file).folder, dirs_exist_ok=True)
     return file
 
 
@@ -251,7 +257,7 @@ def test_a_damaged_partial_archive_ends_in_one_line(tmp_path, partial, partial_c
         del content[rng.randrange(len(content)) :]
     for _ in range(rng.choice([1, 3, 30]) if content else 0):
         content[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
-    file = tmp_path / "partial.nc"
+    file = copied(partial, tmp_path)
     file.write_bytes(bytes(content))
     read_by_commands(file, partial_case, tmp_path, capsys, pictures=seed % 6 == 0)
 
@@ -260,8 +266,7 @@ def test_a_damaged_partial_archive_ends_in_one_line(tmp_path, partial, partial_c
 def test_an_attribute_of_another_type_ends_in_one_line(tmp_path, partial, partial_case, capsys, attribute):
     """Arrays, bytes, huge and empty texts, numbers for texts and texts for numbers."""
     for turn, value in enumerate(VALUES, ATTRIBUTES.index(attribute)):
-        file = tmp_path / "partial.nc"
-        shutil.copyfile(partial, file)
+        file = copied(partial, tmp_path)
         with netCDF4.Dataset(file, "a") as ds:
             ds.delncattr(attribute)
             ds.setncattr(attribute, value)
@@ -270,7 +275,6 @@ def test_an_attribute_of_another_type_ends_in_one_line(tmp_path, partial, partia
 
 
 def test_an_undamaged_partial_archive_is_resumed(tmp_path, partial, partial_case, capsys):
-    file = tmp_path / "partial.nc"
-    shutil.copyfile(partial, file)
+    file = copied(partial, tmp_path)
     read_by_commands(file, partial_case, tmp_path, capsys)
     assert open_archive(file).attrs["status"] == "finished"

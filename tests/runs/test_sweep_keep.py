@@ -121,8 +121,7 @@ def test_resumed_runs_are_judged_as_they_were(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         gd.sweep(LOW, OVER, keep=["extremes"], archive=archive, progress=stop, jobs=1)
-    (journal,) = (tmp_path / "kept.nc.runs").iterdir()
-    assert 1 <= len(journal.read_text().splitlines()) < 4
+    assert 1 <= len(list((tmp_path / "kept.nc.runs").iterdir())) < 4
     with pytest.raises(gd.SceneError, match="cut off"):
         gd.sweep(LOW, OVER, archive=archive)
     resumed = gd.sweep(LOW, OVER, keep=["extremes"], archive=archive, resume=True)

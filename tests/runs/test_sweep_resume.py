@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 
-import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -30,7 +29,7 @@ import gearidae as gd
 low = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 101})
 
 def shoot(done, total):
-    if len(list(pathlib.Path(sys.argv[1] + ".runs").glob("*.nc"))) >= 3:
+    if len(list(pathlib.Path(sys.argv[1] + ".runs").glob("*.npz"))) >= 3:
         os.kill(os.getpid(), signal.SIGKILL)
 
 gd.sweep(low, {"coating.sam_fraction": [1.0, 0.8, 0.6, 0.5, 0.48, 0.45]}, jobs=int(sys.argv[2]),
@@ -188,10 +187,10 @@ def test_resume_needs_an_archive():
 
 
 def flip(path):
-    """Turn over one bit of one sample, which the format itself does not notice."""
-    with netCDF4.Dataset(path, "r+") as file:
-        bits = file["samples"][3:4, 50].filled().view(np.int64)
-        file["samples"][3, 50] = (bits ^ 1).view(np.float64)[0]
+    """Turn over one bit of one sample."""
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(bytes(content))
 
 
 @pytest.mark.parametrize(
@@ -200,10 +199,10 @@ def flip(path):
         flip,
         lambda path: path.write_bytes(b""),
         lambda path: path.write_bytes(path.read_bytes()[:3000]),
-        lambda path: path.write_bytes(b"\x80\x04\x95 not even a netCDF file"),
-        lambda path: netCDF4.Dataset(path, "w").close(),
+        lambda path: path.write_bytes(b"\x80\x04\x95 not even a zip file"),
+        lambda path: np.savez(path, samples=np.zeros(3)),
     ],
-    ids=["one bit", "empty", "cut", "no netCDF", "no run"],
+    ids=["one bit", "empty", "cut", "no zip", "no run"],
 )
 def test_damaged_runs_are_computed_again(cut_off, computed, expected, deed):
     deed(kept_files(cut_off)[1])
@@ -236,6 +235,21 @@ def test_runs_with_other_settings_are_left_alone(cut_off, computed, settings):
     assert kept_files(cut_off) == files
 
 
+def test_runs_that_version_0_1_0_has_kept_are_named(tmp_path, computed):
+    archive, folder = tmp_path / "sweep.nc", tmp_path / "sweep.nc.runs"
+    folder.mkdir()
+    former = {folder / "runs.jsonl", folder / f"{0:064x}.nc"}
+    for path in former:
+        path.touch()
+    with pytest.raises(gd.SceneError, match="2 of its runs are in"):
+        gd.sweep(LOW, {KEY: FRACTIONS}, archive=archive)
+    with pytest.warns(UserWarning, match=r"2 of the runs kept .*those of gearidae 0\.1\.0"):
+        gd.sweep(LOW, {KEY: [1.0]}, archive=archive, resume=True)
+    assert set(folder.iterdir()) == former
+    gd.sweep(LOW, {KEY: [1.0]}, archive=archive, overwrite=True)
+    assert list(tmp_path.iterdir()) == [archive]
+
+
 def test_other_files_in_the_folder_stay(cut_off):
     note = cut_off.with_name("sweep.nc.runs") / "note.txt"
     note.write_text("mine")
@@ -245,7 +259,7 @@ def test_other_files_in_the_folder_stay(cut_off):
 
 def test_what_a_kill_leaves_half_written_goes(cut_off):
     first = kept_files(cut_off)[0]
-    half = first.with_name(f".{first.stem}.123-0123abcd.part")
+    half = first.with_name(f".{first.name}.123-0123abcd.part")
     half.write_bytes(b"half")
     gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, resume=True)
     assert list(cut_off.parent.iterdir()) == [cut_off]

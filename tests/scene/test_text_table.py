@@ -105,6 +105,13 @@ def test_units_may_stand_below_the_headings(tmp_path):
     np.testing.assert_allclose(table.numbers([0, 1]), [[0, 1.5], [1, 2]])
 
 
+def test_lines_above_the_headings_may_hold_anything(tmp_path):
+    table = read(tmp_path, 'Operator: "N. N." and others\n1,2,3\n;;;\nt;v\n0;1,5\n')
+    assert table.headings == ("t", "v")
+    assert table.skipped == 3
+    np.testing.assert_allclose(table.numbers(), [[0, 1.5]])
+
+
 def test_a_long_line_of_headings_is_read(tmp_path):
     """Of 200 kB: 20,000 channels."""
     count = 20_000

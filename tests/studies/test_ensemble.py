@@ -11,9 +11,9 @@ from scipy import stats
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
-from gearidae.analysis.verdict_codes import VerdictCode, sticking, verdict_codes
+from gearidae.analysis.verdict.codes import VerdictCode, sticking, verdict_codes
+from gearidae.analysis.verdict.judge import verdict_of
 from gearidae.archive import to_dataset
-from gearidae.archive.verdict import verdict_of
 from gearidae.cli import main
 from gearidae.cli.ensemble import executor_for
 from gearidae.errors import Interrupted

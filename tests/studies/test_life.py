@@ -8,7 +8,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.archive.exposures import flank_areas, gear_flank_areas
-from gearidae.engine.followers.exposures.follow import QUANTITIES
+from gearidae.engine.followers.exposures.bins import ROWS
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_window import Cycles, run_window, steady_exposures, window_scene
 
@@ -60,7 +60,7 @@ def test_blocks_that_fluctuate_are_averaged(monkeypatch):
     seen = []
 
     def blocks(*contacts):
-        seen[:] = [np.full((2, QUANTITIES, 4), each) for each in contacts]
+        seen[:] = [np.full((2, ROWS.total, 4), each) for each in contacts]
         return steady_exposures(seen, 0.01)
 
     assert blocks(1.0) is None

@@ -8,7 +8,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
-from gearidae.analysis.verdict_codes import Outcome
+from gearidae.analysis.verdict.codes import Outcome
 from gearidae.cli import main
 from gearidae.errors import Interrupted
 from gearidae.records import EventKind

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from gearidae.analysis.record_columns import Column, find_columns, has_columns
 from gearidae.analysis.signal import signals, to_si
-from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
@@ -145,7 +144,6 @@ def _is_netcdf(source: Path) -> bool:
 
 
 def _from_netcdf(source: Path, wanted: tuple[str, str] | None) -> xr.Dataset:
-    check_heaps("signal", source)
     try:
         ds = loaded(source)
     except Exception as error:

@@ -61,7 +61,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
         name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in _columns(scene)
     }
     variables |= _event_variables([solution], np.array([fraction]))
-    variables |= extreme_variables(scene, [solution])
+    variables |= extreme_variables(scene, [solution.extremes])
     exposures = exposure_variables(scene, [scene], [solution])
     variables |= exposures
     return xr.Dataset(
@@ -146,7 +146,7 @@ def combine(
     if keep.events:
         variables |= _events_of_sweep(labels, scenes, solutions)
     of_runs = _of_runs(scenes, solutions, keep)
-    extremes = extreme_variables(scene, solutions, dims, shape)
+    extremes = extreme_variables(scene, [each.extremes for each in solutions], dims, shape)
     for name, (variable, values) in of_runs.items():
         if keep.holds(name):
             variables[name] = (dims, values.reshape(shape), variable.attributes)

@@ -11,28 +11,27 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.library import LIBRARY, await_lock, opened, uninterrupted
+from gearidae.archive.library import Form, opened, uninterrupted
 
-__all__ = ["CHUNK", "chunked", "define", "offsets"]
+__all__ = ["CHUNK", "chunked", "define"]
 
 _COMPRESSED_ABOVE = 2**16
 """Variables larger than this [bytes] are compressed if that pays, and of a sweep have chunks for each run."""
 CHUNK = 2**20
 """Largest chunk [bytes]."""
+_ROOM = "room"
+_HEADER = 2**17
+"""Bytes left for the header of a file in the classic format: where it outgrows its place, all data are moved."""
 
 
 @uninterrupted()
 def define(
-    template: xr.Dataset,
-    path: Path,
-    sizes: Mapping[str, int],
-    extra: Mapping[str, tuple[str, ...]] | None = None,
+    template: xr.Dataset, path: Path, sizes: Mapping[str, int | None], *, in_place: bool = False
 ) -> None:
-    """Create a netCDF4 file that holds a dataset's definitions at other lengths.
+    """Create a netCDF file that holds a dataset's definitions at other lengths.
 
     Parameters
     ----------
@@ -40,44 +39,40 @@ def define(
         A dataset in which the dimensions in `sizes` have length 0.
     path : Path
         File to create.
-    sizes : mapping of str to int
-        Lengths of the dimensions.
-    extra : mapping of str to tuple of str, optional
-        Further float64 and (those without dimensions) int64 variables, by name, with their dimensions. If given,
-        nothing is chunked or compressed, and every variable's place is taken up and filled.
+    sizes : mapping of str to int or None
+        Lengths of the dimensions; None for one that grows.
+    in_place : bool, optional
+        Whether the file is written while others read it: in netCDF's classic format (CDF-5), whose structure is its
+        beginning and never changes, and filled with what stands for nothing. By default netCDF4, in chunks.
     """
     with tempfile.TemporaryDirectory() as folder:
         sample = Path(folder) / "template.nc"
         template.drop_encoding().to_netcdf(
             sample, engine="netcdf4", encoding={name: {"_FillValue": None} for name in template.coords}
         )
-        with opened(sample) as old, netCDF4.Dataset(path, "x", format="NETCDF4") as new:
-            new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+        form: Form = "NETCDF3_64BIT_DATA" if in_place else "NETCDF4"
+        with opened(sample) as old, opened(path, "x", form) as new:
             lengths = {name: len(dimension) for name, dimension in old.dimensions.items()} | dict(sizes)
+            new.setncatts({_ROOM: " " * _HEADER} if in_place else {})
             for name, size in lengths.items():
                 new.createDimension(name, size)
             for name, variable in old.variables.items():
                 attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
                 fill = attributes.pop("_FillValue", None)
-                shape = tuple(lengths[dim] for dim in variable.dimensions)
                 storage: dict[str, Any] = {}
-                if extra is not None:
-                    storage = {"contiguous": all(shape)}  # a length of 0 is one without limit to netCDF
-                elif variable.dtype is not str:
+                if not in_place and variable.dtype is not str:
+                    shape = tuple(lengths[dim] or 0 for dim in variable.dimensions)
                     nbytes = variable.dtype.itemsize * int(np.prod(shape))
                     storage = chunked(name, variable.dtype, shape, nbytes)
                 made = new.createVariable(
                     name, variable.dtype, variable.dimensions, fill_value=fill, **storage
                 )
+                if _ROOM in new.ncattrs():  # data begin behind it from now on
+                    new.delncattr(_ROOM)
                 made.setncatts(attributes)
                 if not set(variable.dimensions) & set(sizes):  # it is all there
                     made[...] = variable[...]
-            for name, dims in (extra or {}).items():
-                new.createVariable(name, "f8" if dims else "i8", dims, contiguous=True)
-                new[name].setncatts({"long_name": name.replace("_", " "), "units": "1"})
-            if extra is not None:
-                for made in new.variables.values():
-                    _claim(made)
+            new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
 
 
 def chunked(name: str, dtype: np.dtype[Any], shape: tuple[int, ...], nbytes: int) -> dict[str, Any]:
@@ -96,28 +91,3 @@ def chunked(name: str, dtype: np.dtype[Any], shape: tuple[int, ...], nbytes: int
     if nbytes > _COMPRESSED_ABOVE and (dtype.kind == "i" or name == "pairs_in_contact"):
         storage |= {"zlib": True, "complevel": 1, "shuffle": True}
     return storage
-
-
-def offsets(path: Path) -> dict[str, int]:
-    """Where in the file the data of every variable begin [bytes]; all must be contiguous and have been claimed."""
-    found: dict[str, int] = {}
-    with LIBRARY:
-        import h5py  # starts a process, which must not inherit a file that another thread is writing
-
-        await_lock(path)
-        with h5py.File(path, "r") as file:
-            for name, variable in file.items():
-                place = variable.id.get_offset()
-                if place is not None:  # a dimension without a variable has no data
-                    found[name] = int(place)
-    return found
-
-
-def _claim(variable: Any) -> None:
-    """Have the file's space for a variable allocated, and filled with what stands for nothing."""
-    if variable.dimensions:
-        first = (slice(0, 1),) * len(variable.dimensions)
-        if variable.size:
-            variable[first] = variable[first]
-    elif np.ma.is_masked(variable[...]):
-        variable[...] = 0

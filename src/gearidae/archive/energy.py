@@ -43,11 +43,8 @@ def balance_attribute(scene: Scene, solution: Solution) -> dict[str, str]:
 
 
 def balance_in_attributes(ds: xr.Dataset) -> dict[str, Any]:
-    """Read a single run's energy balance, with the time that it reaches to; empty if it has none.
-
-    Archives of version 0.1 have it under the name ``ledger``.
-    """
-    numbers: dict[str, Any] = json.loads(ds.attrs.get("energy_balance", ds.attrs.get("ledger", "{}")))
+    """Read a single run's energy balance, with the time that it reaches to; empty if it has none."""
+    numbers: dict[str, Any] = json.loads(ds.attrs.get("energy_balance", "{}"))
     return numbers
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.archive.variables import EXPOSURES, PLACES
-from gearidae.records import Solution
+from gearidae.records import ExposureRows, Solution
 from gearidae.scene import MATERIAL_NAMES, Scene
 
 __all__ = ["FLANKS", "exposure_coordinates", "exposure_variables", "flank_areas", "gear_flank_areas"]
@@ -127,8 +127,8 @@ def exposure_variables(
 def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     """Exposures of one run, per area of the pinion's flanks."""
     assert scene.gears is not None
-    teeth, places, count = scene.gears.pinion_teeth, scene.run.exposures, len(MATERIAL_NAMES)
-    shape = (len(FLANKS), teeth, 2 * count + 2, places)
+    rows = ExposureRows.of(len(MATERIAL_NAMES))
+    shape = (len(FLANKS), scene.gears.pinion_teeth, rows.total, scene.run.exposures)
     if solution.extremes is None or len(solution.extremes.exposures) != math.prod(shape):
         table = np.full(shape, math.nan)
     else:
@@ -139,14 +139,14 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     materials = scene.materials()
     shares = np.array([1.0 if scene.coating.by_place else each.share for each in materials])[:, None, None]
     by_material = table.swapaxes(1, 2)
-    lost = by_material[:, count : count + len(materials)] / area
+    lost = by_material[:, rows.adhesion : rows.adhesion + len(materials)] / area
     return {
         "asperity_contacts": surface.asperity_density
         * width
         * unit
-        * by_material[:, : len(materials)]
+        * by_material[:, rows.contacts : rows.contacts + len(materials)]
         / area,
         "adhesion_work": np.divide(lost, shares, out=np.zeros_like(lost), where=shares > 0.0),
-        "sliding_work": table[:, :, 2 * count] / area,
-        "largest_pressure": table[:, :, 2 * count + 1] / (width * unit),
+        "sliding_work": table[:, :, rows.sliding] / area,
+        "largest_pressure": table[:, :, rows.pressure] / (width * unit),
     }

@@ -11,14 +11,14 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.variables import EXTREMES, ROLLER_EXTREMES
-from gearidae.records import Extremes, Solution
+from gearidae.records import Extremes
 from gearidae.scene import Scene
 
 __all__ = ["extreme_variables", "extremes_of"]
 
 
 def extreme_variables(
-    scene: Scene, solutions: Sequence[Solution], dims: tuple[str, ...] = (), shape: tuple[int, ...] = ()
+    scene: Scene, runs: Sequence[Extremes | None], dims: tuple[str, ...] = (), shape: tuple[int, ...] = ()
 ) -> dict[Hashable, Any]:
     """Make the variables of the runs' extremes.
 
@@ -26,8 +26,8 @@ def extreme_variables(
     ----------
     scene : Scene
         That the runs were derived from.
-    solutions : sequence of Solution
-        One a run.
+    runs : sequence of Extremes or None
+        Of each run; None where it produced nothing.
     dims, shape : tuple, optional
         Swept dimensions and their lengths.
 
@@ -37,7 +37,7 @@ def extreme_variables(
         Name to dimensions, values and attributes. NaN, and 0 of counts, where a run produced nothing; empty if none
         did.
     """
-    if all(solution.extremes is None for solution in solutions):
+    if all(extremes is None for extremes in runs):
         return {}
     names = list(EXTREMES if scene.roller is None else ROLLER_EXTREMES)
     if scene.contact.model == "elastic":  # of these it is sampled
@@ -47,7 +47,7 @@ def extreme_variables(
         variable = EXTREMES[name]
         nothing = 0 if variable.dtype is np.int64 else math.nan
         field = "smallest_separation" if name == "min_separation" else name
-        values = [getattr(solution.extremes, field, nothing) for solution in solutions]
+        values = [getattr(extremes, field, nothing) for extremes in runs]
         made[name] = (dims, np.array(values, dtype=variable.dtype).reshape(shape), variable.attributes)
     return made
 
@@ -63,7 +63,7 @@ def extremes_of(run: xr.Dataset) -> Extremes | None:
     Returns
     -------
     Extremes or None
-        None if there are none: the run produced nothing, or is not at its end.
+        None if there are none: the run produced nothing, or has left no checkpoint yet.
     """
     if "final_speed" not in run.variables or math.isnan(float(run["final_speed"])):
         return None

@@ -12,12 +12,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, TypeAlias
 
 import netCDF4
 import xarray as xr
 
-__all__ = ["LIBRARY", "await_lock", "check_size", "loaded", "opened", "uninterrupted"]
+__all__ = ["LIBRARY", "Form", "await_lock", "check_size", "close", "loaded", "opened", "uninterrupted"]
 
 _PATIENCE: Final = 5.0
 """Time [s] for which a file's lock is waited for."""
@@ -29,6 +29,8 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(
         before=LIBRARY.acquire, after_in_parent=LIBRARY.release, after_in_child=LIBRARY.release
     )
+
+Form: TypeAlias = Literal["NETCDF4", "NETCDF3_64BIT_DATA"]
 
 _MOST_SHRUNK: Final = 1032
 """Bytes that one byte in a file can stand for: deflate, which HDF5 compresses by, shrinks nothing further."""
@@ -60,19 +62,42 @@ def uninterrupted() -> Iterator[None]:
 
 
 @contextmanager
-def opened(path: Path, mode: Literal["r", "a"] = "r") -> Iterator[netCDF4.Dataset]:
-    """Open a netCDF4 file that this program wrote, with `LIBRARY` held.
+def opened(
+    path: Path, mode: Literal["r", "a", "x"] = "r", form: Form = "NETCDF4"
+) -> Iterator[netCDF4.Dataset]:
+    """Open a netCDF file of ours, with `LIBRARY` held.
 
     Parameters
     ----------
     path : Path
-    mode : {"r", "a"}, optional
-        To read, or to write into it.
+    mode : {"r", "a", "x"}, optional
+        To read, to write into it, or to make it.
+    form : str, optional
+        The format of a file that is made.
     """
     with LIBRARY:
         await_lock(path)
-        with netCDF4.Dataset(path, mode) as file:
+        file = netCDF4.Dataset(path, mode, format=form, keepweakref=True)
+        try:
             yield file
+        finally:
+            close(file, written=mode != "r")
+
+
+def close(file: netCDF4.Dataset, *, written: bool) -> None:
+    """Close a file that was opened with weak references.
+
+    Where the disk does not take the rest of a file, netCDF's library must close it once only: a second time, when the
+    object goes, it uses memory that it has freed. So writing is tried before, and such a file closes with its object.
+
+    Raises
+    ------
+    OSError, RuntimeError
+        If the disk does not take it.
+    """
+    if written:
+        file.sync()
+    file.close()
 
 
 def loaded(path: Path) -> xr.Dataset:

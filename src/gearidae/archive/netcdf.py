@@ -13,9 +13,8 @@ import xarray as xr
 from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import disk_errors
-from gearidae.archive.growing_layout import is_growing, trimmed
-from gearidae.archive.heaps import check_heaps
-from gearidae.archive.integrity import CheckedStore, verify, with_checksums
+from gearidae.archive.growing import is_growing, trimmed
+from gearidae.archive.integrity import CheckedStore
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
@@ -29,7 +28,8 @@ from gearidae.scene import Scene
 
 __all__ = ["open_archive", "save"]
 
-_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_SIGNATURES = (b"\x89HDF\r\n\x1a\n", b"CDF\x05")
+"""How archives begin: finished ones, and those of runs under way."""
 _JUDGED = ("verdict", "impacts")
 """What archives of runs that kept parts only have had from the first."""
 _LAZY_ABOVE = 128 * 2**20
@@ -63,9 +63,7 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
         If the target is refused (see `check_target`) or the disk does not take the data.
     """
     with whole_file(path, overwrite=overwrite) as part, disk_errors():
-        with_checksums(ds.drop_encoding()).to_netcdf(
-            part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds)
-        )
+        ds.drop_encoding().to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds))
     return Path(os.path.realpath(path))
 
 
@@ -97,12 +95,11 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, "is no file that can be read")
     try:
         with source.open("rb") as file:
-            signature = file.read(len(_HDF5_SIGNATURE))
+            head = file.read(8)
     except OSError as error:
         raise SceneError("archive", path, f"cannot be read ({error.strerror})") from error
-    if signature != _HDF5_SIGNATURE:
+    if not head.startswith(_SIGNATURES):
         raise SceneError("archive", path, "is not a netCDF4 file")
-    check_heaps("archive", source)
     running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
         ds = _opened(source)
@@ -111,10 +108,10 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         raise SceneError("archive", path, f"is damaged or not a netCDF4 file ({error})") from error
     try:
-        verify(ds, path)
+        ds.attrs.pop("checksums", None)  # of version 0.1.0
         _check_layout(ds, path)
         if is_growing(ds):
-            ds = trimmed(ds, running=running)
+            ds = trimmed(ds, source, running=running)
         if ds.nbytes <= _LAZY_ABOVE:
             ds = in_memory(ds)
     except SceneError:
@@ -138,7 +135,7 @@ def _opened(source: Path) -> xr.Dataset:
         if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= _LAZY_ABOVE:
             return xr.open_dataset(store, decode_times=False)
         for variable in variables.values():
-            if variable.dimensions and variable.chunking() != "contiguous":
+            if isinstance(variable.chunking(), list):
                 # two chunks are enough to go through in order; the library's own 64 MB count for each variable
                 variable.set_var_chunk_cache(size=2 * CHUNK)
         times = variables.get("time")
@@ -159,6 +156,10 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     if not isinstance(found, int | np.integer) or found != SCHEMA_VERSION:
         raise SceneError(
             "archive", path, f"has schema_version {found!s}: this version of gearidae reads {SCHEMA_VERSION}"
+        )
+    if "checkpoint" in ds.variables:
+        raise SceneError(
+            "archive", path, "is of a run that gearidae 0.1.0 has not finished and alone can read"
         )
     scene = readable_scene(ds.attrs["scene"])
     if scene is None:

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-__all__ = ["PIECE", "Spread", "count", "first_above", "pieces", "reached", "spread"]
+__all__ = ["PIECE", "Spread", "count", "pieces", "reached", "spread"]
 
 PIECE = 2**18
 """Values looked at together."""
@@ -80,15 +80,6 @@ def reached(array: xr.DataArray) -> int:
         present = np.isfinite(array.variable[place : place + PIECE].values)
         if present.any():
             return place + len(present) - int(present[::-1].argmax())
-    return 0
-
-
-def first_above(array: xr.DataArray, level: float) -> int:
-    """Place of the first value above a level; 0 if there is none, as `numpy.argmax` has it."""
-    for place, values in pieces(array):
-        above = values > level
-        if above.any():
-            return place + int(above.argmax())
     return 0
 
 

@@ -2,9 +2,8 @@
 
 Read from a dataset of any length in pieces; it stands beside the other readers of datasets, because the report needs it
 as well as the runs do. Times at rest come from the stick and slip events and are as exact as these. Extremes, the time
-held by adhesion and energies are those that the engine kept at its own steps; a run that is not at its end has none of
-them: its extremes and times are those of its samples, and nothing is said of energies. `Account.time_to_speed` always
-is that of a sample.
+held by adhesion and energies are those that the engine kept at its own steps; a run that is not at its end has extremes
+of its newest checkpoint and no energies. `Account.time_to_speed` always is that of a sample.
 """
 
 from __future__ import annotations
@@ -36,21 +35,11 @@ AT_SPEED = 0.95
 """Share of its largest sampled speed from which a gear counts as up to speed."""
 OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "time_at_rest", "impacts"})
 """Rows of the account that begin with a run that goes on from another; everything else goes on over the chain."""
-_HELD_WITHIN = 0.5
-"""Tooth pitches that a gear held by adhesion stays within."""
-_COLUMNS = (
-    "time",
-    "gear_speed",
-    "gear_angle",
-    "mesh_force",
-    "drive_gap",
-    "coast_gap",
-)
 
 
 @dataclass(frozen=True, slots=True)
 class Account:
-    """What one run of a gear pair did; times in s, work and energies in J, NaN for what was not sampled.
+    """What one run of a gear pair did; times in s, work and energies in J, NaN for what has not been kept.
 
     Of a run that goes on from another, `OF_ONE_RUN` names what is of this run alone.
 
@@ -73,8 +62,7 @@ class Account:
     impacts : int
         Contacts made.
     largest_force, largest_force_time : float
-        Largest force along the line of action [N], either way, and when; from the engine's extremes, which know it
-        whatever is sampled, or from the samples of a run that is not at its end.
+        Largest force along the line of action [N], either way, and when.
     drive_work : float
         Done by the torque on the pinion.
     drag_loss, dry_loss, damping_loss : float
@@ -206,27 +194,22 @@ def account_of(
     incidents = _Events(scene, start)
     for piece in _pieces(read, events, ("event_time", "event_kind")):
         incidents.add(piece["event_time"], piece["event_kind"])
-    fine = _Samples(scene)
-    for piece in _pieces(read, samples, _COLUMNS, overlap=1):
-        fine.add(piece)
-    end = max(end, incidents.time, np.nan_to_num(fine.time))
-    top, force, force_time = fine.top_speed, fine.largest_force, fine.largest_force_time
-    if extremes is not None:
-        top = extremes.max_gear_speed
-        force, force_time = _largest_force(extremes)
-    still = extremes.final_speed == 0.0 if extremes is not None else top == 0.0
-    at_rest, resting = incidents.rest(end, still=still)
-    adhering, clinging = fine.adhering()
-    if extremes is not None:
-        adhering, clinging = extremes.time_adhering, extremes.turn_backs > 1
+    top = last = math.nan
+    for piece in _pieces(read, samples, ("time", "gear_speed")):
+        top, last = float(np.fmax(top, piece["gear_speed"].max())), float(piece["time"][-1])
+    found = extremes or Extremes()
+    force, force_time = _largest_force(found)
+    at_rest, resting = incidents.rest(
+        max(end, incidents.time, np.nan_to_num(last)), still=found.final_speed == 0.0
+    )
     return Account(
-        top_speed=top,
-        time_to_speed=_time_to_speed(read, samples, fine.top_speed),
+        top_speed=found.max_gear_speed,
+        time_to_speed=_time_to_speed(read, samples, top),
         sticks=incidents.counts[EventKind.STICK],
         slips=incidents.counts[EventKind.SLIP],
         time_at_rest=at_rest,
-        time_adhering=adhering,
-        held_by="dry resistance" if resting else "adhesion" if clinging else "",
+        time_adhering=found.time_adhering,
+        held_by="dry resistance" if resting else "adhesion" if found.turn_backs > 1 else "",
         impacts=incidents.counts[EventKind.ONSET],
         largest_force=force,
         largest_force_time=force_time,
@@ -259,12 +242,10 @@ def with_account(ds: xr.Dataset) -> xr.Dataset:
     return ds if found is None else ds.assign_attrs(account=found.as_json())
 
 
-def _pieces(
-    read: Read, count: int, names: tuple[str, ...], overlap: int = 0
-) -> Iterator[dict[str, NDArray[Any]]]:
-    """Go through a dimension; each piece begins with the last samples of the one before."""
+def _pieces(read: Read, count: int, names: tuple[str, ...]) -> Iterator[dict[str, NDArray[Any]]]:
+    """Go through a dimension."""
     for start in range(0, count, PIECE):
-        cut = slice(max(start - overlap, 0), min(start + PIECE, count))
+        cut = slice(start, min(start + PIECE, count))
         yield {name: read(name, cut) for name in names}
 
 
@@ -307,42 +288,3 @@ class _Events:
         if self._dry and still and not self.counts[EventKind.SLIP]:
             return end - self._start, True
         return self._total, False
-
-
-class _Samples:
-    """Extremes of the samples, and the times the gear is turned back by adhesion."""
-
-    def __init__(self, scene: Scene) -> None:
-        assert scene.gears is not None
-        self.time = self.top_speed = self.largest_force = self.largest_force_time = math.nan
-        self._angle = math.nan
-        self._pitch = 2.0 * math.pi / scene.gears.gear_teeth
-        self._turned_back: tuple[float, float] | None = None
-        self._total = 0.0
-
-    def add(self, piece: dict[str, Floats]) -> None:
-        new = piece["time"] > (-math.inf if math.isnan(self.time) else self.time)
-        force, speed = np.abs(piece["mesh_force"]), piece["gear_speed"]
-        self.top_speed = float(np.fmax(self.top_speed, speed.max()))
-        most = int(np.argmax(force))
-        if not force[most] <= self.largest_force:
-            self.largest_force, self.largest_force_time = float(force[most]), float(piece["time"][most])
-        # a gear that runs forward and then back without touching the coast flank is held by what it clings to
-        back = (speed[:-1] > 0.0) & (speed[1:] < 0.0) & new[1:]
-        back &= piece["drive_gap"][:-1] < piece["coast_gap"][:-1]
-        for k in np.flatnonzero(back):
-            time, angle = float(piece["time"][k]), float(piece["gear_angle"][k])
-            if self._turned_back is not None and self._near(angle):
-                self._total += time - self._turned_back[0]
-            self._turned_back = (time, angle)
-        self.time, self._angle = float(piece["time"][-1]), float(piece["gear_angle"][-1])
-
-    def adhering(self) -> tuple[float, bool]:
-        """Time held by adhesion, and whether it lasts."""
-        if self._turned_back is not None and self._total > 0.0 and self._near(self._angle):
-            return self._total + self.time - self._turned_back[0], True
-        return self._total, False
-
-    def _near(self, angle: float) -> bool:
-        assert self._turned_back is not None
-        return abs(angle - self._turned_back[1]) < _HELD_WITHIN * self._pitch

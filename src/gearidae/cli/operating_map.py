@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import gearidae as gd
-from gearidae.analysis.verdict_codes import Outcome
+from gearidae.analysis.verdict.codes import Outcome
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say

@@ -310,7 +310,7 @@ def outlook(
     backend: str,
     checkpoint: NDArray[np.float64] | None = None,
     start: Start = AT_ONCE,
-) -> tuple[int, dict[str, int], str]:
+) -> tuple[dict[str, int], str]:
     """What can be said of a run without running it.
 
     Parameters
@@ -324,8 +324,6 @@ def outlook(
 
     Returns
     -------
-    checkpoint_size : int
-        Numbers in a checkpoint, of the contact model that the run begins with.
     skipped : dict
         What the run did not need until then, by name.
     method : str
@@ -339,7 +337,7 @@ def outlook(
     problem = problem_from(scene, start)
     if checkpoint is not None and problem.of_checkpoint(checkpoint).has_been_elastic(checkpoint):
         problem.skipped["elastic_deflection"] = 0
-    return problem.checkpoint(0.0, problem.start).size, problem.skipped, formulas(problem, backend)
+    return problem.skipped, formulas(problem, backend)
 
 
 def kept_at(

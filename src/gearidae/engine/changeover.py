@@ -9,7 +9,7 @@ import numpy as np
 from gearidae.engine.elastic.histories import book_points, init_nodes
 from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
 from gearidae.engine.followers.balance import carry_balance
-from gearidae.engine.followers.exposures.follow import exposures_of
+from gearidae.engine.followers.exposures.bins import exposures_of
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
 from gearidae.engine.pairs.tooth_pairs import set_joined
@@ -92,7 +92,7 @@ def join_anew(m: Model, y: Floats, absent: tuple[bool, ...]) -> None:
 
 
 def _limit(carried: Model, m: Model, y: Floats, absent: tuple[bool, ...]) -> None:
-    """Let go where asperities cannot stretch so far as the carried heights, and begin those that were absent."""
+    """Detach asperities that cannot stretch as far as the carried heights; absent materials begin unstretched."""
     gaps = np.empty(int(m.scene.points))
     for k in range(int(m.scene.histories)):
         h = m.state.history[k]

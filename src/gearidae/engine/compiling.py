@@ -47,7 +47,7 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
     with _one_at_a_time, ExitStack() as stack:
         _depth += 1
         stack.callback(_leave)
-        if _depth > 1:  # whoever is outside says it
+        if _depth > 1:  # the outer one says it
             yield
             return
         listener = CompileListener(what, how_long)

@@ -29,14 +29,13 @@ from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.followers.balance import open_balance
-from gearidae.engine.followers.exposures.follow import QUANTITIES, exposures_of
+from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.state import (
     EMPTY,
     ENERGY,
     EXTREMES,
     GEARS,
-    MATERIALS,
     PHASE,
     PROGRESS,
     Floats,
@@ -68,7 +67,7 @@ __all__ = [
 
 _SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
 _FORCES: Final = ("largest_force", "smallest_force")
-_TIMES: Final = ("held_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")
+_TIMES: Final = ("stuck_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")
 _SAME: Final = 1e-12
 """Relative difference of forces below which materials are the same: units of other torques round their last digits."""
 
@@ -206,8 +205,11 @@ class _Units:
 
     def convert_exposures(self, m: Model) -> None:
         """Put what the flanks have been exposed to into the new units, in place; numbers of asperities have none."""
-        if m.scene.places:
-            exposures_of(m).reshape(-1, QUANTITIES, int(m.scene.places))[:, MATERIALS:] *= self.energy
+        if m.scene.bins:
+            table = exposures_of(m).reshape(-1, ROWS.total, int(m.scene.bins))
+            table[:, ROWS.adhesion :] *= (
+                self.energy
+            )  # forces have the same unit, as lengths are in roughnesses
 
     def convert_state(self, s: Record) -> None:
         """Put a state into the new units, in place."""

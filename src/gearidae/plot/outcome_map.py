@@ -9,7 +9,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from gearidae.analysis.verdict_codes import Outcome
+from gearidae.analysis.verdict.codes import Outcome
 from gearidae.errors import SceneError
 from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.style import new_axes

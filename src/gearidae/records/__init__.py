@@ -18,6 +18,7 @@ from gearidae.records.events import (
     Events,
     Flank,
 )
+from gearidae.records.exposures import ExposureRows
 from gearidae.records.results import (
     Block,
     Solution,
@@ -65,6 +66,7 @@ __all__ = [
     "EnergyBalance",
     "EventKind",
     "Events",
+    "ExposureRows",
     "Extremes",
     "Flank",
     "Solution",

@@ -6,13 +6,16 @@ these lists.
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from collections import namedtuple
+from typing import Any, Final, NamedTuple
 
 __all__ = [
     "ELASTIC_COLUMNS",
     "ELASTIC_SAMPLES",
+    "GEAR",
     "GEAR_COLUMNS",
     "GEAR_SAMPLES",
+    "ROLLER",
     "ROLLER_COLUMNS",
     "ROLLER_SAMPLES",
     "Column",
@@ -95,6 +98,17 @@ GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
 """Additional columns of elastic contacts, after the others."""
+
+
+def _places(*columns: str) -> Any:
+    """Place of each column in a row, by its name."""
+    make: Any = namedtuple  # mypy takes names that are written out only
+    return make("Places", columns)(*range(len(columns)))
+
+
+GEAR: Final = _places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
+ROLLER: Final = _places(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
+"""Places of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
 
 
 def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from gearidae.analysis.verdict.judge import verdict_of
 from gearidae.archive.keep import Keep
-from gearidae.archive.verdict import verdict_of
 from gearidae.errors import SceneError
 from gearidae.records import Solution
 from gearidae.runs.running import solve, unsolved

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from gearidae import __version__, engine
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
+from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
 from gearidae.archive.disk import DiskError
 from gearidae.archive.energy import balance_of
-from gearidae.archive.journal import Checkpoint
 from gearidae.archive.run_summary import account_of
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
@@ -70,6 +70,7 @@ def stream(
     """
     found = _found(target, scene, start) if resume and target.exists() else None
     if found is not None and found.attrs["status"] == "finished":
+        drop_checkpoints(target)  # a kill may have left one
         return found
     if found is not None:
         backend = _same_backend(backend, str(found.attrs["backend"]))
@@ -88,15 +89,13 @@ class _Run:
     def __init__(self, scene: Scene, target: Path, backend: str, start: engine.Start) -> None:
         self._scene, self._target, self._backend, self._start = scene, target, backend, start
         self.end = start.time + scene.run.duration
-        self._checkpoint_size, self._skipped, self._method = engine.outlook(scene, backend, start=start)
+        self._skipped, self._method = engine.outlook(scene, backend, start=start)
 
     def begin(self) -> GrowingArchive:
         """Make the archive."""
         run = self._scene.run
         try:
-            return GrowingArchive.create(
-                self._target, self._template(), run.sample_count, run.duration, self._checkpoint_size
-            )
+            return GrowingArchive.create(self._target, self._template(), run.sample_count, run.duration)
         except DiskError as error:
             raise SolverError(
                 f"the archive {self._target} could not be made ({error})",
@@ -125,18 +124,19 @@ class _Run:
             reached = block.time
 
         try:
-            point = archive.go_back()
-            reached = point.time if point.sequence else self._start.time
-            if _is_end(reached, self.end):  # all that is missing is the final form
-                return self._ended_at(point)
-            start = replace(
-                self._start,
-                checkpoint=point.state if point.sequence else None,
-                reached=reached,
-                wall_time=point.wall_time,
-                events=point.events,
-                statistics=point.statistics,
-            )
+            start, point = self._start, archive.go_back()
+            if point is not None:
+                reached = point.time
+                if _is_end(reached, self.end):  # all that is missing is the final form
+                    return self._ended_at(point)
+                start = replace(
+                    start,
+                    checkpoint=point.state,
+                    reached=reached,
+                    wall_time=point.wall_time,
+                    events=point.events,
+                    statistics=point.statistics,
+                )
             return engine.follow(
                 self._scene,
                 take,
@@ -204,7 +204,7 @@ class _Run:
 
     def _ended_at(self, point: Checkpoint) -> Ended:
         """How a run ended of which only the archive's final form was missing."""
-        _, skipped, method = engine.outlook(self._scene, self._backend, point.state, self._start)
+        skipped, method = engine.outlook(self._scene, self._backend, point.state, self._start)
         counted = replace(point.statistics, method=method)
         statistics = statistics_of(counted, point.wall_time, self._backend, skipped)
         balance, extremes = engine.kept_at(self._scene, point.state, self._start)

@@ -17,7 +17,7 @@ _LONGEST_LINE: Final = 2**22
 _SAMPLE: Final = 2**16  # bytes from which the encoding is recognised
 _MOST_ABOVE: Final = 100  # lines in which the headings are looked for
 _ROWS_SEEN: Final = 100  # rows from which separator and decimal sign are recognised
-_MOST_REMARKS: Final = 10_000
+_MOST_LINES: Final = 100_000  # read above the rows, most of them remarks
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _WHOLE_NUMBER: Final = re.compile(r"[+-]?\d+(?:[eE][+-]?\d+)?")
 _WITH_UNIT: Final = re.compile(r"[^\[\]()]+[\[(][^\])]*[\])]")
@@ -133,7 +133,7 @@ def _first_lines(file: Any, skip: int) -> list[_Line]:
         if number > skip and text.strip():
             lines.append(_Line(number, text.lstrip("# ") if remark else text.partition("#")[0], remark))
             plain += not remark
-        if len(lines) > _MOST_REMARKS:
+        if number > skip + _MOST_LINES:
             break
     return lines
 
@@ -147,7 +147,11 @@ def _heading(
         return first
     found = None
     for line in [each for each in lines if each.number < first.number or not each.remark]:
-        if names(_headings(line.text, _delimiter([line.text]) if delimiter is None else delimiter)):
+        try:
+            named = names(_headings(line.text, _delimiter([line.text]) if delimiter is None else delimiter))
+        except ValueError:
+            named = False  # a quotation mark in a line above the table
+        if named:
             found = line
             if not line.remark:
                 break

@@ -19,9 +19,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive import save
 from gearidae.archive.target import claims_archive
-from gearidae.archive.verdict import is_scheduled
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae import engine
-from gearidae.engine.followers.exposures.follow import PRESSURE, QUANTITIES
-from gearidae.engine.model.state import MATERIALS
 from gearidae.errors import SolverError
+from gearidae.records import ExposureRows
 from gearidae.runs.estimates import steady_speed
 from gearidae.runs.running import solve_to_end, unsolved
+from gearidae.scene import MATERIAL_NAMES
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -46,6 +46,7 @@ _PATIENCE: Final = 4.0
 """Time that each part of a window gets, over that of its cycles at the steady speed."""
 _MOST_BLOCKS: Final = 8
 """Blocks after which a window is taken as it is."""
+_ROWS: Final = ExposureRows.of(len(MATERIAL_NAMES))
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +232,9 @@ def steady_exposures(blocks: Sequence[Floats], tolerance: float) -> Floats | Non
     """
     if tolerance == math.inf:
         return blocks[-1]
-    contacts = [float(each[: len(each) // 2, :MATERIALS].sum()) for each in blocks[-3:]]  # of the drive flank
+    contacts = [
+        float(each[: len(each) // 2, : _ROWS.adhesion].sum()) for each in blocks[-3:]
+    ]  # of the drive flank
     changes = np.diff(contacts)
     if not changes.size:
         return None
@@ -281,11 +284,11 @@ def gained(solution: Solution, before: Solution | None, scene: Scene) -> Floats:
     ours = _table(solution, scene)
     if before is not None:
         theirs = _table(before, scene)
-        theirs[:, PRESSURE] = 0.0
+        theirs[:, _ROWS.pressure] = 0.0
         ours -= theirs
     return ours
 
 
 def _table(solution: Solution, scene: Scene) -> Floats:
     assert solution.extremes is not None
-    return np.array(solution.extremes.exposures).reshape(-1, QUANTITIES, scene.run.exposures)
+    return np.array(solution.extremes.exposures).reshape(-1, _ROWS.total, scene.run.exposures)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, sticking, verdict_codes
+from gearidae.analysis.verdict.codes import CODE_ATTRIBUTES, sticking, verdict_codes
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import SweepPlan
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.verdict_codes import CODE_ATTRIBUTES, Outcome, sticking, verdict_codes
+from gearidae.analysis.verdict.codes import CODE_ATTRIBUTES, Outcome, sticking, verdict_codes
 from gearidae.archive.target import claims_archive
 from gearidae.errors import SceneError
 from gearidae.runs.running import prepare

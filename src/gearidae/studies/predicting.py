@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.analysis.ringing import characteristic_frequency
-from gearidae.analysis.verdict_codes import sticking, verdict_codes
+from gearidae.analysis.verdict.codes import sticking, verdict_codes
 from gearidae.archive.keep import read_keep
 from gearidae.archive.select import runs
 from gearidae.errors import SceneError

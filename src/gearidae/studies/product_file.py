@@ -8,7 +8,6 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearidae.archive.heaps import check_heaps
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
@@ -57,7 +56,6 @@ def read_product(
         raise SceneError(name, path, f"cannot be read ({error.strerror})") from error
     if not head.startswith(_HEADERS):
         raise SceneError(name, path, f"is no {what} but another kind of file; make one with {command}")
-    check_heaps(name, source)
     try:
         found = loaded(source)
     except Exception as error:

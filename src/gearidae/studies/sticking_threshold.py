@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive import save
 from gearidae.archive.provenance import provenance
 from gearidae.archive.target import claims_archive
-from gearidae.archive.verdict import is_scheduled
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import steady_speed

@@ -84,7 +84,7 @@ def place_of(table: Floats, v: float) -> tuple[float, float]:
 
 @compiled
 def place_above(before: float, pieces: float, above: float, beyond: float) -> tuple[float, float]:
-    """Do the same for a v beyond the kink."""
+    """Place of a v among the pieces above the kink, given its distance from that, and one over its piece's length."""
     x = beyond * above
     j = min(math.floor(math.sqrt(x)), pieces - before - 1.0)
     length = 2.0 * j + 1.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.division import place_of
-from gearidae.contact.kernels.lanes import BESIDE, eight_powers, sum_and_slope, three_slopes
+from gearidae.contact.kernels.lanes import eight_powers
 from gearidae.contact.kernels.layout import (
     DEGREE,
     GAP_HIGH,
@@ -36,11 +36,10 @@ __all__ = [
     "integrated_work",
     "law_value",
     "loading_value",
+    "mixed_value",
     "power8",
     "stretched_value",
-    "three_values",
     "value_and_slope",
-    "value_of_shares",
 ]
 
 Three: TypeAlias = tuple[float, float, float]
@@ -101,52 +100,45 @@ def loading_value(table: Floats, offset: int, gap: float) -> tuple[float, float]
 
 
 @compiled
-def three_values(table: Floats, offset: int, gap: float) -> tuple[Three, Three]:
-    """Three loading branches at one gap, and their slopes.
-
-    Parameters
-    ----------
-    table : ndarray
-        Where the branches lie, in the layout of loading branches, the three numbers of each coefficient side by side
-        and one more.
-    offset : int
-        Where they begin.
-    gap : float
-        G, gap over roughness [1].
-    """
-    if gap >= GAP_HIGH:
-        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    position = (gap - GAP_LOW) * KNOTS_PER_SIGMA
-    j = min(max(int(position), 0), N_LOADING - 1)
-    a, b, c, a1, b1, c1 = three_slopes(table, np.uintp(offset + 8 * BESIDE * j), position - j)
-    a1, b1, c1 = KNOTS_PER_SIGMA * a1, KNOTS_PER_SIGMA * b1, KNOTS_PER_SIGMA * c1
-    if gap > 0.0:
-        decay = math.exp(-0.5 * gap * gap)
-        slopes = (a1 - gap * a) * decay, (b1 - gap * b) * decay, (c1 - gap * c) * decay
-        return (a * decay, b * decay, c * decay), slopes
-    return (a, b, c), (a1, b1, c1)
-
-
-@compiled
-def value_of_shares(table: Floats, offset: int, gap: float, shares: Three) -> tuple[float, float]:
-    """Sum of three loading branches at one gap, each times its share, and its slope.
+def mixed_value(table: Floats, offset: int, gap: float, shares: Three) -> tuple[float, float]:
+    """Sum of three loading branches that lie one after the other, each times its share, and its slope.
 
     Parameters
     ----------
     table, offset, gap
-        As for `three_values`.
+        As for `loading_value`.
     shares : tuple of three floats
     """
     if gap >= GAP_HIGH:
         return 0.0, 0.0
     position = (gap - GAP_LOW) * KNOTS_PER_SIGMA
     j = min(max(int(position), 0), N_LOADING - 1)
-    f, d = sum_and_slope(table, np.uintp(offset + 8 * BESIDE * j), position - j, shares)
+    a = coefficients(table, np.uintp(offset + 8 * j))
+    b = coefficients(table, np.uintp(offset + 8 * (N_LOADING + j)))
+    c = coefficients(table, np.uintp(offset + 8 * (2 * N_LOADING + j)))
+    f, d = value_and_slope(
+        (
+            _mix(shares, a[0], b[0], c[0]),
+            _mix(shares, a[1], b[1], c[1]),
+            _mix(shares, a[2], b[2], c[2]),
+            _mix(shares, a[3], b[3], c[3]),
+            _mix(shares, a[4], b[4], c[4]),
+            _mix(shares, a[5], b[5], c[5]),
+            _mix(shares, a[6], b[6], c[6]),
+            _mix(shares, a[7], b[7], c[7]),
+        ),
+        position - j,
+    )
     d *= KNOTS_PER_SIGMA
     if gap > 0.0:
         decay = math.exp(-0.5 * gap * gap)
         return f * decay, (d - gap * f) * decay
     return f, d
+
+
+@compiled(inline=True)
+def _mix(shares: Three, a: float, b: float, c: float) -> float:
+    return shares[0] * a + shares[1] * b + shares[2] * c
 
 
 @compiled(inline=True)

@@ -1,8 +1,8 @@
 """Polynomials at one place, and sums over eight numbers, side by side in the processor's wide registers.
 
 Compilers do not see that the eight coefficients of the second variable in a two-dimensional table are eight polynomials
-of the first, nor that the branches of three materials are polynomials of one gap, nor that a point between the nodes
-of an elastic contact has shares of eight of them, so the vector instructions are written down here.
+of the first, nor that a point between the nodes of an elastic contact has shares of eight of them, so the vector
+instructions are written down here.
 """
 
 from __future__ import annotations
@@ -15,39 +15,34 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 __all__ = [
-    "BESIDE",
     "LANES",
     "add_lanes",
     "eight_powers",
     "product_of_lanes",
-    "sum_and_slope",
     "sum_rows",
-    "three_slopes",
 ]
 
 LANES = 8
-BESIDE = 4
-"""Numbers of each power that `three_slopes` reads, of which the last is padding."""
 
 
 class _Lanes:
     """Vectors of the lanes of a function that is being compiled."""
 
-    def __init__(self, context: Any, builder: Any, kind: Any, array: Any, start: Any, count: int) -> None:
-        self._builder, self._start, self._count = builder, start, count
-        self._vector = ir.VectorType(ir.DoubleType(), count)
+    def __init__(self, context: Any, builder: Any, kind: Any, array: Any, start: Any) -> None:
+        self._builder, self._start = builder, start
+        self._vector = ir.VectorType(ir.DoubleType(), LANES)
         self._data = context.make_array(kind)(context, builder, array).data
 
     def spread(self, value: Any) -> Any:
         """Put one number into all lanes."""
         result = ir.Constant(self._vector, ir.Undefined)
-        for k in range(self._count):
+        for k in range(LANES):
             result = self._builder.insert_element(result, value, ir.Constant(ir.IntType(32), k))
         return result
 
     def power(self, power: int) -> Any:
         """Coefficients of a power."""
-        place = self._builder.add(self._start, ir.Constant(self._start.type, self._count * power))
+        place = self._builder.add(self._start, ir.Constant(self._start.type, LANES * power))
         address = cgutils.gep_inbounds(self._builder, self._data, place)  # type: ignore[no-untyped-call]
         return self._builder.load(self._builder.bitcast(address, self._vector.as_pointer()), align=8)
 
@@ -60,18 +55,6 @@ class _Lanes:
         square = self._builder.fmul(u, u)
         return self.spread(u), self.spread(square), self.spread(self._builder.fmul(square, square))
 
-    def beside(self, values: list[Any]) -> Any:
-        """Put numbers into the first lanes, and zeros into the others."""
-        result = ir.Constant(self._vector, [0.0] * self._count)
-        for k, value in enumerate(values):
-            result = self._builder.insert_element(result, value, ir.Constant(ir.IntType(32), k))
-        return result
-
-    def total(self, vector: Any) -> Any:
-        """Sum of the first three lanes."""
-        a, b, c = self.parts(vector, 3)
-        return self._builder.fadd(self._builder.fadd(a, b), c)
-
     def parts(self, vector: Any, count: int) -> list[Any]:
         """Return the numbers of the first lanes."""
         return [self._builder.extract_element(vector, ir.Constant(ir.IntType(32), k)) for k in range(count)]
@@ -81,7 +64,7 @@ def _eight_powers(typing: Any, table: Any, start: Any, u: Any) -> Any:
     """Type and code of `eight_powers`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], LANES)
+        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1])
         u1, u2, u4 = lanes.powers(values[2])
 
         def line(power: int) -> Any:
@@ -99,57 +82,6 @@ eight_powers: Any = intrinsic(_eight_powers)
 """Eight polynomials of degree seven at u: their coefficients of u^0 lie at ``start``, those of u^1 after these, ..."""
 
 
-def _values_and_slopes(builder: Any, lanes: _Lanes, u: Any) -> tuple[Any, Any]:
-    """Values and derivatives of the lanes' polynomials of degree seven."""
-    u1, u2, u4 = lanes.powers(u)
-    c = [lanes.power(k) for k in range(8)]
-    n = [
-        builder.fmul(lanes.spread(ir.Constant(ir.DoubleType(), float(k))), c[k]) if k > 1 else c[k]
-        for k in range(8)
-    ]
-    low = lanes.line(lanes.line(c[0], c[1], u1), lanes.line(c[2], c[3], u1), u2)
-    high = lanes.line(lanes.line(c[4], c[5], u1), lanes.line(c[6], c[7], u1), u2)
-    slope = lanes.line(lanes.line(n[1], n[2], u1), lanes.line(n[3], n[4], u1), u2)
-    slope = lanes.line(slope, lanes.line(lanes.line(n[5], n[6], u1), n[7], u2), u4)
-    return lanes.line(low, high, u4), slope
-
-
-def _three_slopes(typing: Any, table: Any, start: Any, u: Any) -> Any:
-    """Type and code of `three_slopes`."""
-
-    def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], BESIDE)
-        value, slope = _values_and_slopes(builder, lanes, values[2])
-        return context.make_tuple(
-            builder, signature.return_type, lanes.parts(value, 3) + lanes.parts(slope, 3)
-        )
-
-    result = types.UniTuple(types.float64, 6)  # type: ignore[no-untyped-call]
-    return result(table, types.uintp, types.float64), evaluate
-
-
-three_slopes: Any = intrinsic(_three_slopes)
-"""Three polynomials of degree seven at u, then their derivatives: `BESIDE` coefficients of u^0 lie at ``start``, ..."""
-
-
-def _sum_and_slope(typing: Any, table: Any, start: Any, u: Any, shares: Any) -> Any:
-    """Type and code of `sum_and_slope`."""
-
-    def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], BESIDE)
-        shares = lanes.beside(cgutils.unpack_tuple(builder, values[3]))  # type: ignore[no-untyped-call]
-        both = _values_and_slopes(builder, lanes, values[2])
-        sums = [lanes.total(builder.fmul(shares, each)) for each in both]
-        return context.make_tuple(builder, signature.return_type, sums)
-
-    result = types.UniTuple(types.float64, 2)  # type: ignore[no-untyped-call]
-    return result(table, types.uintp, types.float64, shares), evaluate
-
-
-sum_and_slope: Any = intrinsic(_sum_and_slope)
-"""Sum of three polynomials, laid out as for `three_slopes`, times a share each at u, and its derivative."""
-
-
 def _eight(context: Any, builder: Any, kind: Any, array: Any, start: Any) -> Any:
     """Address of eight numbers of an array, as a vector."""
     data = context.make_array(kind)(context, builder, array).data
@@ -161,7 +93,7 @@ def _add_lanes(typing: Any, out: Any, place: Any, numbers: Any, start: Any, fact
     """Type and code of `add_lanes`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], LANES)
+        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1])
         address = _eight(context, builder, signature.args[0], values[0], values[1])
         other = builder.load(_eight(context, builder, signature.args[2], values[2], values[3]), align=8)
         total = lanes.line(builder.load(address, align=8), other, lanes.spread(values[4]))
@@ -205,7 +137,7 @@ def _sum_rows(
     """Type and code of `sum_rows`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1], LANES)
+        lanes = _Lanes(context, builder, signature.args[0], values[0], values[1])
         zero = ir.Constant(ir.VectorType(ir.DoubleType(), LANES), None)
         total = cgutils.alloca_once_value(builder, zero)  # type: ignore[no-untyped-call]
         data = context.make_array(signature.args[5])(context, builder, values[5]).data

@@ -42,13 +42,12 @@ from gearidae.engine.elastic.rows import (
     to_points,
 )
 from gearidae.engine.model.state import MATERIALS, Floats, Model
-from gearidae.engine.pairs.coverage import noted_shares, potential_of, potentials_of
+from gearidae.engine.pairs.coverage import Shares, noted_shares, potential_of, potentials_of
 
 __all__ = [
-    "nodes_joining_loss",
+    "nodes_energies",
     "nodes_length_force",
-    "nodes_material_energy",
-    "nodes_material_loss",
+    "nodes_losses",
     "nodes_number",
     "nodes_stored",
 ]
@@ -69,92 +68,75 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
         h = gap + profile[i] + y[first + i]
         own = potential_of(m, h, shares) + 0.5 * pressure[i] * y[first + i]
         energy += weights[i] * own
-    finer, gaps = point_weights(m), np.empty(m.scene.points)
+    gaps = np.empty(m.scene.points)
     point_gaps(m, k, y, gap, gaps)
     for material in range(MATERIALS):
-        if m.scene.material[material].stretch_limit == 0.0:
-            continue
-        own = m.scene.material[material]
-        table = m.tables[own.energy_at :]
-        scale, offset = own.force_scale * shares[material], own.gap_offset
-        heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
-        farthest = farthest_joined(heights[0], offset)
-        for i in range(gaps.size):
-            if heights[i] > farthest:
-                break
-            stored = stretched_energy(table, adhered_energy[i], gaps[i] + offset, heights[i] + offset)
-            energy += scale * finer[i] * stored[0]
+        energy += shares[material] * _stretched(m, k, gaps, gaps, material)[0]
     return energy
 
 
 @compiled_once(ELASTIC, makes_arrays=True)
-def nodes_joining_loss(m: Model, k: int, y: Floats, gap: float) -> float:
-    """Adhesion loss per length of the asperities that came into contact since the last turning point."""
-    gaps, shares = np.empty(m.scene.points), noted_shares(m, k)
+def nodes_losses(m: Model, k: int, y: Floats, gap: float) -> Shares:
+    """Loss per length of the asperities that have joined since the last turning point, of each material.
+
+    As if it covered everything.
+    """
+    gaps = np.empty(m.scene.points)
     point_gaps(m, k, y, gap, gaps)
-    loss = 0.0
-    for material in range(MATERIALS):
-        if m.scene.material[material].stretch_limit != 0.0:
-            scale = m.scene.material[material].force_scale * shares[material]
-            loss = _add_joining_loss(m, k, gaps, material, scale, loss)
-    return loss
+    return _loss(m, k, gaps, 0), _loss(m, k, gaps, 1), _loss(m, k, gaps, 2)
 
 
 @compiled(makes_arrays=True)
-def _add_joining_loss(m: Model, k: int, gaps: Floats, material: int, scale: float, loss: float) -> float:
-    """Add the joining loss of a material with hysteresis, times a scale."""
-    finer, own = point_weights(m), m.scene.material[material]
-    joining, number = own.joining_energy, own.number_at
+def _loss(m: Model, k: int, gaps: Floats, material: int) -> float:
+    """Joining loss of a material; 0 of one without hysteresis."""
+    finer, own, loss = point_weights(m), m.scene.material[material], 0.0
     heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
-    for i in range(gaps.size):
+    for i in range(gaps.size if own.stretch_limit != 0.0 else 0):
         if gaps[i] < heights[i]:
-            above = loading_value(m.tables, number, gaps[i] + own.gap_offset)[0]
-            more = joining * above + adhered_energy[i]
-            loss += scale * finer[i] * more
+            above = loading_value(m.tables, own.number_at, gaps[i] + own.gap_offset)[0]
+            more = own.joining_energy * above + adhered_energy[i]
+            loss += own.force_scale * finer[i] * more
     return loss
 
 
 @compiled_once(ELASTIC, makes_arrays=True)
-def nodes_material_loss(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
-    """Do the same for one material, as if it covered everything."""
-    own, gaps = m.scene.material[material], np.empty(m.scene.points)
-    if own.stretch_limit == 0.0:
-        return 0.0
-    point_gaps(m, k, y, gap, gaps)
-    return _add_joining_loss(m, k, gaps, material, own.force_scale, 0.0)
-
-
-@compiled_once(ELASTIC, makes_arrays=True)
-def nodes_material_energy(
-    m: Model, k: int, y: Floats, gap: float, rate: float, material: int
-) -> tuple[float, float]:
-    """Energy of a material's asperities per length as if it covered everything, and how fast the gap changes it.
+def nodes_energies(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Shares]:
+    """Energy of each material's asperities per length as if it covered everything, and its slope in the pair's gap.
 
     It is the slope of a pair's energy in the material's share, at fixed gap and length: by symmetry of the influence
     coefficients what changes of the deflections leaves the energy as it is.
     """
     first, profile, weights, share = first_unknown(m, k), node_profile(m), node_weights(m), row(m, k, SHARE)
-    energy = slope = 0.0
+    a = b = c = a1 = b1 = c1 = 0.0
     for i in range(m.scene.nodes):
         potentials, pushes = potentials_of(m, gap + profile[i] + y[first + i])
-        energy += weights[i] * potentials[material]
-        slope += weights[i] * share[i] * pushes[material]
-    own, points = m.scene.material[material], m.scene.points
-    if own.stretch_limit == 0.0:
-        return energy, slope * rate
-    finer, gaps, moved = point_weights(m), np.empty(points), np.empty(points)
+        moved = weights[i] * share[i]
+        a, a1 = a + weights[i] * potentials[0], a1 + moved * pushes[0]
+        b, b1 = b + weights[i] * potentials[1], b1 + moved * pushes[1]
+        c, c1 = c + weights[i] * potentials[2], c1 + moved * pushes[2]
+    gaps, moves = np.empty(m.scene.points), np.empty(m.scene.points)
     point_gaps(m, k, y, gap, gaps)
-    to_points(m, share, moved)
+    to_points(m, share, moves)
+    a2, a3 = _stretched(m, k, gaps, moves, 0)
+    b2, b3 = _stretched(m, k, gaps, moves, 1)
+    c2, c3 = _stretched(m, k, gaps, moves, 2)
+    return (a + a2, b + b2, c + c2), (a1 + a3, b1 + b3, c1 + c3)
+
+
+@compiled(makes_arrays=True)
+def _stretched(m: Model, k: int, gaps: Floats, moves: Floats, material: int) -> tuple[float, float]:
+    """Energy of a material's stretched asperities, and its slope where the points move so far with the pair's gap."""
+    own, finer, energy, slope = m.scene.material[material], point_weights(m), 0.0, 0.0
     heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
     offset, table = own.gap_offset, m.tables[own.energy_at :]
     farthest = farthest_joined(heights[0], offset)
-    for i in range(points):
+    for i in range(gaps.size if own.stretch_limit != 0.0 else 0):
         if heights[i] > farthest:
             break
         e, de = stretched_energy(table, adhered_energy[i], gaps[i] + offset, heights[i] + offset)
         energy += own.force_scale * finer[i] * e
-        slope += own.force_scale * finer[i] * moved[i] * de
-    return energy, slope * rate
+        slope += own.force_scale * finer[i] * moves[i] * de
+    return energy, slope
 
 
 @compiled_once(ELASTIC, makes_arrays=True)

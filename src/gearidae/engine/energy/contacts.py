@@ -1,4 +1,4 @@
-"""Stored energy of contacts, and adhesion loss of their asperities."""
+"""Energies of contacts by material: what they store, their free energy, and what joining has lost."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_stored
-from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import Shares, note_shares, potential_of, shares_of
+from gearidae.engine.elastic.energy import nodes_losses, nodes_stored
+from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.pairs.coverage import NONE, Shares, note_shares, potentials_of, shares_of, weighed
 from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
     contact_length,
@@ -21,44 +21,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pair_gap,
 )
 
-__all__ = [
-    "free_energy",
-    "free_material_energy",
-    "joined_energy",
-    "joining_loss",
-    "material_energy",
-    "stored_energy",
-    "turning_point",
-]
-
-
-@compiled
-def joined_energy(m: Model, k: int, gap: float, shares: Shares) -> tuple[float, float]:
-    """Energy of a pair's stretched asperities beyond the loading branch, per length, and its slope in the gap."""
-    energy = slope = 0.0
-    for material in range(MATERIALS):
-        scale = m.scene.material[material].force_scale * shares[material]
-        if m.scene.material[material].stretch_limit != 0.0 and scale != 0.0:
-            e, de = material_energy(m, k, gap, material)
-            energy += scale * e
-            slope += scale * de
-    return energy, slope
-
-
-@compiled
-def material_energy(m: Model, k: int, gap: float, material: int) -> tuple[float, float]:
-    """Do the same for one of its materials, which has hysteresis, in the unit of its force scale."""
-    h, own = m.state.history[k], m.scene.material[material]
-    stretch = gap - h.joined[material]
-    if stretch <= 0.0:
-        return h.adhered_energy[material], 0.0
-    table, joined = m.tables[own.energy_at :], h.joined[material] + own.gap_offset
-    if stretch < own.stretch_limit and m.scene.branch_length > 0 and branch_length(table) > 0:
-        branch = m.rows[energy_branch(m, k, material) :]
-        if branch[B_PIECES] == 0.0:
-            set_branch(table, joined, branch)
-        return branch_value(branch, stretch)
-    return stretched_energy(table, h.adhered_energy[material], gap + own.gap_offset, joined)
+__all__ = ["free_energies", "joining_losses", "stored_energies", "stored_energy"]
 
 
 @compiled_once(SOLVER)
@@ -88,37 +51,58 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
             length = contact_length(m, inside)
         if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
             continue
+        shares = shares_of(m, coast, pair, inside)
         if m.scene.nodes > 0:
             note_shares(m, k, coast, pair, inside)
             stored += length * nodes_stored(m, k, m.state.time, y, gap, rate, length)
-            pending += length * nodes_joining_loss(m, k, y, gap)
-            continue
-        shares = shares_of(m, k, coast, pair, inside)
-        energy, _ = joined_energy(m, k, gap, shares)
-        stored += length * (potential_of(m, gap, shares) + energy)
-        pending += length * joining_loss(m, k, gap, shares)
+        else:
+            stored += length * weighed(shares, stored_energies(m, k, gap)[0])
+        pending += length * weighed(shares, joining_losses(m, k, y, gap)[0])
     return stored, pending
 
 
-@compiled
-def joining_loss(m: Model, k: int, gap: float, shares: Shares) -> float:
-    """Adhesion loss per length of the asperities that came into contact since the last turning point."""
-    loss, h = 0.0, m.state.history[k]
-    for material in range(MATERIALS):
-        own = m.scene.material[material]
-        if own.stretch_limit > 0.0 and gap < h.joined[material]:
-            number = loading_value(m.tables, own.number_at, gap + own.gap_offset)[0]
-            scale = own.force_scale * shares[material]
-            loss += scale * (own.joining_energy * number + h.adhered_energy[material])
-    return loss
+# -- of a rigid pair, by material ------------------------------------------------------------------------------------
 
 
 @compiled
-def free_energy(m: Model, k: int, known: bool, t: float, gap: float, rate: float) -> tuple[float, float]:
-    """Free energy of a pair of rigid bodies per length, and its slope in the gap.
+def stored_energies(m: Model, k: int, gap: float) -> tuple[Shares, Shares]:
+    """Energy that each material of a rigid pair would store per length if it covered everything; slopes in the gap.
 
-    It is what `stored_energy` adds up less what is pending: zero where nothing is in contact, and for an asperity at
-    its detachment. Within a step that has turned the pair round, the history first goes through the turning point.
+    What joining has lost since the last turning point is still in it.
+    """
+    (a, b, c), (a1, b1, c1) = potentials_of(m, gap)
+    a2, a3 = _stretched(m, k, gap, 0)
+    b2, b3 = _stretched(m, k, gap, 1)
+    c2, c3 = _stretched(m, k, gap, 2)
+    return (a + a2, b + b2, c + c2), (a1 + a3, b1 + b3, c1 + c3)
+
+
+@compiled
+def _stretched(m: Model, k: int, gap: float, material: int) -> tuple[float, float]:
+    """Energy of a material's stretched asperities beyond its loading branch, and its slope."""
+    h, own = m.state.history[k], m.scene.material[material]
+    scale, stretch = own.force_scale, gap - h.joined[material]
+    if own.stretch_limit == 0.0:
+        return 0.0, 0.0
+    if stretch <= 0.0:
+        return scale * h.adhered_energy[material], 0.0
+    table, joined = m.tables[own.energy_at :], h.joined[material] + own.gap_offset
+    if stretch < own.stretch_limit and m.scene.branch_length > 0 and branch_length(table) > 0:
+        branch = m.rows[energy_branch(m, k, material) :]
+        if branch[B_PIECES] == 0.0:
+            set_branch(table, joined, branch)
+        e, de = branch_value(branch, stretch)
+    else:
+        e, de = stretched_energy(table, h.adhered_energy[material], gap + own.gap_offset, joined)
+    return scale * e, scale * de
+
+
+@compiled
+def free_energies(m: Model, k: int, known: bool, t: float, gap: float, rate: float) -> tuple[Shares, Shares]:
+    """Free energy of each material of a rigid pair per length if it covered everything, and its slope in the gap.
+
+    It is what the material stores less what is pending: zero where nothing is in contact, and for an asperity at its
+    detachment. Within a step that has turned the pair round, the history first goes through the turning point.
 
     Parameters
     ----------
@@ -132,43 +116,26 @@ def free_energy(m: Model, k: int, known: bool, t: float, gap: float, rate: float
     gap, rate : float
         The pair's gap and gap rate.
     """
-    energy, slope = loading_value(m.tables, m.scene.potential_at, gap)
-    turning_gap = turning_point(m, k, known, t, gap, rate)
-    for material in range(MATERIALS):
-        e, de = free_material_energy(m, k, known, gap, turning_gap, material)
-        energy += e
-        slope += de
-    return energy, slope
+    h, turning_gap = m.state.history[k], math.nan
+    if known and h.direction * rate < 0.0:
+        turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate)
+    (a, b, c), (a1, b1, c1) = potentials_of(m, gap)
+    a2, a3 = _free(m, k, known, gap, turning_gap, 0)
+    b2, b3 = _free(m, k, known, gap, turning_gap, 1)
+    c2, c3 = _free(m, k, known, gap, turning_gap, 2)
+    return (a + a2, b + b2, c + c2), (a1 + a3, b1 + b3, c1 + c3)
 
 
 @compiled
-def turning_point(m: Model, k: int, known: bool, t: float, gap: float, rate: float) -> float:
-    """Gap of the turning point that a pair has gone through since the last accepted time; NaN if it has not."""
-    h = m.state.history[k]
-    if not known or h.direction * rate >= 0.0:
-        return math.nan
-    return extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate)
-
-
-@compiled
-def free_material_energy(
+def _free(
     m: Model, k: int, known: bool, gap: float, turning_gap: float, material: int
 ) -> tuple[float, float]:
-    """Free energy of a material's asperities beyond the loading branch per length, and its slope in the gap.
-
-    Parameters
-    ----------
-    m, k, known, gap
-        As for `free_energy`.
-    turning_gap : float
-        From `turning_point`.
-    material : int
-    """
-    h, own = m.state.history[k], m.scene.material[material]
+    """Free energy of a material's asperities beyond its loading branch, and its slope; no turning point is NaN."""
+    own = m.scene.material[material]
     scale, offset = own.force_scale, own.gap_offset
     if own.stretch_limit == 0.0 or scale == 0.0:
         return 0.0, 0.0
-    joined = h.joined[material] if known else gap
+    joined = m.state.history[k].joined[material] if known else gap
     if not math.isnan(turning_gap):
         joined = joined_height(joined, turning_gap, own.stretch_limit)
     number, falling = loading_value(m.tables, own.number_at, min(gap, joined) + offset)
@@ -177,3 +144,39 @@ def free_material_energy(
         return scale * adhered, -(scale * own.joining_energy * falling)
     e, de = stretched_energy(m.tables[own.energy_at :], adhered, gap + offset, joined + offset)
     return scale * e, scale * de
+
+
+# -- of any pair -----------------------------------------------------------------------------------------------------
+
+
+@compiled
+def joining_losses(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Shares]:
+    """What each material of a pair has lost per length by joining since the last turning point, and slopes in the gap.
+
+    Of each as if it covered everything. Of an elastic contact the slopes are those of a rigid one in proportion.
+    """
+    joined, given = m.state.history[k].joined, NONE
+    if m.scene.nodes > 0:
+        given = nodes_losses(m, k, y, gap)
+    elif gap >= max(joined[0], joined[1], joined[2]):
+        return NONE, NONE
+    a, a1 = _loss(m, k, gap, 0, given[0])
+    b, b1 = _loss(m, k, gap, 1, given[1])
+    c, c1 = _loss(m, k, gap, 2, given[2])
+    return (a, b, c), (a1, b1, c1)
+
+
+@compiled
+def _loss(m: Model, k: int, gap: float, material: int, given: float) -> tuple[float, float]:
+    """Loss of one material and its slope; that of an elastic contact is `given`."""
+    own, h = m.scene.material[material], m.state.history[k]
+    elastic, scale = m.scene.nodes > 0, own.force_scale
+    if own.stretch_limit == 0.0 or (gap >= h.joined[material] and not elastic):
+        return 0.0, 0.0
+    number, slope = loading_value(m.tables, own.number_at, gap + own.gap_offset)
+    if elastic:
+        return given, (given * slope / number if number > 0.0 else 0.0)
+    return (
+        scale * (own.joining_energy * number + h.adhered_energy[material]),
+        scale * own.joining_energy * slope,
+    )

@@ -1,12 +1,15 @@
 r"""The changing radius of curvature along the path of contact, and the power or the force that goes with it.
 
-The length of a contact, and with it the number of asperities in touch, changes along the path. In the paper's model no
-force pays for that; see `gearidae.engine.followers.balance`, which books the power. With ``mesh.radius_force`` a force
-does: a pair of length :math:`\ell` with the energy U per length pushes the gear along its motion :math:`x_2` with
+The length of a contact, and with it the number of asperities in touch, changes along the path, and shares of the
+materials that change with tooth and place change it as well. In the paper's model no force pays for that; see
+`gearidae.engine.followers.balance`, which books the power. With ``mesh.radius_force`` a force does: a pair with the
+length :math:`\ell s_m` of each material, of the energy :math:`U_m` per length, pushes the gear along its motion
+:math:`x_2` with
 
-.. math:: -U \frac{d\ell}{dx_2} \quad \left( = -\ell U \frac{R'}{2R} \right)
+.. math:: -\sum_m U_m \frac{d(\ell s_m)}{dx_2} \quad \left( = -\ell U \frac{R'}{2R} \text{ where shares stay} \right)
 
-at fixed gap. As the phase of the mesh is the gear's, the pinion has no part in it. U is zero at detachment.
+at fixed gap. As the phase of the mesh is the gear's, the pinion has no part in it. U is zero at detachment. What
+elastic bodies store besides, B per length, adds :math:`-B\,d\ell/dx_2`.
 """
 
 from __future__ import annotations
@@ -14,13 +17,11 @@ from __future__ import annotations
 import math
 
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.law import loading_value
-from gearidae.engine.elastic.energy import nodes_joining_loss, nodes_length_force
-from gearidae.engine.energy.contacts import free_energy, joined_energy
-from gearidae.engine.energy.coverage import coverage_force, coverage_power
+from gearidae.engine.elastic.energy import nodes_energies, nodes_length_force, nodes_losses
+from gearidae.engine.energy.contacts import free_energies, stored_energies
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import WHOLE, potentials_of
-from gearidae.engine.pairs.lengths import length_and_rates
+from gearidae.engine.pairs.coverage import NONE, Shares, note_shares, noted_shares, path_position, weighed
+from gearidae.engine.pairs.lengths import length_and_rates, weighed_length
 from gearidae.engine.pairs.tooth_pairs import history_of
 
 __all__ = ["pairs_on_path", "radius_force", "radius_power"]
@@ -32,51 +33,52 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
     power = rate = 0.0
     if m.scene.radius_force != 0:  # it is the work of a force then, which motion and contacts exchange
         return power, rate
-    elastic = m.scene.nodes > 0
     for coast in range(2):
-        if m.state.near[coast] == 0:
+        gap = m.scene.half_backlash - (1.0 - 2.0 * coast) * y[U]
+        if m.state.near[coast] == 0 or gap >= m.scene.cutoff:
             continue
-        sign = 1.0 - 2.0 * coast
-        gap = m.scene.half_backlash - sign * y[U]
-        if gap >= m.scene.cutoff:
-            continue
-        if m.scene.by_place != 0:
-            more, change = _power_by_place(m, coast, gap, t, y, w_rate)
-            power += more
-            rate += change
-            continue
-        potential, push = loading_value(m.tables, m.scene.potential_at, gap)
         first, last = pairs_on_path(m, coast)
         for pair in range(first, last + 1):
             k = history_of(m, coast, pair)
-            if m.state.history[k].pair != pair:
-                continue
-            length, length_rate, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
-            if elastic:
-                pull, change = nodes_length_force(m, k, t, y, gap, -sign * y[V], length)
-            else:
-                pull, slope = joined_energy(m, k, gap, WHOLE)
-                pull += potential
-                change = -(slope + push) * sign * y[V]
-            power += pull * length_rate
-            rate += change * length_rate + pull * bend
+            if m.state.history[k].pair == pair:
+                more, change = _pair_power(m, coast, pair, k, gap, t, y, w_rate)
+                power += more
+                rate += change
     return power, rate
 
 
 @compiled
-def _power_by_place(
-    m: Model, coast: int, gap: float, t: float, y: Floats, w_rate: float
+def _pair_power(
+    m: Model, coast: int, pair: int, k: int, gap: float, t: float, y: Floats, w_rate: float
 ) -> tuple[float, float]:
-    """Do the same for a flank whose shares of the materials change along the path."""
-    power = rate = 0.0
-    potentials = potentials_of(m, gap)
-    first, last = pairs_on_path(m, coast)
-    for pair in range(first, last + 1):
-        if m.state.history[history_of(m, coast, pair)].pair == pair:
-            more, change = coverage_power(m, potentials, coast, pair, t, y, w_rate)
-            power += more
-            rate += change
-    return power, rate
+    """Power of the changing lengths of a pair's materials and bodies, and its own rate."""
+    phase, w, opening = y[PHASE], y[W], -(1.0 - 2.0 * coast) * y[V]
+    bodies = bodies_rate = 0.0
+    length, stretch, bend = length_and_rates(m, coast, pair, phase, w, w_rate)
+    if m.scene.nodes > 0:
+        bodies, bodies_rate, energies, slopes = _elastic(m, coast, pair, k, gap, opening, t, y, length)
+    else:
+        energies, slopes = stored_energies(m, k, gap)
+    own = weighed_length(m, (coast, pair, phase), w, w_rate, energies, slopes)
+    rate = bodies_rate * stretch + bodies * bend + own.bend + opening * own.by_gap
+    return bodies * stretch + own.rate, rate
+
+
+@compiled
+def _elastic(
+    m: Model, coast: int, pair: int, k: int, gap: float, rate: float, t: float, y: Floats, length: float
+) -> tuple[float, float, Shares, Shares]:
+    """Energy of an elastic contact per length: of its bodies with its rate, and of its materials with slopes.
+
+    Where shares do not change, all of it is said to be of the bodies, as nothing but the length matters.
+    """
+    note_shares(m, k, coast, pair, path_position(m, coast, pair, y[PHASE]))
+    bodies, change = nodes_length_force(m, k, t, y, gap, rate, length)
+    if m.scene.by_place == 0:
+        return bodies, change, NONE, NONE
+    energies, slopes = nodes_energies(m, k, y, gap)
+    shares = noted_shares(m, k)
+    return bodies - weighed(shares, energies), change - rate * weighed(shares, slopes), energies, slopes
 
 
 @compiled
@@ -117,17 +119,17 @@ def radius_force(
         out, which only steers Newton's iteration.
     """
     first, last = pairs_on_path(m, coast)
-    if not first <= pair <= last:
+    known, phase = m.state.history[k].pair == pair, y[PHASE]
+    if not first <= pair <= last or (m.scene.nodes > 0 and not known):  # it has just come within reach
         return 0.0, 0.0, 0.0
-    sign = 1.0 - 2.0 * coast
-    if m.scene.by_place != 0:
-        return coverage_force(m, t, y, coast, pair, k, gap, rate)
-    length, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], 1.0, 0.0)
-    slope, known = 0.0, m.state.history[k].pair == pair
-    if m.scene.nodes == 0:
-        energy, slope = free_energy(m, k, known, t, gap, rate)
-    elif known:
-        energy = nodes_length_force(m, k, t, y, gap, rate, length)[0] - nodes_joining_loss(m, k, y, gap)
+    bodies, slopes = 0.0, NONE
+    length, stretch, bend = length_and_rates(m, coast, pair, phase, 1.0, 0.0)
+    if m.scene.nodes > 0:
+        bodies, _, (a, b, c), _ = _elastic(m, coast, pair, k, gap, rate, t, y, length)
+        a1, b1, c1 = nodes_losses(m, k, y, gap)
+        energies = (a - a1, b - b1, c - c1)
     else:
-        energy = 0.0  # it has just come within reach
-    return -energy * stretch, sign * slope * stretch, -energy * bend / m.scene.phase_rate
+        energies, slopes = free_energies(m, k, known, t, gap, rate)
+    own = weighed_length(m, (coast, pair, phase), 1.0, 0.0, energies, slopes)
+    force, change = -(bodies * stretch + own.rate), -(bodies * bend + own.bend)
+    return force, (1.0 - 2.0 * coast) * own.by_gap, change / m.scene.phase_rate

@@ -27,7 +27,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_near,
 )
 
-__all__ = ["ROOT", "STOP", "crowded", "guard", "handle_mesh"]
+__all__ = ["ROOT", "STOP", "chatters", "guard", "handle_mesh"]
 
 LIGHT_EXITS = 4
 """Mesh exits without a deep contact after which elastic bodies are no longer needed."""
@@ -116,7 +116,7 @@ def _light(m: Model) -> bool:
 
 
 @compiled
-def crowded(m: Model, t: float) -> bool:
+def chatters(m: Model, t: float) -> bool:
     """Count a root, and return whether roots recur without progress in time."""
     s = m.state
     if t - s.last_root > m.scene.root_spacing * (1.0 + t):

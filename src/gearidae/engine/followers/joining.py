@@ -12,17 +12,14 @@ been worked out as if nothing were lost until the turning point (`gearidae.engin
 from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
-from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.elastic.energy import nodes_joining_loss
-from gearidae.engine.energy.contacts import joining_loss
-from gearidae.engine.energy.coverage import losses_by_material
+from gearidae.engine.energy.contacts import joining_losses
 from gearidae.engine.energy.radius import pairs_on_path
 from gearidae.engine.formulas.quadrature import integral
-from gearidae.engine.model.state import GEARS, MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import WHOLE, note_shares, place_inside, shares_of
-from gearidae.engine.pairs.lengths import length_and_rates, material_lengths
-from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pair_gap
+from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.pairs.coverage import NONE, WHOLE, Shares, path_position, shares_of, weighed
+from gearidae.engine.pairs.lengths import weighed_length
+from gearidae.engine.pairs.tooth_pairs import contact_length, history_of
 
 __all__ = ["begin", "event", "joining_lag", "resume", "step"]
 
@@ -61,29 +58,35 @@ def event(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> Non
     """Add the adhesion loss of a pair's asperities, before the turning point of a closing contact is noted."""
     if m.state.history[k].direction > 0.0:
         return
-    length = 1.0
-    if m.scene.kind == GEARS:
-        length = contact_length(m, pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[3])
-        lag = m.state.history[k].lag
-        m.state.energy.adhesion_loss -= lag
-        if m.scene.radius_force == 0:
-            m.state.energy.radius_work -= lag
-    if m.scene.nodes > 0:
-        if m.scene.by_place != 0:
-            note_shares(m, k, coast, pair, place_inside(m, coast, pair, y[PHASE]))
-        m.state.energy.adhesion_loss += length * nodes_joining_loss(m, k, y, gap)
+    e, losses = m.state.energy, joining_losses(m, k, y, gap)[0]
+    if m.scene.kind != GEARS:
+        e.adhesion_loss += weighed(WHOLE, losses)
         return
-    shares = WHOLE
-    if m.scene.by_place != 0:
-        shares = shares_of(m, k, coast, pair, place_inside(m, coast, pair, y[PHASE]))
-    loss = joining_loss(m, k, gap, shares)
-    m.state.energy.adhesion_loss += length * loss
-    if m.scene.kind != GEARS or m.scene.radius_force != 0:
+    lag, inside = m.state.history[k].lag, path_position(m, coast, pair, y[PHASE])
+    e.adhesion_loss += contact_length(m, inside) * weighed(shares_of(m, coast, pair, inside), losses) - lag
+    if m.scene.radius_force == 0:
+        e.radius_work -= lag
+        if m.scene.nodes == 0:
+            _book_before(m, coast, pair, y[PHASE], losses)
+
+
+@compiled
+def _book_before(m: Model, coast: int, pair: int, phase: float, losses: Shares) -> None:
+    """Keep the power of the changing radius continuous where adhesion losses per length have been added.
+
+    From then on it lacks the losses times the rates of the lengths. They are taken out where the quadrature began, too,
+    and what that leaves out until now is the losses times what the lengths have changed by.
+    """
+    first, last = pairs_on_path(m, coast)
+    if m.state.near[coast] == 0 or not first <= pair <= last:
         return
-    if m.scene.by_place != 0:
-        _book_materials_before(m, coast, pair, k, y, gap)
-    else:
-        _book_before(m, coast, pair, loss, length)
+    q = m.work.quadrature
+    before = q.gear_travel * m.scene.phase_rate
+    then = weighed_length(m, (coast, pair, before), q.gear_speed, q.gear_acceleration, losses, NONE)
+    q.radius_power -= then.rate
+    q.radius_power_rate -= then.bend
+    now = weighed_length(m, (coast, pair, phase), 0.0, 0.0, losses, NONE)
+    q.length_work += now.length - then.length
 
 
 @compiled
@@ -95,43 +98,8 @@ def resume(m: Model, y: Floats) -> None:
 
 
 @compiled
-def _book_before(m: Model, coast: int, pair: int, loss: float, length: float) -> None:
-    """Keep the power of the changing radius continuous where an adhesion loss per length has been added.
-
-    From then on it lacks the loss times the rate of the length. It is taken out where the quadrature began, too, and
-    what that leaves out until now is the loss times what the length has changed by.
-    """
-    first, last = pairs_on_path(m, coast)
-    if m.state.near[coast] == 0 or not first <= pair <= last:
-        return
-    q = m.work.quadrature
-    before = q.gear_travel * m.scene.phase_rate
-    was, rate, bend = length_and_rates(m, coast, pair, before, q.gear_speed, q.gear_acceleration)
-    q.radius_power -= loss * rate
-    q.radius_power_rate -= loss * bend
-    q.length_work += loss * (length - was)
-
-
-@compiled_once(SOLVER)
-def _book_materials_before(m: Model, coast: int, pair: int, k: int, y: Floats, gap: float) -> None:
-    """Do the same for each material of a pair whose shares change along the path."""
-    first, last = pairs_on_path(m, coast)
-    if m.state.near[coast] == 0 or not first <= pair <= last:
-        return
-    q = m.work.quadrature
-    before = q.gear_travel * m.scene.phase_rate
-    was, rates, bends = material_lengths(m, k, coast, pair, before, q.gear_speed, q.gear_acceleration)
-    now = material_lengths(m, k, coast, pair, y[PHASE], 0.0, 0.0)[0]
-    losses = losses_by_material(m, k, y, gap)[0]
-    for material in range(MATERIALS):
-        q.radius_power -= losses[material] * rates[material]
-        q.radius_power_rate -= losses[material] * bends[material]
-        q.length_work += losses[material] * (now[material] - was[material])
-
-
-@compiled
-def _follow_flank(m: Model, coast: int, h: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of a flank whose contacts close."""
+def _follow_flank(m: Model, coast: int, span: float, y: Floats, w_rate: float) -> None:
+    """Follow the lags of a flank whose contacts close over a span of time."""
     sign = 1.0 - 2.0 * coast
     gap = m.scene.half_backlash - sign * y[U]
     if gap >= m.scene.cutoff:
@@ -139,59 +107,16 @@ def _follow_flank(m: Model, coast: int, h: float, y: Floats, w_rate: float) -> N
     first, last = pairs_on_path(m, coast)
     for pair in range(first, last + 1):
         k = history_of(m, coast, pair)
-        own = m.state.history[k]
-        if own.pair != pair or own.direction >= 0.0:
+        h = m.state.history[k]
+        if h.pair != pair or h.direction >= 0.0:
             continue
         power = rate = 0.0
-        if m.scene.by_place != 0:
-            power, rate = _material_lags(m, coast, pair, k, gap, y, w_rate)
-            own.lag += integral(h, own.lag_power, power, own.lag_rate, rate)
-            own.lag_power, own.lag_rate = power, rate
-            continue
-        loss, loss_slope = _loss(m, k, y, gap)
-        if loss != 0.0:
-            _, stretch, bend = length_and_rates(m, coast, pair, y[PHASE], y[W], w_rate)
-            power, rate = loss * stretch, loss * bend - loss_slope * sign * y[V] * stretch
-        own.lag += integral(h, own.lag_power, power, own.lag_rate, rate)
-        own.lag_power, own.lag_rate = power, rate
-
-
-@compiled_once(SOLVER)
-def _material_lags(
-    m: Model, coast: int, pair: int, k: int, gap: float, y: Floats, w_rate: float
-) -> tuple[float, float]:
-    """Rate of the lag of a pair whose shares change along the path, and the rate of that."""
-    power = rate = 0.0
-    losses, slopes = losses_by_material(m, k, y, gap)
-    if losses[0] == 0.0 and losses[1] == 0.0 and losses[2] == 0.0:
-        return 0.0, 0.0
-    _, stretches, bends = material_lengths(m, k, coast, pair, y[PHASE], y[W], w_rate)
-    closing = (1.0 - 2.0 * coast) * y[V]
-    for material in range(MATERIALS):
-        power += losses[material] * stretches[material]
-        rate += losses[material] * bends[material] - slopes[material] * closing * stretches[material]
-    return power, rate
-
-
-@compiled
-def _loss(m: Model, k: int, y: Floats, gap: float) -> tuple[float, float]:
-    """What a pair has lost per length since its last turning point, and its slope in the gap.
-
-    Of an elastic contact the slope is that of a rigid one in proportion.
-    """
-    loss = change = lost = 0.0
-    for material in range(MATERIALS):
-        own = m.scene.material[material]
-        if own.stretch_limit > 0.0 and (m.scene.nodes > 0 or gap < m.state.history[k].joined[material]):
-            number, slope = loading_value(m.tables, own.number_at, gap + own.gap_offset)
-            joining = own.joining_energy * own.force_scale
-            lost += joining * number
-            loss += joining * number + own.force_scale * m.state.history[k].adhered_energy[material]
-            change += joining * slope
-    if m.scene.nodes > 0:
-        loss = nodes_joining_loss(m, k, y, gap)
-        return loss, (loss * change / lost if lost > 0.0 else 0.0)
-    return loss, change
+        losses, slopes = joining_losses(m, k, y, gap)
+        if losses[0] != 0.0 or losses[1] != 0.0 or losses[2] != 0.0:
+            own = weighed_length(m, (coast, pair, y[PHASE]), y[W], w_rate, losses, slopes)
+            power, rate = own.rate, own.bend - sign * y[V] * own.by_gap
+        h.lag += integral(span, h.lag_power, power, h.lag_rate, rate)
+        h.lag_power, h.lag_rate = power, rate
 
 
 @compiled

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import held, motion
+from gearidae.engine.motion.residual import is_stuck, motion
 
 __all__ = ["correct"]
 
@@ -41,7 +41,7 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
         return abs(slope)
     of_phase, of_w = delta[PHASE], delta[W]
     a1, turning, damping = m.scene.pinion_inverse_mass, m.scene.phase_rate, m.scene.damping
-    a2 = 0.0 if held(m) else m.scene.gear_inverse_mass
+    a2 = 0.0 if is_stuck(m) else m.scene.gear_inverse_mass
     torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase
     drag = 2.0 * m.scene.drag * abs(y[W]) + m.scene.viscous
     gain = a1 * m.scene.speed_gain

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.events.events import ROOT, STOP, crowded, handle_mesh
+from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
@@ -100,7 +100,7 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
                 count = take_event(m, t, y, found, events, count)
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
-    if crowded(m, t):
+    if chatters(m, t):
         driver.error = CHATTER
     return restart
 

@@ -1,4 +1,7 @@
-"""``STATE``: all that a checkpoint carries, besides the state vector and the nodes of an elastic contact."""
+"""``STATE``: all that a checkpoint carries, besides the state vector and the nodes of an elastic contact.
+
+Units as in `gearidae.engine.model.scene_record`.
+"""
 
 from __future__ import annotations
 
@@ -20,125 +23,112 @@ __all__ = [
 HISTORY: Final = record_type(
     ("pair", INT),  # number of the pair, counted without the turns taken out of the phase, or EMPTY
     ("direction", REAL),  # sign of the gap rate; 0 at the very start
-    ("gap", REAL),  # gap and gap rate at the last accepted time
-    ("gap_rate", REAL),
+    ("gap", REAL),  # at the last accepted time [sigma]
+    ("gap_rate", REAL),  # at the last accepted time [sigma/tau]
     ("in_contact", INT),  # 1 between onset and separation
-    (
-        "joined",
-        REAL,
-        (MATERIALS,),
-    ),  # height above which asperities were in contact at the last turning point
+    ("joined", REAL, (MATERIALS,)),  # height above which asperities joined by the last turn [sigma]
     ("fully_stretched", INT, (MATERIALS,)),  # 1 once full stretch has been reached on the way apart
     (
         "adhered_energy",
         REAL,
         (MATERIALS,),
-    ),  # adhesion loss of the asperities above `joined` (asperity model)
-    ("lag", REAL),  # what joining has taken less than it would have at the present contact length,
-    ("lag_power", REAL),  # its rate at the last accepted time, and the rate of that
-    ("lag_rate", REAL),
-    ("length", REAL),  # contact length of an elastic contact, sqrt(radius / pitch), at its last evaluation
+    ),  # adhesion loss above `joined`, rigid bodies [`force_scale` sigma]
+    ("lag", REAL),  # what joining has taken less than at the present contact length [F sigma]
+    ("lag_power", REAL),  # rate of `lag` at the last accepted time [F sigma/tau]
+    ("lag_rate", REAL),  # rate of `lag_power` there [F sigma/tau^2]
+    ("length", REAL),  # contact length of an elastic contact at its last evaluation [sqrt(pb)]
     ("loaded", INT),  # 1 if that evaluation found it within reach
     ("stretched", INT),  # 1 if asperities of it were stretched at the last turning point
 )
 
-ENERGY: Final = record_type(  # sums over the run, in the unit of force times sigma
-    ("drive_work", REAL),
-    ("drag_loss", REAL),
-    ("dry_loss", REAL),
-    ("damping_loss", REAL),
-    ("adhesion_loss", REAL),
-    ("radius_work", REAL),
-    ("model_change", REAL),
-    ("throughput", REAL),
-    ("start_stored", REAL),
-    ("start_kinetic", REAL),
-    ("quadrature_error", REAL),  # about how far the quadratures over gathered steps may be out,
-    ("loss_error", REAL),  # and those of drag and damping, which do not decide how many are gathered
-    ("peak_kinetic", REAL),  # largest kinetic energy
+ENERGY: Final = record_type(  # sums over the run
+    ("drive_work", REAL),  # work of the drive [F sigma]
+    ("drag_loss", REAL),  # loss by drag and viscous resistance [F sigma]
+    ("dry_loss", REAL),  # loss by dry resistance [F sigma]
+    ("damping_loss", REAL),  # loss by damping of the mesh [F sigma]
+    ("adhesion_loss", REAL),  # loss by joining [F sigma]
+    ("radius_work", REAL),  # work of the changing radius of curvature [F sigma]
+    ("model_change", REAL),  # jumps of the stored energy where the contact model changes [F sigma]
+    ("throughput", REAL),  # all that has been exchanged, without regard to sign [F sigma]
+    ("start_stored", REAL),  # energy stored at the start [F sigma]
+    ("start_kinetic", REAL),  # energy of motion at the start [F sigma]
+    ("quadrature_error", REAL),  # about how far quadratures over gathered steps may be out [F sigma]
+    ("loss_error", REAL),  # the same of drag and damping, which do not decide how many are gathered [F sigma]
+    ("peak_kinetic", REAL),  # largest energy of motion [F sigma]
 )
 
 PROGRESS: Final = record_type(  # of a driver
-    ("next_sample", INT),
-    ("steps", INT),
-    ("residual_evaluations", INT),
-    ("jacobian_evaluations", INT),
-    ("error_test_failures", INT),
-    ("convergence_failures", INT),
-    ("restarts", INT),
-    ("guard_evaluations", INT),
-    ("flight_steps", INT),
+    ("next_sample", INT),  # index of the coming sample
+    ("steps", INT),  # accepted steps
+    ("residual_evaluations", INT),  # evaluations of the residual
+    ("jacobian_evaluations", INT),  # evaluations of its Jacobian
+    ("error_test_failures", INT),  # steps rejected for their error
+    ("convergence_failures", INT),  # steps rejected by Newton's iteration
+    ("restarts", INT),  # restarts of the integration
+    ("guard_evaluations", INT),  # evaluations of the guard
+    ("flight_steps", INT),  # steps in free flight
 )
 
 STOPS: Final = ("time", "sticks", "turns")
 """What ends a run, by number."""
 
 PART: Final = record_type(  # of a run, from where it begins to where the run stands
-    ("begun", INT),
-    ("lowest", REAL),  # speed of the gear
-    ("highest", REAL),
-    ("time", REAL),  # where it began: time,
-    ("place", REAL),  # and how far the gear had turned, in pitches
+    ("begun", INT),  # 1 once it has begun
+    ("lowest", REAL),  # lowest speed of the gear [sigma/tau]
+    ("highest", REAL),  # highest speed of the gear [sigma/tau]
+    ("time", REAL),  # when it began [tau]
+    ("position", REAL),  # how far the gear had turned by then [pb]
 )
 
 EXTREMES: Final = record_type(  # of a run so far, at accepted times and located extrema
-    ("begun", INT),
-    ("lowest_speed", REAL),  # of the gear, or of a roller
-    ("highest_speed", REAL),
-    ("top", REAL),  # highest and lowest speed since start-up,
-    ("bottom", REAL),
-    ("fall", REAL),  # and how far it has fallen below the first and risen above the second
-    ("rise", REAL),
-    ("part", PART, (len(RUN_PARTS),)),
+    ("begun", INT),  # 1 once the run has begun
+    ("lowest_speed", REAL),  # of the gear, or of a roller [sigma/tau]
+    ("highest_speed", REAL),  # of the gear, or of a roller [sigma/tau]
+    ("top", REAL),  # highest speed since start-up [sigma/tau]
+    ("bottom", REAL),  # lowest speed since start-up [sigma/tau]
+    ("fall", REAL),  # how far the speed has fallen below `top` [sigma/tau]
+    ("rise", REAL),  # how far it has risen above `bottom` [sigma/tau]
+    ("part", PART, (len(RUN_PARTS),)),  # parts of the run
     ("reversals", INT),  # how often the speed has fallen to zero
-    ("held", INT),  # 1 while the gear has not turned on by half a pitch since one of them,
-    ("held_time", REAL),  # the time and place of the first such, and the mesh exits until then
-    ("held_place", REAL),
-    ("held_exits", INT),
-    ("turn_backs", INT),  # how often the drive flank's adhesion has turned the gear back there,
-    ("turn_back_time", REAL),  # when it last did,
-    ("adhering", REAL),  # and all times from one such to the next in the same place
+    ("is_stuck", INT),  # 1 while the gear has not turned on by half a pitch since a reversal
+    ("stuck_time", REAL),  # time of the first such reversal [tau]
+    ("stuck_position", REAL),  # how far the gear had turned by then [pb]
+    ("stuck_exits", INT),  # mesh exits until then
+    ("turn_backs", INT),  # how often the drive flank's adhesion has turned the gear back there
+    ("turn_back_time", REAL),  # when it last did [tau]
+    ("adhering", REAL),  # all times from one such to the next in the same place [tau]
     ("mesh_exits", INT),  # on the drive flank
-    ("largest_force", REAL),  # along the line of action, mesh damping included; of a roller, on it
-    ("largest_force_time", REAL),
-    ("smallest_force", REAL),
-    ("smallest_force_time", REAL),
-    ("separation", REAL),  # least distance of the flanks, deflection included
+    ("largest_force", REAL),  # along the line of action with mesh damping; of a roller, on it [F]
+    ("largest_force_time", REAL),  # [tau]
+    ("smallest_force", REAL),  # likewise [F]
+    ("smallest_force_time", REAL),  # [tau]
+    ("separation", REAL),  # least distance of the flanks, deflection included [sigma]
 )
 
 STATE: Final = record_type(
-    ("time", REAL),  # last accepted time
-    ("turns", REAL),  # whole pitches taken out of the phase
+    ("time", REAL),  # last accepted time [tau]
+    ("turns", REAL),  # whole pitches taken out of the phase [pb]
     (
         "first_place",
         REAL,
-    ),  # of the gear where a chain of runs began, in pitches: angles of shafts are 0 there
-    ("first_lead", REAL),  # u + e there: by how much the pinion's base circle was ahead of the gear's
-    ("mark_low", REAL),  # phases of the nearest mesh entries and exits
-    ("mark_high", REAL),
-    (
-        "slip",
-        REAL,
-    ),  # direction of the gear's slip against dry resistance: -1, +1; 0 while it is held at rest
+    ),  # position of the gear where a chain of runs began, where shafts' angles are 0 [pb]
+    ("first_lead", REAL),  # u + e there: lead of the pinion's base circle over the gear's [sigma]
+    ("mark_low", REAL),  # phase of the nearest mesh entry or exit below the present one [pb]
+    ("mark_high", REAL),  # phase of the nearest one above [pb]
+    ("slip", REAL),  # direction of the gear's slip against dry resistance, -1 or +1; 0 while it is stuck
     ("slipping", INT),  # 1 once a slip has become faster than `rest_speed`
-    ("near", INT, (2,)),  # flank close enough for any pair to touch
+    ("near", INT, (2,)),  # 1 for a flank close enough for any pair to touch
     ("last_flank", INT),  # flank of the last onset, -1 before the first
     ("bound_exceeded", INT),  # 1 once a pair has been below the lowest gap
-    (
-        "deep_exits",
-        INT,
-    ),  # mesh exits when elastic contacts were last too deep for the asperity model, -1 before,
-    ("light", INT),  # and 1 once that has been long ago
-    (
-        "stop_armed",
-        INT,
-    ),  # 1 once the gear has moved forward, in a run that ends where its speed falls to zero
-    ("last_root", REAL),  # time of the last root, and how many have come in close succession
-    ("roots", INT),
+    ("deep_exits", INT),  # mesh exits when elastic contacts were last too deep for rigid ones, -1 before
+    ("light", INT),  # 1 once that has been long ago
+    ("stop_armed", INT),  # 1 once the gear has moved forward, where the run ends as its speed falls to zero
+    ("last_root", REAL),  # time of the last root [tau]
+    ("roots", INT),  # how many have come in close succession
     ("next_knot", INT),  # index of the coming knot among all knots
     ("segment", INT, (SCHEDULES,)),  # the schedules' current segments: set at knots, never inside a step
-    ("energy", ENERGY),
-    ("progress", PROGRESS),
-    ("extremes", EXTREMES),
-    ("history", HISTORY, (2 * SLOTS_HIGH,)),
+    ("energy", ENERGY),  # energy balance
+    ("progress", PROGRESS),  # counters of the driver
+    ("extremes", EXTREMES),  # extremes of the run
+    ("history", HISTORY, (2 * SLOTS_HIGH,)),  # of the tooth pairs
 )

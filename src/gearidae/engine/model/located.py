@@ -69,7 +69,7 @@ POINTERS: Final = 7
 
 @compiled
 def note_addresses(m: Model, out: NDArray[np.int64]) -> None:
-    """Write down where a model of this process lies; it must outlive whoever reads that."""
+    """Write down where a model of this process lies; it must live as long as `out` is used."""
     out[0], out[1], out[2] = _address_of(m.scene), _address_of(m.state), _address_of(m.work)
     out[3], out[4] = m.tables.ctypes.data, m.tables.size
     out[5], out[6] = m.rows.ctypes.data, m.rows.size

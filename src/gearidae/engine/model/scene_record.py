@@ -1,4 +1,8 @@
-"""``SCENE``: constants of a run, made from the scene and never read from a file."""
+"""``SCENE``: constants of a run, made from the scene and never read from a file.
+
+Units in brackets: lengths in sigma, times in tau, forces in F, speeds in sigma/tau, angles along the mesh in base
+pitches (pb) unless SI says otherwise; [1] has none, [index] is a place in the tables or rows of the model.
+"""
 
 from __future__ import annotations
 
@@ -22,47 +26,47 @@ __all__ = [
 ]
 
 MATERIAL: Final = record_type(
-    ("force_scale", REAL),  # per sqrt(radius / pitch), with the material's share of the surface
-    ("gap_offset", REAL),  # by which its gap is wider than that of the pair, over sigma
-    ("stretch_limit", REAL),  # over sigma; 0 where there is no hysteresis worth following
-    ("joining_energy", REAL),  # energy lost by an asperity at contact onset, in the unit of `force_scale`
-    ("table_at", INT),  # where its force law and its stored energy begin among the tables,
-    ("energy_at", INT),
-    ("number_at", INT),  # and the number of its asperities above a height
-    ("table_count", INT),  # numbers in each
+    ("force_scale", REAL),  # force per sqrt(radius / pb), with the material's share of the surface [F]
+    ("gap_offset", REAL),  # by which its gap is wider than that of the pair [sigma]
+    ("stretch_limit", REAL),  # 0 where there is no hysteresis worth following [sigma]
+    ("joining_energy", REAL),  # lost by an asperity at contact onset [`force_scale` sigma]
+    ("table_at", INT),  # force law among the tables [index]
+    ("energy_at", INT),  # stored energy among the tables [index]
+    ("number_at", INT),  # number of asperities above a height, among the tables [index]
+    ("table_count", INT),  # numbers in each of the first two [1]
 )
 
 COVERAGE: Final = record_type(  # of one side's flanks
-    ("teeth", INT),  # rows, one after the other: of each tooth, or one for all
-    ("places", INT),  # fractions in each, at equal parts of the path of contact
-    ("values_at", INT),
-    ("place_scale", REAL),  # places in a pitch
+    ("teeth", INT),  # rows of the table, one after the other: of each tooth, or one for all [1]
+    ("places", INT),  # fractions in each, at equal parts of the path of contact [1]
+    ("values_at", INT),  # the table among the tables [index]
+    ("place_scale", REAL),  # places in a pitch [1/pb]
 )
 
 TORQUE: Final = record_type(
-    ("constant", REAL),
-    ("harmonic_count", INT),  # (amplitude, angular frequency, phase) of each
-    ("harmonics_at", INT),
-    ("order_count", INT),  # harmonics of the shaft's angle: (amplitude, order, phase) of each
-    ("orders_at", INT),
+    ("constant", REAL),  # over the base radius [F]
+    ("harmonic_count", INT),  # [1]
+    ("harmonics_at", INT),  # amplitude, angular frequency and phase of each, among the tables [index]
+    ("order_count", INT),  # harmonics of the shaft's angle [1]
+    ("orders_at", INT),  # amplitude, order and phase of each, among the tables [index]
     ("takes_angle", INT),  # 1 if the torque depends on the shaft's angle
-    ("law_count", INT),  # parameters of the law, whose address is in `WORK`
-    ("law_at", INT),
-    ("law_torque", REAL),  # units of the law's torque [N m] and of the shaft's speed [rad/s],
-    ("law_speed", REAL),
-    ("angle_unit", REAL),  # and of its angle: the roughness over the base radius [rad]
+    ("law_count", INT),  # parameters of the law, whose address is in `WORK` [1]
+    ("law_at", INT),  # the parameters among the tables [index]
+    ("law_torque", REAL),  # unit of the law's torque [N m]
+    ("law_speed", REAL),  # unit of the shaft's speed [rad/s]
+    ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
 )
 
 SCHEDULE: Final = record_type(
-    ("knot_count", INT),  # (time, value) of each, then the coefficients of the pieces of a cubic one
-    ("knots_at", INT),
+    ("knot_count", INT),  # [1]
+    ("knots_at", INT),  # time and value of each, then coefficients of the pieces of a cubic one [index]
     ("cubic", INT),  # 1 for monotone cubics between the knots, 0 for straight lines
 )
 
 FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
-    ("balance", INT),
-    ("extremes", INT),
-    ("exposures", INT),
+    ("balance", INT),  # energy balance, and joining for it
+    ("extremes", INT),  # extremes of the run
+    ("exposures", INT),  # exposures of the flanks
 )
 
 SCENE: Final = record_type(
@@ -70,113 +74,98 @@ SCENE: Final = record_type(
     ("kind", INT),  # GEARS or ROLLER
     ("length_unit", REAL),  # sigma [m]
     ("time_unit", REAL),  # tau [s]
-    ("force_unit", REAL),  # [N]
+    ("force_unit", REAL),  # F [N]
     # the mesh
-    ("base_pitch", REAL),  # [m]
-    ("gear_radius", REAL),  # R2 [m]
-    ("pinion_radius", REAL),  # R1 [m]
-    ("pinion_teeth", REAL),
-    (
-        "pinion_inverse_mass",
-        REAL,
-    ),  # R1^2 tau^2 F / (I1 sigma): acceleration along the line of action per force
-    ("gear_inverse_mass", REAL),  # R2^2 tau^2 F / (I2 sigma); of a roller tau^2 F / (m sigma)
-    ("half_backlash", REAL),  # b / sigma
-    ("phase_rate", REAL),  # sigma / pb: turns the gear's surface velocity into the rate of its phase
-    ("contact_ratio", REAL),  # path of contact in pitches
-    ("coast_phase", REAL),  # 2 approach / pb + 1/2: mirrors the coast flank about the pitch point
-    ("relief_curvature", REAL),  # pb^2 / (rho sigma): curvature of the tip relief
-    ("relief_slope", REAL),  # pb / rho
-    ("reach", REAL),  # how far outside the path a pair may still touch, in pitches
-    ("start_radius", REAL),  # pinion's radius of curvature where contact begins, in pitches
-    ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature, per pitch
-    ("radius_force", INT),  # whether a force pays for the changing contact length
-    ("damping", REAL),  # viscous mesh damping
-    ("drag", REAL),  # force per squared surface velocity,
-    ("viscous", REAL),  # and per surface velocity
-    ("dry", INT),  # whether there is dry resistance at the gear
-    ("error_count", INT),  # harmonics of the static transmission error: order, amplitude / sigma, phase
-    ("error_at", INT),
+    ("base_pitch", REAL),  # pb [m]
+    ("gear_radius", REAL),  # base radius R2 [m]
+    ("pinion_radius", REAL),  # base radius R1 [m]
+    ("pinion_teeth", REAL),  # [1]
+    ("pinion_inverse_mass", REAL),  # R1^2 tau^2 F / (I1 sigma): acceleration per force [1]
+    ("gear_inverse_mass", REAL),  # R2^2 tau^2 F / (I2 sigma); of a roller tau^2 F / (m sigma) [1]
+    ("half_backlash", REAL),  # [sigma]
+    ("phase_rate", REAL),  # sigma / pb: rate of the phase per surface velocity of the gear [1]
+    ("contact_ratio", REAL),  # path of contact [pb]
+    ("coast_phase", REAL),  # 2 approach / pb + 1/2: mirrors the coast flank about the pitch point [pb]
+    ("relief_curvature", REAL),  # pb^2 / (rho sigma): curvature of the tip relief [sigma/pb^2]
+    ("relief_slope", REAL),  # pb / rho [1/pb]
+    ("reach", REAL),  # how far outside the path a pair may still touch [pb]
+    ("start_radius", REAL),  # pinion's radius of curvature where contact begins [pb]
+    ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature [1/pb]
+    ("radius_force", INT),  # 1 if a force pays for the changing contact length
+    ("damping", REAL),  # viscous mesh damping [F tau/sigma]
+    ("drag", REAL),  # force per squared surface velocity [F tau^2/sigma^2]
+    ("viscous", REAL),  # force per surface velocity [F tau/sigma]
+    ("dry", INT),  # 1 if there is dry resistance at the gear
+    ("error_count", INT),  # harmonics of the static transmission error [1]
+    ("error_at", INT),  # order, amplitude and phase of each, among the tables [index]
     ("torque", TORQUE, (2,)),  # of the pinion (DRIVE) and of the gear (LOAD)
-    ("schedule", SCHEDULE, (SCHEDULES,)),  # of both torques and of the speed that the drive holds (SPEED),
-    (
-        "speed_gain",
-        REAL,
-    ),  # and force over what the pinion's surface velocity is short of that; 0 if none is held
+    ("schedule", SCHEDULE, (SCHEDULES,)),  # of both torques and of the speed that the drive holds (SPEED)
+    ("speed_gain", REAL),  # force per speed that the pinion lacks; 0 if none is held [F tau/sigma]
     # the contact
-    ("cutoff", REAL),  # gap beyond which the force is taken as zero
-    ("contact_gap", REAL),  # gap of contact onset and separation
-    ("lowest_gap", REAL),  # the model holds above this gap of a pair
-    ("light_gap", REAL),  # gap in the middle of elastic contacts above which the asperity model would do
+    ("cutoff", REAL),  # gap beyond which the force is taken as zero [sigma]
+    ("contact_gap", REAL),  # gap of contact onset and separation [sigma]
+    ("lowest_gap", REAL),  # the model holds above this gap of a pair [sigma]
+    ("light_gap", REAL),  # gap in the middle of elastic contacts above which rigid ones would do [sigma]
     ("material", MATERIAL, (MATERIALS,)),
     ("by_place", INT),  # 1 where shares change with tooth and place and are not in the force scales
-    ("loadings_at", INT),  # their loading branches over the pair's gap, in forces, side by side,
-    ("potentials_at", INT),  # the potentials of these, and numbers of asperities above the gap
-    ("numbers_at", INT),
     ("patches", INT),  # 1 where the pinion's fractions are those of the interface
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
-    ("loading_at", INT),  # loading branch of all materials together, in forces
-    ("potential_at", INT),  # potential of that branch
-    ("slots", INT),  # histories per flank in use, a power of two, and of all flanks
-    ("histories", INT),
-    ("branch_length", INT),  # size of a branch of the force law or the stored energy; 0 if none is kept
-    ("branches_at", INT),  # where they begin among the rows
+    ("loading_at", INT),  # loading branch of all materials, or with `by_place` of each, in forces [index]
+    ("potential_at", INT),  # potentials of these branches [index]
+    ("slots", INT),  # histories per flank in use, a power of two [1]
+    ("histories", INT),  # histories of all flanks [1]
+    ("branch_length", INT),  # numbers of a branch of the force law or stored energy; 0 if none is kept [1]
+    ("branches_at", INT),  # where these branches begin among the rows [index]
     # nodes of an elastic contact
-    ("nodes", INT),  # per pair; 0 for the asperity model
-    ("points", INT),  # the nodes and what lies between them
-    ("orders", INT),  # powers of the contact length in the influence coefficients
-    ("length_middle", REAL),  # that length, counted from the middle of its range and over half of it
-    ("length_half_range", REAL),
-    ("profile_at", INT),  # among the tables: of nodes profile, weights and influence coefficients,
-    ("weights_at", INT),
-    ("influence_at", INT),
-    ("point_profile_at", INT),  # of points profile, weights and shares of the nodes around each
-    ("point_weights_at", INT),
-    ("shares_at", INT),
-    ("node_rows_at", INT),  # where the pairs' nodes begin among the rows
-    ("node_row_length", INT),  # numbers of one pair's nodes there
-    ("point_branch_length", INT),  # size of the branch of stretched asperities at a point; 0 if none is kept
-    ("point_branches_at", INT),  # where those of all pairs begin among the rows
-    ("scratch_at", INT),  # scratch space for them, among the rows
-    ("trial_at", INT),  # where a state whose nodes are eliminated gets its deflections, among the rows
+    ("nodes", INT),  # per pair; 0 for the asperity model [1]
+    ("points", INT),  # the nodes and what lies between them [1]
+    ("orders", INT),  # powers of the contact length in the influence coefficients [1]
+    ("length_middle", REAL),  # middle of the range of that length [sqrt(pb)]
+    ("length_half_range", REAL),  # half of that range [sqrt(pb)]
+    ("profile_at", INT),  # profile of the nodes, among the tables [index]
+    ("weights_at", INT),  # weights of the nodes, among the tables [index]
+    ("influence_at", INT),  # influence coefficients, among the tables [index]
+    ("point_profile_at", INT),  # profile of the points, among the tables [index]
+    ("point_weights_at", INT),  # weights of the points, among the tables [index]
+    ("shares_at", INT),  # shares of the nodes around each point, among the tables [index]
+    ("node_rows_at", INT),  # where the pairs' nodes begin among the rows [index]
+    ("node_row_length", INT),  # numbers of one pair's nodes there [1]
+    ("point_branch_length", INT),  # numbers of a branch of stretched asperities at a point; 0 if none [1]
+    ("point_branches_at", INT),  # where those of all pairs begin among the rows [index]
+    ("scratch_at", INT),  # scratch space for them, among the rows [index]
+    ("trial_at", INT),  # where a state whose nodes are eliminated gets its deflections, in rows [index]
     # what flanks are exposed to
-    ("places", INT),  # along the path of contact; 0 if it is not asked for
-    ("places_per_pitch", REAL),
-    ("pitch_point", REAL),  # on the path of contact, in pitches
-    ("sliding_pinion", REAL),  # sliding speed a pitch from there, over either gear's surface velocity
-    ("sliding_gear", REAL),
-    ("exposures_at", INT),  # among the rows
-    ("exposures", INT),  # numbers there
+    ("bins", INT),  # along the path of contact, places to a user; 0 if no exposures are kept [1]
+    ("bins_per_pitch", REAL),  # [1/pb]
+    ("pitch_point", REAL),  # on the path of contact [pb]
+    ("sliding_pinion", REAL),  # sliding speed a pitch from there, over the pinion's surface velocity [1]
+    ("sliding_gear", REAL),  # over the gear's surface velocity [1]
+    ("exposures_at", INT),  # sums of the flanks among the rows [index]
+    ("exposures", INT),  # numbers there [1]
     # the run
-    ("states", INT),
-    ("scale_at", INT),  # what an error of 1 means for each state, among the tables
-    ("error_weights_at", INT),  # one over the absolute tolerance of each state, among the rows
-    ("rtol", REAL),
-    ("start", REAL),  # time at which the run begins: 0, or the end of the run that it goes on from,
-    ("end", REAL),  # and ends
-    ("samples", INT),  # in the whole run, the first at its start; 0 for none
-    ("first_sample", REAL),  # the start over the time between two samples
-    (
-        "knot_count",
-        INT,
-    ),  # stops inside the run, knots of schedules and checkpoints, among the tables: times,
-    ("knots_at", INT),
-    ("checkpoints_at", INT),  # and for each 1 if a checkpoint is kept there
+    ("states", INT),  # numbers in the state vector [1]
+    ("scale_at", INT),  # what an error of 1 means for each state, among the tables [index]
+    ("error_weights_at", INT),  # one over the absolute tolerance of each state, among the rows [index]
+    ("rtol", REAL),  # relative tolerance [1]
+    ("start", REAL),  # when the run begins: 0, or the end of the run that it goes on from [tau]
+    ("end", REAL),  # when it ends [tau]
+    ("samples", INT),  # in the whole run, the first at its start; 0 for none [1]
+    ("first_sample", REAL),  # the start over the time between two samples [1]
+    ("knot_count", INT),  # stops inside the run: knots of schedules and checkpoints [1]
+    ("knots_at", INT),  # their times among the tables [index]
+    ("checkpoints_at", INT),  # for each 1 if a checkpoint is kept there, among the tables [index]
     ("stop", INT),  # what ends the run before its time: see `STOPS`
-    ("stop_from", REAL),  # place of the gear in pitches from which its turns are counted,
-    ("stop_pitches", REAL),  # and how many pitches make the turns
-    ("rest_speed", REAL),  # smallest slip speed that counts as motion
-    ("root_limit", INT),  # roots in succession allowed to be closer than `root_spacing`, times 1 + t
-    ("root_spacing", REAL),
-    ("torque_omega", REAL),  # highest angular frequency of the torques that steps have to follow
-    (
-        "longest_step",
-        REAL,
-    ),  # that a cubic schedule allows, which may be flat where a pulse is to come; 0 for any
-    ("angle_omega", REAL),  # the same of the torques of an angle, per pitch,
-    ("mesh_omega", REAL),  # and along the mesh, per pitch
-    ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once,
-    ("balance_span", REAL),  # over which they may last,
-    ("balance_error", REAL),  # error over throughput from which on it takes single steps,
-    ("flight_parts", INT),  # and into which it divides a step in flight
+    ("stop_from", REAL),  # position of the gear from which its turns are counted [pb]
+    ("stop_pitches", REAL),  # pitches of the turns that end the run [pb]
+    ("rest_speed", REAL),  # smallest slip speed that counts as motion [sigma/tau]
+    ("root_limit", INT),  # roots in succession allowed to be closer than `root_spacing` [1]
+    ("root_spacing", REAL),  # times 1 + t [tau]
+    ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]
+    ("longest_step", REAL),  # that a cubic schedule allows, flat where a pulse is to come; 0 for any [tau]
+    ("angle_omega", REAL),  # highest angular frequency of the torques of an angle [rad/pb]
+    ("mesh_omega", REAL),  # highest angular frequency along the mesh [rad/pb]
+    ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
+    ("balance_span", REAL),  # over which they may last [tau]
+    ("balance_error", REAL),  # error over throughput from which on it takes single steps [1]
+    ("flight_parts", INT),  # into which it divides a step in flight [1]
 )

@@ -1,4 +1,7 @@
-"""``WORK``: work space, which can be worked out anew from the scene and a checkpoint."""
+"""``WORK``: work space, which can be worked out anew from the scene and a checkpoint.
+
+Units as in `gearidae.engine.model.scene_record`.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,6 @@ from gearidae.engine.model.record_types import (
 
 __all__ = [
     "ADAMS",
-    "CELL",
     "DRIVER",
     "EXPOSED",
     "EXPOSING",
@@ -33,39 +35,39 @@ __all__ = [
 ]
 
 QUADRATURE: Final = record_type(  # inputs of the powers at the last sample of the energy balance
-    ("time", REAL),
+    ("time", REAL),  # [tau]
     ("steps", INT),  # accepted since
-    ("kinetic", REAL),
-    ("pinion_travel", REAL),  # of its base circle
-    ("pinion_speed", REAL),
-    ("pinion_acceleration", REAL),
-    ("gear_travel", REAL),
-    ("gear_speed", REAL),
-    ("gear_acceleration", REAL),
-    ("drive", REAL),  # torques over base radius
-    ("drive_rate", REAL),
-    ("load", REAL),
-    ("load_rate", REAL),
-    ("radius_power", REAL),
-    ("radius_power_rate", REAL),
-    ("length_work", REAL),  # work of the radius on the adhesion losses added since then
+    ("kinetic", REAL),  # energy of motion [F sigma]
+    ("pinion_travel", REAL),  # of its base circle [sigma]
+    ("pinion_speed", REAL),  # [sigma/tau]
+    ("pinion_acceleration", REAL),  # [sigma/tau^2]
+    ("gear_travel", REAL),  # of its base circle [sigma]
+    ("gear_speed", REAL),  # [sigma/tau]
+    ("gear_acceleration", REAL),  # [sigma/tau^2]
+    ("drive", REAL),  # torque over base radius [F]
+    ("drive_rate", REAL),  # [F/tau]
+    ("load", REAL),  # torque over base radius [F]
+    ("load_rate", REAL),  # [F/tau]
+    ("radius_power", REAL),  # of the changing radius [F sigma/tau]
+    ("radius_power_rate", REAL),  # [F sigma/tau^2]
+    ("length_work", REAL),  # of the radius on the adhesion losses added since then [F sigma]
 )
 
 RESISTANCE: Final = record_type(  # the same of drag and damping, which are integrated at every step
-    ("time", REAL),
-    ("gear_travel", REAL),
-    ("gear_speed", REAL),
-    ("gear_acceleration", REAL),
-    ("mesh_speed", REAL),
-    ("mesh_acceleration", REAL),
+    ("time", REAL),  # [tau]
+    ("gear_travel", REAL),  # [sigma]
+    ("gear_speed", REAL),  # [sigma/tau]
+    ("gear_acceleration", REAL),  # [sigma/tau^2]
+    ("mesh_speed", REAL),  # rate of the transmission error [sigma/tau]
+    ("mesh_acceleration", REAL),  # [sigma/tau^2]
 )
 
 ADAMS: Final = record_type(
     ("own", INT),  # 1 with the package's own Newton iteration, 0 with IDA's
     ("evaluations", INT),  # of the residual with its slopes, so far
     ("failures", INT),  # of Newton's iteration, so far
-    ("contraction_rate", REAL),  # contraction of Newton's iteration: next correction over this one
-    ("omega_sq", REAL),  # squared angular frequency of the motion, from the last evaluation
+    ("contraction_rate", REAL),  # contraction of Newton's iteration: next correction over this one [1]
+    ("omega_sq", REAL),  # squared angular frequency of the motion, from the last evaluation [1/tau^2]
     ("wanted", INT),  # 1 for Adams formulas from the next start on
     ("used", INT),  # 1 while Adams formulas are used
     ("attempts", INT),  # steps tried since the start
@@ -73,16 +75,16 @@ ADAMS: Final = record_type(
     ("next_order", INT),  # order k of the next step: number of former rates
     ("n_history", INT),  # former rates known
     ("order_used", INT),  # order k of the last step; 0 if it used IDA's formula
-    ("time", REAL),  # the last accepted time, and the step up to it
-    ("last_step", REAL),
-    ("new_step", REAL),  # length of the step that is tried; 0 once it has been accepted
-    ("amplitude_sq", REAL),  # of the vibration, over the tolerance
-    ("new_state", REAL, (MOTION,)),
-    ("predicted_rates", REAL, (MOTION,)),
+    ("time", REAL),  # last accepted time [tau]
+    ("last_step", REAL),  # step up to it [tau]
+    ("new_step", REAL),  # length of the step that is tried; 0 once it has been accepted [tau]
+    ("amplitude_sq", REAL),  # squared amplitude of the vibration over the tolerance [1]
+    ("new_state", REAL, (MOTION,)),  # at the end of the step that is tried
+    ("predicted_rates", REAL, (MOTION,)),  # rates there as predicted
     ("state", REAL, (MOTION,)),  # at the last accepted time
-    ("time_lags", REAL, (MOST_ORDERS + 1,)),  # time from each former rate to it, the newest first
+    ("time_lags", REAL, (MOST_ORDERS + 1,)),  # time from each former rate to it, the newest first [tau]
     ("basis_integrals", REAL, (MOST_ORDERS + 1,)),  # of Newton's polynomials over these times
-    ("basis_values", REAL, (MOST_ORDERS + 1,)),
+    ("basis_values", REAL, (MOST_ORDERS + 1,)),  # of Newton's polynomials at the end of the step
     (
         "differences",
         REAL,
@@ -93,155 +95,136 @@ ADAMS: Final = record_type(
 
 SEARCH: Final = record_type(  # for the root of the guard in a step
     ("low", REAL),  # the guard at the beginning of the search interval
-    ("low_time", REAL),
-    ("step_end", REAL),  # time at the end of the step
+    ("low_time", REAL),  # when that is [tau]
+    ("step_end", REAL),  # time at the end of the step [tau]
     ("rest", INT),  # 1 after a root: the rest of its step is still to be searched
     ("stop", INT),  # 1 while a stop waits for the roots before it
-    ("stop_time", REAL),
+    ("stop_time", REAL),  # when that stop is [tau]
     ("evaluations", INT),  # of the guard, so far
     ("as_ida", INT),  # 1 to search as IDA does, and take the state at a step's end from its interpolant
-    ("sharpness", REAL),  # how sharply to find a root, over the length of the interval
+    ("sharpness", REAL),  # how sharply to find a root, over the length of the interval [1]
 )
 
 DRIVER: Final = record_type(
-    ("time", REAL),  # reached
-    ("rows", INT),  # samples and events in the present block
-    ("events", INT),
+    ("time", REAL),  # reached [tau]
+    ("rows", INT),  # samples in the present block
+    ("events", INT),  # events in the present block
     ("pending", INT),  # flag of a step that waits for room, plus 1; 0 for none, -1 for a start
-    ("done", INT),
+    ("done", INT),  # 1 at the end of the run
     ("error", INT),  # IDA's flag, or one of the driver's own
     ("since", INT),  # steps since the last checkpoint
-    ("step_end", REAL),  # where the last whole step has ended, or the last start was,
-    ("step", REAL),  # and the length of that step, 0 at a start
+    ("step_end", REAL),  # where the last whole step has ended, or the last start was [tau]
+    ("step", REAL),  # length of that step, 0 at a start [tau]
     ("counted", INT, (5,)),  # of IDA's counters since its last start, what the run's own already have
 )
 
 POINT: Final = record_type(  # of an accepted time, what extremes are located from
-    ("time", REAL),
-    ("travel", REAL),  # transmission error, or height, with its rate and acceleration
-    ("travel_rate", REAL),
-    ("travel_bend", REAL),
-    ("speed", REAL),  # of the gear, its acceleration,
-    ("speed_rate", REAL),
-    ("place", REAL),  # and how far it has turned, in pitches
-    ("force", REAL),
+    ("time", REAL),  # [tau]
+    ("travel", REAL),  # transmission error, or height [sigma]
+    ("travel_rate", REAL),  # [sigma/tau]
+    ("travel_bend", REAL),  # [sigma/tau^2]
+    ("speed", REAL),  # of the gear [sigma/tau]
+    ("speed_rate", REAL),  # [sigma/tau^2]
+    ("position", REAL),  # how far the gear has turned [pb]
+    ("force", REAL),  # along the line of action [F]
 )
 
 TRACK: Final = record_type(  # of the extremes
-    ("time", REAL),  # the last accepted time
+    ("time", REAL),  # last accepted time [tau]
     ("point", POINT, (3,)),  # it, two before it, and in turn the time that is just accepted
-    ("last", INT),  # where among them the last accepted time is
+    ("last", INT),  # index of the last accepted time among them
     ("smooth", INT),  # how many of them the force has passed since its last corner, that included
-    ("next_part", REAL),  # time at which the coming part of the run begins
+    ("next_part", REAL),  # time at which the coming part of the run begins [tau]
 )
 
 EXPOSED: Final = record_type(  # a pair where its exposures have last been added up
-    ("known", INT),  # whether it was within the cut-off there
-    ("pair", INT),
-    ("row", INT),  # where its tooth begins among the rows
-    ("time", REAL),
-    ("place", REAL),  # along the path of contact, in pitches,
-    ("at", INT),  # and the index of what it is divided into
+    ("known", INT),  # 1 if it was within the cut-off there
+    ("pair", INT),  # its number
+    ("row", INT),  # where its tooth begins among the rows [index]
+    ("time", REAL),  # [tau]
+    ("position", REAL),  # along the path of contact [pb]
+    ("bin", INT),  # that this lies in
     ("turned", INT),  # 1 from where it began to close until something joins
     ("pulls", INT),  # 1 from where it has been seen to pull
-    ("lowest", REAL),  # least gap at a turning point in this place
+    ("lowest", REAL),  # least gap at a turning point in this bin [sigma]
     ("front", REAL, (MATERIALS,)),  # asperities in contact that have been added up, over their density
     ("added", REAL, (MATERIALS,)),  # contacts that have been added since the last turning point
-    ("number", REAL, (MATERIALS,)),  # asperities in contact, over their density,
-    ("base", REAL, (MATERIALS,)),  # and at the last turning point
-    ("gap", REAL),  # and its rate
-    ("gap_rate", REAL),
-    ("power", REAL),  # force times magnitude of the sliding speed, and its rate
-    ("power_rate", REAL),
+    ("number", REAL, (MATERIALS,)),  # asperities in contact, over their density
+    ("base", REAL, (MATERIALS,)),  # those at the last turning point
+    ("gap", REAL),  # [sigma]
+    ("gap_rate", REAL),  # [sigma/tau]
+    ("power", REAL),  # force times magnitude of the sliding speed [F sigma/tau]
+    ("power_rate", REAL),  # [F sigma/tau^2]
     ("side", INT),  # sign of the sliding speed
-    ("seen_time", REAL),  # when its pressure has last been looked at, and where
-    ("seen_place", REAL),
-    ("seen_at", INT),
-    ("force", REAL),  # there, with its rate
-    ("force_rate", REAL),
+    ("seen_time", REAL),  # when its pressure has last been looked at [tau]
+    ("seen_position", REAL),  # where that was [pb]
+    ("seen_bin", INT),  # bin of that
+    ("force", REAL),  # there [F]
+    ("force_rate", REAL),  # there [F/tau]
 )
 
 EXPOSING: Final = record_type(
-    ("time", REAL),  # when the exposures of all pairs have last been added up
+    ("time", REAL),  # when the exposures of all pairs have last been added up [tau]
     ("begun", INT),  # 0 before the first start
     ("often", INT),  # 1 where contacts are added up as often as sliding work
-    ("steps", INT),  # accepted since then,
-    ("at_once", INT),  # how many of them end the interval of sliding work,
-    ("wanted", INT),  # and after how many of them pressures are looked at next
-    ("error", REAL),  # error estimate of sliding work in this interval
-    ("work", REAL),  # sliding work of the last intervals, and how many steps they had; former ones count less
-    ("counted", REAL),
+    ("steps", INT),  # accepted since then
+    ("steps_per_interval", INT),  # how many of them end the interval of sliding work
+    ("wanted", INT),  # after how many of them pressures are looked at next
+    ("error", REAL),  # error estimate of sliding work in this interval [F sigma]
+    ("work", REAL),  # sliding work of the last intervals; former ones count less [F sigma]
+    ("counted", REAL),  # how many steps they had [1]
     ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
 )
 
 NOTED: Final = record_type(  # a pair where its force was evaluated
     ("history", INT),  # index of its history
-    ("pair", INT),
-    ("place", REAL),  # along the path of contact, in pitches
-    ("gap", REAL),  # and its rate
-    ("gap_rate", REAL),
-    ("force", REAL),  # and its slope in the gap
-    ("slope", REAL),
+    ("pair", INT),  # its number
+    ("position", REAL),  # along the path of contact [pb]
+    ("gap", REAL),  # [sigma]
+    ("gap_rate", REAL),  # [sigma/tau]
+    ("force", REAL),  # [F]
+    ("slope", REAL),  # of the force in the gap [F/sigma]
 )
 
 NOTES: Final = record_type(  # the last evaluation of all forces, in a run that keeps exposures
-    ("time", REAL),
-    ("travel", REAL),  # transmission error
-    ("count", INT),
+    ("time", REAL),  # [tau]
+    ("travel", REAL),  # transmission error [sigma]
+    ("count", INT),  # pairs
     ("pair", NOTED, (2 * SLOTS_HIGH,)),
 )
 
 SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminated
-    ("evaluated", INT),  # since the last step's end,
-    ("known", INT),  # and then whether the history was about the pair, the time and the pair's gap
-    ("time", REAL),
-    ("gap", REAL),
-    ("last_known", INT),  # the end of the last step, and the pair's gap and gap rate there
-    ("last_time", REAL),
-    ("last_gap", REAL),
-    ("last_rate", REAL),
-    ("before_known", INT),  # and of the one before
-    ("before_time", REAL),
-    ("before_gap", REAL),
-    ("before_rate", REAL),
-)
-
-PART: Final = (
-    record_type(  # of a cell, one side: before + change u^3 (10 - 15 u + 6 u^2), u = (place - origin) scale
-        ("origin", REAL),
-        ("scale", REAL),
-        ("before", REAL),
-        ("change", REAL),
-    )
-)
-
-CELL: Final = (
-    record_type(  # where fractions change with tooth and place: those of a pair between middles of places
-        ("number", REAL),  # of the pair, counted without end,
-        ("low", REAL),  # and the way along the path of contact in pitches; none at first
-        ("high", REAL),
-        ("side", PART, (2,)),  # of the pinion and of the gear
-    )
+    ("evaluated", INT),  # 1 once they have been evaluated since the last step's end
+    ("known", INT),  # 1 if the history was about the pair at that evaluation
+    ("time", REAL),  # of that evaluation [tau]
+    ("gap", REAL),  # of the pair at that evaluation [sigma]
+    ("last_known", INT),  # 1 if they are known at the end of the last step
+    ("last_time", REAL),  # [tau]
+    ("last_gap", REAL),  # [sigma]
+    ("last_rate", REAL),  # of the gap [sigma/tau]
+    ("before_known", INT),  # 1 if they are known at the end of the step before
+    ("before_time", REAL),  # [tau]
+    ("before_gap", REAL),  # [sigma]
+    ("before_rate", REAL),  # of the gap [sigma/tau]
 )
 
 WORK: Final = record_type(
-    ("quadrature", QUADRATURE),
-    ("resistance", RESISTANCE),
-    ("track", TRACK),
-    ("lag_time", REAL),  # time to which the lags of joining are followed
-    ("exposing", EXPOSING),
-    ("notes", NOTES),
-    ("cell", CELL, (2 * SLOTS_HIGH,)),
+    ("quadrature", QUADRATURE),  # of the energy balance
+    ("resistance", RESISTANCE),  # of the energy balance
+    ("track", TRACK),  # of the extremes
+    ("lag_time", REAL),  # time to which the lags of joining are followed [tau]
+    ("exposing", EXPOSING),  # of the exposures
+    ("notes", NOTES),  # of the exposures
     (
         "shares",
         REAL,
         (2 * SLOTS_HIGH, MATERIALS),
-    ),  # by tooth and place, of elastic contacts as last asked for
-    ("settling", SETTLING, (2 * SLOTS_HIGH,)),
+    ),  # by tooth and place, of elastic contacts as last asked for [1]
+    ("settling", SETTLING, (2 * SLOTS_HIGH,)),  # of elastic contacts
     ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
-    ("adams", ADAMS),
-    ("search", SEARCH),
+    ("adams", ADAMS),  # of the integrator
+    ("search", SEARCH),  # of the root search
     ("driver", DRIVER),
-    ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins
-    ("torque_law", INT, (2,)),  # where the compiled torque law of either shaft lies; 0 without one
+    ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins [index]
+    ("torque_law", INT, (2,)),  # where the compiled torque law of either shaft lies; 0 without one [address]
 )

@@ -24,7 +24,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import influence, stiffness_matrix
 from gearidae.engine.elastic.rows import node_weights
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import held, jacobian
+from gearidae.engine.motion.residual import is_stuck, jacobian
 from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pair_gap, pairs_touching
 
 __all__ = [
@@ -101,7 +101,7 @@ def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
             continue
         start = _assemble_pair(m, history_of(m, coast, pair), store)
         store[start + _BETA + V] = sign * m.scene.pinion_inverse_mass
-        if not held(m):
+        if not is_stuck(m):
             store[start + _BETA + W] = -sign * m.scene.gear_inverse_mass * (1.0 + slope)
         store[start + _GAMMA + U] = -sign
         store[start + _GAMMA + PHASE] = sign * slope / m.scene.phase_rate

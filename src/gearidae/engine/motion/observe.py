@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import DRIVE, PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import held, mesh_forces, resisting_force, roller_force
+from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.motion.residual import is_stuck, mesh_forces, resisting_force, roller_force
 from gearidae.engine.motion.separation import separation
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
 from gearidae.engine.torques.torque import torque_force
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS
+from gearidae.records.columns import GEAR, ROLLER
 
 __all__ = ["observe"]
-
-_GEARS: Final = len(GEAR_COLUMNS)
-_ROLLER: Final = len(ROLLER_COLUMNS)
 
 
 @compiled_once(SOLVER)
@@ -38,11 +34,13 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     """
     length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
     u, v = y[U], y[V]
-    if m.scene.kind == ROLLER:
+    if m.scene.kind != GEARS:
         force, _ = roller_force(m, t, y, False)
-        row[0], row[1], row[2] = u * length, v * speed, force * m.scene.force_unit
-        if row.size > _ROLLER:
-            row[_ROLLER] = separation(m, y) * length
+        row[ROLLER.height] = u * length
+        row[ROLLER.speed] = v * speed
+        row[ROLLER.force] = force * m.scene.force_unit
+        if row.size > ROLLER.min_separation:
+            row[ROLLER.min_separation] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
     force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
@@ -51,27 +49,30 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     if m.scene.error_count != 0:
         _, _, e1, _ = static_error(m, u, phase)
     radius = m.scene.gear_radius
-    row[0] = w * speed / radius
-    row[1] = (v + w) * speed / (m.scene.pinion_radius * (1.0 - e1))
-    row[2] = (m.state.turns + phase) * m.scene.base_pitch / radius
-    row[3] = u * length
-    row[4] = force * m.scene.force_unit
-    row[5] = radius * (force + relief) * m.scene.force_unit
-    touching = 0.0
-    row[6] = row[7] = math.inf
+    row[GEAR.gear_speed] = w * speed / radius
+    row[GEAR.pinion_speed] = (v + w) * speed / (m.scene.pinion_radius * (1.0 - e1))
+    row[GEAR.gear_angle] = (m.state.turns + phase) * m.scene.base_pitch / radius
+    row[GEAR.transmission_error] = u * length
+    row[GEAR.mesh_force] = force * m.scene.force_unit
+    row[GEAR.gear_contact_torque] = radius * (force + relief) * m.scene.force_unit
+    drive_gap = coast_gap = math.inf
+    touching = 0
     reach = all_pairs(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
         gap, _, _, _ = pair_gap(m, coast, pair, u, v, phase, w)
-        row[6 + coast] = min(row[6 + coast], gap * length)
-        if gap < m.scene.contact_gap:
-            touching += 1.0
-    row[8] = touching
+        if coast:
+            coast_gap = min(coast_gap, gap)
+        else:
+            drive_gap = min(drive_gap, gap)
+        touching += gap < m.scene.contact_gap
+    row[GEAR.drive_gap], row[GEAR.coast_gap] = drive_gap * length, coast_gap * length
+    row[GEAR.pairs_in_contact] = touching
     turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
     drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
-    resistance = force + relief if held(m) else resisting_force(m, t, u, phase, w)
-    row[9] = drive * unit * m.scene.pinion_radius
-    row[10] = resistance * unit * radius
-    row[11] = angle_of_shaft(m, DRIVE, u, phase)
-    if row.size > _GEARS:
-        row[_GEARS] = separation(m, y) * length
+    resistance = force + relief if is_stuck(m) else resisting_force(m, t, u, phase, w)
+    row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
+    row[GEAR.load_torque] = resistance * unit * radius
+    row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)
+    if row.size > GEAR.min_separation:
+        row[GEAR.min_separation] = separation(m, y) * length

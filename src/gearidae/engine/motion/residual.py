@@ -21,8 +21,7 @@ from gearidae.engine.elastic.nodes import mark_out_of_reach, node_force, node_re
 from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.energy.radius import radius_force
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.motion.noted_force import begin_notes, note_force
-from gearidae.engine.pairs.coverage import WHOLE, note_shares, place_inside, shares_of
+from gearidae.engine.pairs.coverage import WHOLE, note_shares, path_position, shares_of
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
@@ -37,12 +36,14 @@ from gearidae.engine.pairs.tooth_pairs import (
 from gearidae.engine.torques.torque import torque_force
 
 __all__ = [
+    "begin_notes",
     "finish_deflections",
-    "held",
     "is_eliminated",
+    "is_stuck",
     "jacobian",
     "mesh_forces",
     "motion",
+    "note_force",
     "residual",
     "resisting_force",
     "roller_force",
@@ -97,7 +98,7 @@ def mesh_forces(
     elastic = m.scene.nodes > 0
     if elastic:
         mark_out_of_reach(m)
-    if m.scene.places > 0:
+    if m.scene.bins > 0:
         begin_notes(m, t, u)
     full = with_deflections(m, y) if elastic and settling else y
     reach = pairs_touching(m, y)
@@ -117,9 +118,9 @@ def mesh_forces(
             else:
                 load, stiffness = node_force(m, k, known, t, y, gap, rate, length)
         else:
-            shares = shares_of(m, k, coast, pair, inside)
+            shares = shares_of(m, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
-            if m.scene.places > 0:
+            if m.scene.bins > 0:
                 note_force(m, k, pair, inside, (gap, rate), (load, stiffness))
         load *= sign
         # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair
@@ -142,6 +143,26 @@ def mesh_forces(
     return force, relief, force_u, force_phase, relief_u, relief_phase
 
 
+@compiled(inline=True)
+def begin_notes(m: Model, t: float, travel: float) -> None:
+    """Note that all forces are evaluated at a time and a transmission error, for exposures; so far of no pair."""
+    notes = m.work.notes
+    notes.time, notes.travel, notes.count = t, travel, 0
+
+
+@compiled(inline=True)
+def note_force(
+    m: Model, k: int, pair: int, position: float, gap: tuple[float, float], force: tuple[float, float]
+) -> None:
+    """Note a pair with the k-th history: path position, gap with its rate, force with its slope in the gap."""
+    notes = m.work.notes
+    noted = notes.pair[notes.count]
+    noted.history, noted.pair, noted.position = k, pair, position
+    noted.gap, noted.gap_rate = gap
+    noted.force, noted.slope = force
+    notes.count += 1
+
+
 @compiled
 def resisting_force(m: Model, t: float, u: float, phase: float, w: float) -> float:
     """Resistance at the gear over R2, scaled: dry in the direction of slip, and both drags (Eq. 2)."""
@@ -153,7 +174,7 @@ def resisting_force(m: Model, t: float, u: float, phase: float, w: float) -> flo
 
 
 @compiled
-def held(m: Model) -> bool:
+def is_stuck(m: Model) -> bool:
     """Whether dry resistance holds the gear at rest."""
     return bool(m.scene.dry != 0 and m.state.slip == 0.0)
 
@@ -189,7 +210,7 @@ def motion(
         pinion = m.scene.pinion_inverse_mass * (drive - force)
     else:
         pinion = (1.0 - e1) * m.scene.pinion_inverse_mass * (drive - (1.0 - e1) * force) - e2 * turn * turn
-    if held(m):
+    if is_stuck(m):
         out[W] = yp[W]
     else:
         out[W] = yp[W] - m.scene.gear_inverse_mass * (force + relief - resisting_force(m, t, u, phase, w))
@@ -244,7 +265,7 @@ def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
             continue
         m.state.history[k].length = 1.0
         if m.scene.kind != ROLLER:
-            inside = place_inside(m, coast, pair, y[PHASE])
+            inside = path_position(m, coast, pair, y[PHASE])
             note_shares(m, k, coast, pair, inside)
             m.state.history[k].length = contact_length(m, inside)
         known = m.state.history[k].pair == pair
@@ -299,7 +320,7 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     out[4], out[5] = -1.0, cj + a1 * damping + gain
     out[9], out[10] = a1 * force_phase, cj
     out[13], out[14], out[15] = cj + gain, -m.scene.phase_rate, cj
-    if not held(m):
+    if not is_stuck(m):
         out[3] = -a2 * (force_u + relief_u)
         out[7] = -a2 * damping
         out[11] = -a2 * (force_phase + relief_phase)

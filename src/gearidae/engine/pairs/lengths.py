@@ -1,4 +1,4 @@
-"""Contact length of a pair and of each of its materials along the path of contact, with their rates.
+"""Contact length of a pair along the path of contact, alone and weighed by what its materials have, with its rates.
 
 A pair on a contact of length l stores l times the sum of its materials' energies by their shares s: what changes along
 the path is l s of each material, all of it l where the shares do not change.
@@ -7,12 +7,13 @@ the path is l s of each material, all of it l where the shares do not change.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
-from gearidae.engine.pairs.coverage import Shares, place_inside, share_changes
+from gearidae.engine.pairs.coverage import WHOLE, Shares, path_position, share_changes, weighed
 
-__all__ = ["length_and_rates", "material_lengths"]
+__all__ = ["WeighedLength", "length_and_rates", "weighed_length"]
 
 SHORTEST_SQ = 1e-12
 """Least square of a contact length: a step that is tried may lead beyond the path, to where there is none."""
@@ -34,28 +35,52 @@ def length_and_rates(
     return length, rate, (half * sign * w_rate - curvature * along * along - rate * rate) / length
 
 
+class WeighedLength(NamedTuple):
+    """A contact length times what its materials have per length, by their shares.
+
+    Attributes
+    ----------
+    length, rate, bend : float
+        With two derivatives in time while the values stay.
+    by_gap : float
+        Slope of the rate in the gap.
+    """
+
+    length: float
+    rate: float
+    bend: float
+    by_gap: float
+
+
 @compiled
-def material_lengths(
-    m: Model, k: int, coast: int, pair: int, phase: float, w: float, w_rate: float
-) -> tuple[Shares, Shares, Shares]:
-    """Contact length times share of each material of a pair on the path of contact, with two derivatives in time."""
+def weighed_length(
+    m: Model, where: tuple[int, int, float], w: float, w_rate: float, values: Shares, slopes: Shares
+) -> WeighedLength:
+    """Weigh the contact length of a pair on the path of contact.
+
+    Parameters
+    ----------
+    m : Model
+    where : tuple
+        Flank and number of the pair, and phase of the gear.
+    w, w_rate : float
+        Surface velocity of the gear, and the rate of that.
+    values, slopes : tuple of three floats
+        What each material has per length, as if it covered everything, and its slope in the gap.
+    """
+    coast, pair, phase = where
     length, rate, bend = length_and_rates(m, coast, pair, phase, w, w_rate)
+    if m.scene.by_place == 0:
+        a, a1 = weighed(WHOLE, values), weighed(WHOLE, slopes)
+        return WeighedLength(a * length, a * rate, a * bend, a1 * rate)
+    shares, changes, bends = share_changes(m, coast, pair, path_position(m, coast, pair, phase))
     along = m.scene.phase_rate * (1.0 - 2.0 * coast)
     speed, speed_rate = along * w, along * w_rate
-    inside = place_inside(m, coast, pair, phase)
-    (a, b, c), (a1, b1, c1), (a2, b2, c2) = share_changes(m, k, coast, pair, inside)
-    # a' = da/dx v and a'' = d2a/dx2 v^2 + da/dx v', with x the place and v its rate
-    twice, square, both = 2.0 * rate * speed, length * speed * speed, length * speed_rate
-    return (
-        (length * a, length * b, length * c),
-        (
-            rate * a + length * speed * a1,
-            rate * b + length * speed * b1,
-            rate * c + length * speed * c1,
-        ),
-        (
-            bend * a + (twice + both) * a1 + square * a2,
-            bend * b + (twice + both) * b1 + square * b2,
-            bend * c + (twice + both) * c1 + square * c2,
-        ),
+    a, a1 = weighed(shares, values), weighed(changes, values) * speed
+    a2 = weighed(bends, values) * speed * speed + weighed(changes, values) * speed_rate
+    return WeighedLength(
+        a * length,
+        a * rate + a1 * length,
+        a * bend + 2.0 * a1 * rate + a2 * length,
+        weighed(shares, slopes) * rate + weighed(changes, slopes) * speed * length,
     )

@@ -13,7 +13,7 @@ from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
 from gearidae.engine.followers.balance import open_balance
-from gearidae.engine.followers.exposures.follow import QUANTITIES
+from gearidae.engine.followers.exposures.bins import ROWS
 from gearidae.engine.model.state import (
     DRIVE,
     GEARS,
@@ -113,8 +113,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     speed = sigma / float(s.time_unit)
     _set_geometry(s, geometry, mesh.tip_relief_radius)
     s.half_backlash = 0.5 * mesh.backlash / sigma
-    s.places = scene.run.exposures
-    s.places_per_pitch = scene.run.exposures / float(s.contact_ratio)
+    s.bins = scene.run.exposures
+    s.bins_per_pitch = scene.run.exposures / float(s.contact_ratio)
     s.pitch_point = 0.5 * (float(s.coast_phase) - 0.5)
     s.sliding_pinion, s.sliding_gear = (
         geometry.base_pitch / float(s.pinion_radius),
@@ -269,7 +269,7 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.branches_at = rows.add(np.zeros(2 * MATERIALS * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
-    s.exposures = 2 * int(s.pinion_teeth) * QUANTITIES * int(s.places)
+    s.exposures = 2 * int(s.pinion_teeth) * ROWS.total * int(s.bins)
     s.exposures_at = rows.add(np.zeros(int(s.exposures)))
     branches = MATERIALS * int(s.points * s.point_branch_length) * histories
     s.point_branches_at = rows.add(np.zeros(branches))
@@ -297,10 +297,10 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
     if s.nodes > 0:
         make_part_ready(ELASTIC)
         settle_nodes(m, 0.0, y)
-    if s.places > 0:
+    if s.bins > 0:
         make_part_ready(EXPOSURES)
     begin(m, 0.0, y)
-    s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.places > 0
+    s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
     if s.follow.balance != 0:
         open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]

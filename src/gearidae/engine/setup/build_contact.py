@@ -11,7 +11,6 @@ from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.ranges import check_reach
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.energy import energy_table, joining_energy, loading_pieces, number_table
-from gearidae.contact.kernels.lanes import BESIDE
 from gearidae.contact.kernels.law import (
     GAP_LOW,
     H_STRETCH,
@@ -25,7 +24,7 @@ from gearidae.contact.kernels.law import (
 )
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
-from gearidae.engine.model.state import Record
+from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.scene import Material, Scene
 
@@ -95,8 +94,7 @@ def add_contact(
     _add_coverage(s, tables, scene)
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
-    loading, potential = np.zeros(8 * N_LOADING), np.zeros(8 * N_LOADING)
-    loadings, potentials, numbers = np.zeros((3, loading.size, BESIDE))
+    loading, potential = np.zeros((2, MATERIALS, 8 * N_LOADING))
     longest = 0
     for material, (surface, share, offset, _) in enumerate(_parts(scene)):
         own, tip = s.material[material], asperity_of(surface)
@@ -111,23 +109,17 @@ def add_contact(
         own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
         own.table_at, own.energy_at, own.table_count = tables.add(table), tables.add(energy), table.size
         own.number_at = tables.add(number_table(kernel, law.join))
-        if s.by_place != 0:
-            numbers[:, material] = number_table(kernel, law.join - float(own.gap_offset))
         longest = max(longest, branch_length(table))
         if share > 0.0:
             push, stored = loading_pieces(law, kernel, float(own.gap_offset))
-            loading += force * push
-            potential += force * stored
-            loadings[:, material], potentials[:, material] = force * push, force * stored
+            loading[material], potential[material] = force * push, force * stored
             for floor, gap in reach.items():
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
                 reach[floor] = max(gap, widest_gap - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
-    if s.by_place != 0:
-        s.loadings_at, s.potentials_at, s.numbers_at = (
-            tables.add(each.ravel()) for each in (loadings, potentials, numbers)
-        )
-    s.loading_at, s.potential_at = tables.add(loading), tables.add(potential)
+    if s.by_place == 0:  # shares that never change are mixed once
+        loading, potential = loading.sum(axis=0), potential.sum(axis=0)
+    s.loading_at, s.potential_at = tables.add(loading.ravel()), tables.add(potential.ravel())
     s.branch_length, s.point_branch_length = (0, longest) if s.nodes > 0 else (longest, 0)
 
 

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.engine.elastic.kept_rows import KEPT_ROWS, kept_rows, restore_rows
-from gearidae.engine.followers.exposures.follow import exposures_of
+from gearidae.engine.followers.exposures.bins import exposures_of
 from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, copied, empty_history
 from gearidae.engine.setup.checkpoint_checks import check, refused
 

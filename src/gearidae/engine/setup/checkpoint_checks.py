@@ -22,7 +22,7 @@ _LARGEST: Final = 1e200  # squares of what is really there are still finite
 _HEIGHT_HIGH: Final = 1e6
 """Roughnesses: a step may have gone far below the tables before that was noticed."""
 _FLAGS: Final = (
-    *("slipping", "near", "bound_exceeded", "light", "stop_armed", "begun", "held"),
+    *("slipping", "near", "bound_exceeded", "light", "stop_armed", "begun", "is_stuck"),
     *("in_contact", "fully_stretched", "loaded", "stretched"),
 )
 _PITCHES: Final = ("turns", "mark_low", "mark_high")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gearidae.engine.followers.balance import ENERGIES, energies_at
-from gearidae.engine.followers.exposures.follow import exposures_of
+from gearidae.engine.followers.exposures.bins import exposures_of
 from gearidae.engine.followers.extremes.units import extremes_in_si
 from gearidae.engine.followers.in_turn import look_at
 from gearidae.engine.model.located import Located

@@ -13,7 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.elastic.energy import nodes_number
-from gearidae.engine.followers.exposures.places import place_at, share_at_edge
+from gearidae.engine.followers.exposures.bins import ROWS, bin_at, share_at_edge
 from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import contact_length
@@ -60,7 +60,7 @@ def joins_here(m: Model, k: int, inside: float, gap: float) -> bool:
     if m.state.history[k].direction > 0.0:
         return False
     often = m.work.exposing.often != 0
-    return (often or place_at(m, inside) != m.work.exposing.pair[k].at) and joins(m, k, gap)
+    return (often or bin_at(m, inside) != m.work.exposing.pair[k].bin) and joins(m, k, gap)
 
 
 @compiled(inline=True)
@@ -78,8 +78,8 @@ def join(m: Model, t: float, y: Floats, k: int, inside: float, gap: tuple[float,
     """Add the contacts that a pair has made since that was last done, up to a gap, given with its rate."""
     own, often = m.work.exposing.pair[k], m.work.exposing.often != 0
     missing = _note_numbers(m, y, k, gap[0])
-    at, length = place_at(m, inside), contact_length(m, inside)
-    mean = 0.5 * (length + contact_length(m, own.place)) if often else length - missing
+    here, length = bin_at(m, inside), contact_length(m, inside)
+    mean = 0.5 * (length + contact_length(m, own.position)) if often else length - missing
     for material in range(MATERIALS):
         if own.turned != 0 and m.scene.material[material].stretch_limit > 0.0 and m.scene.nodes == 0:
             own.front[material], own.added[material] = own.base[material], 0.0
@@ -91,8 +91,8 @@ def join(m: Model, t: float, y: Floats, k: int, inside: float, gap: tuple[float,
             total = mean * (own.number[material] - own.base[material])
             more = max(total - own.added[material], 0.0)
             own.added[material] = total
-        if at == own.at:
-            _add(m, k, material, at, more)
+        if here == own.bin:
+            _add(m, k, material, here, more)
         else:
             _divide(m, t, y, k, material, (inside, gap[0], gap[1]), more)
         own.front[material] = own.number[material]
@@ -148,24 +148,24 @@ def _divide(
     """
     own, (inside, gap, rate) = m.work.exposing.pair[k], there
     last, first = own.number[material], own.front[material]
-    at, step, before = own.at, 1 if inside > own.place else -1, first
-    while at != place_at(m, inside):
-        share = share_at_edge(m, at, own.place, inside)
+    here, step, before = own.bin, 1 if inside > own.position else -1, first
+    while here != bin_at(m, inside):
+        share = share_at_edge(m, here, own.position, inside)
         front = first + share * (last - first)
         if m.scene.nodes == 0:  # of elastic contacts the deflection on the way is not known
             passing = cubic(share, t - own.time, own.gap, own.gap_rate, gap, rate)
             front = min(max(_front(m, y, k, passing, material), before), last)
-        _add(m, k, material, at, more * (front - before) / (last - first))
-        at, before = at + step, front
-    _add(m, k, material, at, more * (last - before) / (last - first))
+        _add(m, k, material, here, more * (front - before) / (last - first))
+        here, before = here + step, front
+    _add(m, k, material, here, more * (last - before) / (last - first))
 
 
 @compiled(inline=True)
-def _add(m: Model, k: int, material: int, at: int, more: float) -> None:
+def _add(m: Model, k: int, material: int, here: int, more: float) -> None:
     """Add contacts of a material to a place, and what they have lost."""
     row, law = m.work.exposing.pair[k].row, m.scene.material[material]
-    m.rows[row + material * m.scene.places + at] += more
+    m.rows[row + (ROWS.contacts + material) * m.scene.bins + here] += more
     if law.stretch_limit > 0.0:
-        m.rows[row + (MATERIALS + material) * m.scene.places + at] += (
+        m.rows[row + (ROWS.adhesion + material) * m.scene.bins + here] += (
             law.joining_energy * law.force_scale * more
         )

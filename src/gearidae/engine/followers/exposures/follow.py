@@ -9,8 +9,8 @@ For both flanks of every tooth of the pinion and every place along the path of c
   place, as if the material covered everything);
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
   times the distance from the pitch point. It is integrated over one to six steps at once
-  (`gearidae.engine.followers.exposures.intervals`), and to every onset and separation; the forces are those of
-  Newton's iteration (`gearidae.engine.motion.noted_force`);
+  (`gearidae.engine.followers.exposures.sliding`), and to every onset and separation; the forces are those of
+  Newton's iteration (`gearidae.engine.motion.residual`);
 - the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times, at turning points, and where a contact
   passes from one place to the next.
 
@@ -27,6 +27,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.elastic.nodes import node_force
 from gearidae.engine.events.pair_events import PairEvent
+from gearidae.engine.followers.exposures.bins import ROWS, bin_at, way_to_edge
 from gearidae.engine.followers.exposures.contacts import (
     adds_often,
     begin_contacts,
@@ -35,19 +36,19 @@ from gearidae.engine.followers.exposures.contacts import (
     joins_here,
     turn_to_closing,
 )
-from gearidae.engine.followers.exposures.intervals import (
+from gearidae.engine.followers.exposures.pressure import note_pressure, see_pressure
+from gearidae.engine.followers.exposures.sliding import (
+    add_sliding,
     begin_intervals,
     next_interval,
     next_look,
+    sliding_speeds,
     start_with_one_step,
     time_to_zero,
 )
-from gearidae.engine.followers.exposures.places import place_at, way_to_edge
-from gearidae.engine.followers.exposures.pressure import PRESSURE, note_pressure, see_pressure
-from gearidae.engine.followers.exposures.sliding import add_sliding, sliding_speeds
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.noted_force import begin_notes, note_force
-from gearidae.engine.pairs.coverage import note_shares, place_inside, shares_of
+from gearidae.engine.motion.residual import begin_notes, note_force
+from gearidae.engine.pairs.coverage import note_shares, path_position, shares_of
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
     history_of,
@@ -58,22 +59,11 @@ from gearidae.engine.pairs.tooth_pairs import (
 )
 
 __all__ = [
-    "PRESSURE",
-    "QUANTITIES",
     "begin",
     "event",
-    "exposures_of",
     "finish",
     "step",
 ]
-
-QUANTITIES = 2 * MATERIALS + 2
-"""Sums of a place: contacts and adhesion work of each material, sliding work, largest pressure."""
-
-
-def exposures_of(m: Model) -> Floats:
-    """Return the exposures of the flanks among a model's rows; writable."""
-    return m.rows[m.scene.exposures_at : m.scene.exposures_at + m.scene.exposures]
 
 
 @compiled_once(EXPOSURES)
@@ -88,12 +78,12 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         k = noted.history
-        _begin_pair(m, t, k, noted.pair, noted.place)
-        begin_contacts(m, y, k, noted.place, noted.gap)
+        _begin_pair(m, t, k, noted.pair, noted.position)
+        begin_contacts(m, y, k, noted.position, noted.gap)
         sliding = sliding_speeds(m, y, yp[V], yp[W])
         push = noted.force, noted.slope * noted.gap_rate
-        add_sliding(m, t, k, sliding, noted.place, (noted.gap, noted.gap_rate), push)
-        see_pressure(m, t, k, noted.place, push)
+        add_sliding(m, t, k, sliding, noted.position, (noted.gap, noted.gap_rate), push)
+        see_pressure(m, t, k, noted.position, push)
 
 
 @compiled_once(EXPOSURES)
@@ -118,24 +108,24 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
         _note_forces(m, t, y)
     sliding = sliding_speeds(m, y, yp[V], yp[W])
     moved, to_zero, way = y[U] - m.work.notes.travel, math.inf, math.inf
-    ends = whole or m.scene.nodes > 0 or exposing.steps >= exposing.at_once
+    ends = whole or m.scene.nodes > 0 or exposing.steps >= exposing.steps_per_interval
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         k = noted.history
         if m.state.history[k].pair != noted.pair:
             continue
-        _begin_new(m, k, noted.pair, noted.place)
+        _begin_new(m, k, noted.pair, noted.position)
         widened = -moved if k < m.scene.slots else moved
         gap = noted.gap + widened
         push, rate = noted.force + noted.slope * widened, noted.slope * noted.gap_rate
         if ends:
-            if joins_here(m, k, noted.place, gap) or (whole and m.state.history[k].direction <= 0.0):
-                join(m, t, y, k, noted.place, (gap, noted.gap_rate))
-            add_sliding(m, t, k, sliding, noted.place, (gap, noted.gap_rate), (push, rate))
+            if joins_here(m, k, noted.position, gap) or (whole and m.state.history[k].direction <= 0.0):
+                join(m, t, y, k, noted.position, (gap, noted.gap_rate))
+            add_sliding(m, t, k, sliding, noted.position, (gap, noted.gap_rate), (push, rate))
             to_zero = min(to_zero, time_to_zero(m, k, push, rate))
-        see_pressure(m, t, k, noted.place, (push, rate))
+        see_pressure(m, t, k, noted.position, (push, rate))
         if push > 0.0:
-            way = min(way, way_to_edge(m, k, noted.place, sliding[2]))
+            way = min(way, way_to_edge(m, k, noted.position, sliding[2]))
     if ends:
         exposing.time = t
         next_interval(m, to_zero, sliding[2])
@@ -173,8 +163,8 @@ def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
         return
     own = m.work.exposing.pair[k]
     if m.state.history[k].direction < 0.0:
-        inside = place_inside(m, coast, pair, y[PHASE])
-        if gap < own.lowest or place_at(m, inside) != own.seen_at or m.scene.nodes > 0 or joins(m, k, gap):
+        inside = path_position(m, coast, pair, y[PHASE])
+        if gap < own.lowest or bin_at(m, inside) != own.seen_bin or m.scene.nodes > 0 or joins(m, k, gap):
             _close(m, t, y, yp, coast, pair, k, gap)
     elif m.work.exposing.often == 0:
         own.turned = 1
@@ -191,26 +181,26 @@ def finish(m: Model, t: float, y: Floats, yp: Floats) -> None:
 @compiled_once(EXPOSURES)
 def _open(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
     """Note a contact that begins to close, whose contacts are added up often."""
-    _begin_new(m, k, pair, place_inside(m, coast, pair, y[PHASE]))
+    _begin_new(m, k, pair, path_position(m, coast, pair, y[PHASE]))
     turn_to_closing(m, y, k, gap)
 
 
 @compiled_once(EXPOSURES)
 def _close(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int, gap: float) -> None:
     """Add what a contact that ceases to close has been exposed to: the pressure is largest where the gap is least."""
-    own, inside = m.work.exposing.pair[k], place_inside(m, coast, pair, y[PHASE])
+    own, inside = m.work.exposing.pair[k], path_position(m, coast, pair, y[PHASE])
     _begin_new(m, k, pair, inside)
     if joins(m, k, gap):
         join(m, t, y, k, inside, (gap, 0.0))
-    at, elastic = place_at(m, inside), m.scene.nodes > 0
-    if elastic or gap < own.lowest or at != own.seen_at:
+    here, elastic = bin_at(m, inside), m.scene.nodes > 0
+    if elastic or gap < own.lowest or here != own.seen_bin:
         own.lowest = min(own.lowest, gap)
         force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
         if elastic:  # the slope of the force has a jump here
             add_sliding(m, t, k, sliding_speeds(m, y, yp[V], yp[W]), inside, (gap, 0.0), (force, 0.0))
             see_pressure(m, t, k, inside, (force, 0.0))
         elif force > 0.0:
-            note_pressure(m, k, at, inside, force)
+            note_pressure(m, k, here, inside, force)
 
 
 @compiled_once(EXPOSURES)
@@ -239,8 +229,8 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     """Begin with a pair in which nothing is in contact."""
     own = m.work.exposing.pair[k]
     own.known, own.pair, own.time = 1, pair, t
-    own.place, own.at = inside, place_at(m, inside)
-    own.seen_time, own.seen_place, own.seen_at = t, own.place, own.at
+    own.position, own.bin = inside, bin_at(m, inside)
+    own.seen_time, own.seen_position, own.seen_bin = t, own.position, own.bin
     own.turned, own.pulls, own.lowest = 0, 0, m.scene.cutoff
     own.power = own.power_rate = own.force = own.force_rate = own.gap_rate = 0.0
     own.gap, own.side = m.scene.cutoff, 1
@@ -249,7 +239,7 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     coast = 0 if k < m.scene.slots else 1
     teeth = int(m.scene.pinion_teeth)
     tooth = (pair + int(m.state.turns)) % teeth
-    own.row = m.scene.exposures_at + (coast * teeth + tooth) * QUANTITIES * m.scene.places
+    own.row = m.scene.exposures_at + (coast * teeth + tooth) * ROWS.total * m.scene.bins
 
 
 @compiled
@@ -268,11 +258,11 @@ def _note_forces(m: Model, t: float, y: Floats) -> None:
 
 @compiled
 def _force(
-    m: Model, t: float, y: Floats, which: tuple[int, int, int], at: tuple[float, float, float]
+    m: Model, t: float, y: Floats, which: tuple[int, int, int], there: tuple[float, float, float]
 ) -> tuple[float, float]:
     """Force of a pair, given by flank, number and history, with a gap, a gap rate and a place; slope in the gap."""
-    (coast, pair, k), (gap, rate, inside) = which, at
+    (coast, pair, k), (gap, rate, inside) = which, there
     if m.scene.nodes > 0:
         note_shares(m, k, coast, pair, inside)
         return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
-    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, k, coast, pair, inside))
+    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, coast, pair, inside))

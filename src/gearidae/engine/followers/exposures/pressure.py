@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.followers.exposures.places import place_at
+from gearidae.engine.followers.exposures.bins import ROWS, bin_at
 from gearidae.engine.formulas.interpolation import cubic
-from gearidae.engine.model.state import MATERIALS, Model
+from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.tooth_pairs import contact_length
 
-__all__ = ["PRESSURE", "note_pressure", "see_pressure"]
-
-PRESSURE = 2 * MATERIALS + 1
-"""Its place among the quantities."""
+__all__ = ["note_pressure", "see_pressure"]
 
 
 @compiled(inline=True)
@@ -30,21 +27,21 @@ def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, 
     force : tuple of float
         Force there, with its rate.
     """
-    own, at = m.work.exposing.pair[k], place_at(m, inside)
+    own, here = m.work.exposing.pair[k], bin_at(m, inside)
     if force[0] > 0.0:
-        note_pressure(m, k, at, inside, force[0])
-    if at != own.seen_at:
+        note_pressure(m, k, here, inside, force[0])
+    if here != own.seen_bin:
         if own.force > 0.0 or force[0] > 0.0:
             _note_crossings(m, t, k, inside, force)
         own.lowest = m.scene.cutoff  # another place
-    own.seen_time, own.seen_place, own.seen_at = t, inside, at
+    own.seen_time, own.seen_position, own.seen_bin = t, inside, here
     own.force, own.force_rate = force
 
 
 @compiled(inline=True)
-def note_pressure(m: Model, k: int, at: int, inside: float, force: float) -> None:
+def note_pressure(m: Model, k: int, here: int, inside: float, force: float) -> None:
     """Note the pressure of a contact in a place, where it is the largest so far."""
-    row = m.work.exposing.pair[k].row + PRESSURE * m.scene.places + at
+    row = m.work.exposing.pair[k].row + ROWS.pressure * m.scene.bins + here
     radius = m.scene.start_radius + inside
     # of squares: a root only where there is something to note
     if force * force > m.rows[row] * m.rows[row] * (radius - radius * radius * m.scene.sum_curvature):
@@ -60,10 +57,10 @@ def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[floa
     m, t, k, inside, force
         As for `see_pressure`.
     """
-    own, at = m.work.exposing.pair[k], place_at(m, inside)
-    for place in range(min(own.seen_at, at) + 1, max(own.seen_at, at) + 1):
-        edge = place / m.scene.places_per_pitch
-        share = (edge - own.seen_place) / (inside - own.seen_place)
+    own, here = m.work.exposing.pair[k], bin_at(m, inside)
+    for place in range(min(own.seen_bin, here) + 1, max(own.seen_bin, here) + 1):
+        edge = place / m.scene.bins_per_pitch
+        share = (edge - own.seen_position) / (inside - own.seen_position)
         pressing = cubic(share, t - own.seen_time, own.force, own.force_rate, force[0], force[1])
         if pressing > 0.0:
             note_pressure(m, k, place - 1, edge, pressing)

@@ -1,24 +1,52 @@
-"""Sliding work of a pair, from one look at its power to the next.
+"""Sliding work of a pair, from one look at its power to the next: over one to six accepted steps of rigid bodies.
 
 Between two looks the power is taken as the cubic with its values and rates. An interval is divided where the power
 changes its sign in it, or the sliding speed at the pitch point, and where a contact passes from one place to the next.
+
+The number of steps follows from the error estimate of the interval before, as an integrator chooses its steps. An
+interval ends with the step in which a force is expected to pass zero: a contact that pulls does no sliding work, and
+where the integral begins or ceases in between, it is the better the shorter the interval is. Where more than 600 steps
+go to a pitch, an interval is no longer than a hundredth of a pitch.
+
+Pressures are looked at where an interval ends, and just after a contact has left its place: a cubic, which gives the
+pressure at the edge, is most accurate close to its ends. Sliding work goes on from there, so that its sum does not
+depend on the number of places.
 """
 
 from __future__ import annotations
 
+import math
+
 from gearidae.compiled import compiled
-from gearidae.engine.followers.exposures.places import place_at, share_at_edge
+from gearidae.engine.followers.exposures.bins import ROWS, bin_at, share_at_edge
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.formulas.quadrature import error_estimate, integral
-from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.tooth_pairs import static_error
 
-__all__ = ["add_sliding", "sliding_speeds"]
+__all__ = [
+    "add_sliding",
+    "begin_intervals",
+    "next_interval",
+    "next_look",
+    "sliding_speeds",
+    "start_with_one_step",
+    "time_to_zero",
+]
 
-SLIDING = 2 * MATERIALS
-"""Its place among the quantities."""
 PARTS = 16
 """Parts of an interval in which a contact passes the pitch point, or pushes between ends that pull."""
+
+MOST_STEPS = 6
+"""Accepted steps in an interval, where its error estimate allows."""
+ALLOWED = 1e-3
+"""Error estimate of sliding work, over the mean work of as many steps."""
+LENGTHENING = 2.0
+"""How much longer than an interval the next one is where no error is estimated, and how much shorter at the utmost."""
+FADING = 0.9
+"""What is left of the work of former intervals and of their steps, from one interval to the next."""
+PER_PITCH = 100.0
+"""Intervals in a pitch, at least, where there are as many steps: as pairs meet, forces change within half of one."""
 
 
 @compiled(inline=True)
@@ -66,7 +94,7 @@ def add_sliding(
     if speed < 0.0:
         side, speed, speed_rate = -1, -speed, -speed_rate
     power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
-    at, h = place_at(m, inside), t - own.time
+    here, h = bin_at(m, inside), t - own.time
     pushes, turns = max(power, own.power) > 0.0, side != own.side
     if pushes or (not turns and _rises(h, own.power, own.power_rate, power, power_rate)):
         if pushes and not turns:
@@ -75,7 +103,7 @@ def add_sliding(
             work = _add_parts(m, k, h, inside, side, (power, power_rate))
         m.work.exposing.work += work
         m.work.exposing.error += error_estimate(h, own.power, power, own.power_rate, power_rate)
-    own.time, own.place, own.at = t, inside, at
+    own.time, own.position, own.bin = t, inside, here
     own.power, own.power_rate, own.side = power, power_rate, side
     own.gap, own.gap_rate = gap
 
@@ -113,8 +141,8 @@ def _add_pushing(m: Model, k: int, h: float, inside: float, there: tuple[float, 
         else:
             work, begins = work - until, zero
     work = max(work, 0.0)
-    if place_at(m, inside) == own.at:
-        m.rows[own.row + SLIDING * m.scene.places + own.at] += work
+    if bin_at(m, inside) == own.bin:
+        m.rows[own.row + ROWS.sliding * m.scene.bins + own.bin] += work
     else:
         _divide(m, k, h, inside, there, (work, begins, ceases))
     return work
@@ -138,17 +166,17 @@ def _divide(
     pushing : tuple of float
         Work of the whole interval, and the shares of the interval at which the contact begins and ceases to push.
     """
-    own, end, (work, begins, ceases) = m.work.exposing.pair[k], place_at(m, inside), pushing
-    row, at, done = own.row + SLIDING * m.scene.places, own.at, 0.0
+    own, end, (work, begins, ceases) = m.work.exposing.pair[k], bin_at(m, inside), pushing
+    row, here, done = own.row + ROWS.sliding * m.scene.bins, own.bin, 0.0
     before = _work_until(begins, h, own.power, own.power_rate, there[0], there[1])
-    step = 1 if inside > own.place else -1
-    while at != end:
-        share = min(max(share_at_edge(m, at, own.place, inside), begins), ceases)
+    step = 1 if inside > own.position else -1
+    while here != end:
+        share = min(max(share_at_edge(m, here, own.position, inside), begins), ceases)
         until = _work_until(share, h, own.power, own.power_rate, there[0], there[1]) - before
         until = min(max(until, done), work)
-        m.rows[row + at] += until - done
-        at, done = at + step, until
-    m.rows[row + at] += work - done
+        m.rows[row + here] += until - done
+        here, done = here + step, until
+    m.rows[row + here] += work - done
 
 
 @compiled(inline=True)
@@ -186,7 +214,7 @@ def _add_parts(m: Model, k: int, h: float, inside: float, side: int, there: tupl
         Sign of the sliding speed at the end.
     """
     own = m.work.exposing.pair[k]
-    row, way = own.row + SLIDING * m.scene.places, inside - own.place
+    row, way = own.row + ROWS.sliding * m.scene.bins, inside - own.position
     power0, rate0 = own.side * own.power, own.side * own.power_rate
     power1, rate1 = side * there[0], side * there[1]
     pushes, total = own.power >= 0.0 and there[0] >= 0.0, 0.0
@@ -198,6 +226,95 @@ def _add_parts(m: Model, k: int, h: float, inside: float, side: int, there: tupl
         elif side != own.side:
             power = abs(power)
         work = max(power, 0.0) * h / PARTS
-        m.rows[row + place_at(m, own.place + s * way)] += work
+        m.rows[row + bin_at(m, own.position + s * way)] += work
         total += work
     return total
+
+
+# -- intervals --------------------------------------------------------------------------------------------------------
+
+
+@compiled(inline=True)
+def begin_intervals(m: Model) -> None:
+    """Begin at a start of the integration, with nothing known of the work of former steps."""
+    m.work.exposing.work = m.work.exposing.counted = 0.0
+    start_with_one_step(m)
+
+
+@compiled(inline=True)
+def start_with_one_step(m: Model) -> None:
+    """Begin an interval of one step, as a contact has begun or ended."""
+    m.work.exposing.steps, m.work.exposing.steps_per_interval, m.work.exposing.wanted = 0, 1, 1
+    m.work.exposing.error = 0.0
+
+
+@compiled(inline=True)
+def time_to_zero(m: Model, k: int, force: float, rate: float) -> float:
+    """Time until the force of the pair with the k-th history is expected to pass zero.
+
+    It is infinite beyond the longest interval, and where the pair has not pulled: most contacts cease to push as they
+    separate, without a kink.
+    """
+    own = m.work.exposing.pair[k]
+    if force < 0.0:
+        own.pulls = 1
+    if own.pulls == 0 or force * (force + rate * MOST_STEPS * m.work.driver.step) >= 0.0:
+        return math.inf
+    return -force / rate
+
+
+@compiled(inline=True)
+def next_interval(m: Model, to_zero: float, speed: float) -> None:
+    """End an interval, and choose the steps of the next one.
+
+    Parameters
+    ----------
+    m : Model
+    to_zero : float
+        Time until the first force is expected to pass zero.
+    speed : float
+        With which contacts move along the path, in pitches.
+    """
+    exposing, step = m.work.exposing, m.work.driver.step
+    steps, gone = _steps_by_error(m), abs(speed) * step
+    if steps * gone * PER_PITCH > 1.0:
+        steps = max(int(1.0 / (PER_PITCH * gone)), 1)
+    if to_zero < steps * step:
+        steps = int(to_zero / step) + 1
+    exposing.steps, exposing.steps_per_interval, exposing.error = 0, steps, 0.0
+
+
+@compiled(inline=True)
+def next_look(m: Model, way: float, speed: float) -> None:
+    """Choose the step after which pressures are looked at next.
+
+    Parameters
+    ----------
+    m : Model
+    way : float
+        To the nearest edge of a place, in places.
+    speed : float
+        As for `next_interval`.
+    """
+    exposing = m.work.exposing
+    left, gone = (
+        exposing.steps_per_interval - exposing.steps,
+        abs(speed) * m.work.driver.step * m.scene.bins_per_pitch,
+    )
+    if way < left * gone:
+        left = int(way / gone) + 1
+    exposing.wanted = exposing.steps + left
+
+
+@compiled(inline=True)
+def _steps_by_error(m: Model) -> int:
+    """Steps for which the error estimate of the next interval will be what is allowed."""
+    exposing = m.work.exposing
+    exposing.counted += exposing.steps
+    allowed, error = ALLOWED * exposing.work * exposing.steps, exposing.error * exposing.counted
+    exposing.work *= FADING
+    exposing.counted *= FADING
+    longer = LENGTHENING
+    if error > 0.0:  # 1 where it is what is allowed
+        longer = (LENGTHENING * allowed + error) / (allowed + LENGTHENING * error)
+    return min(max(int(longer * exposing.steps + 0.5), 1), MOST_STEPS)

@@ -59,7 +59,7 @@ def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats) -> None:
     p.time, p.force = t, force_of_motion(m, t, y, yp)
     p.travel, p.travel_rate, p.travel_bend = y[U], y[V], yp[V]
     if m.scene.kind == GEARS:
-        p.speed, p.speed_rate, p.place = y[W], yp[W], y[PHASE] + m.state.turns
+        p.speed, p.speed_rate, p.position = y[W], yp[W], y[PHASE] + m.state.turns
 
 
 @compiled

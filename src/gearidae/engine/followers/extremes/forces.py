@@ -131,7 +131,7 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
     y[V] = cubic(s, h, p.travel_rate, p.travel_bend, q.travel_rate, q.travel_bend)
     scale = m.scene.phase_rate
     if m.scene.kind == GEARS:
-        y[PHASE] = cubic(s, h, p.place, scale * p.speed, q.place, scale * q.speed) - m.state.turns
+        y[PHASE] = cubic(s, h, p.position, scale * p.speed, q.position, scale * q.speed) - m.state.turns
         y[W] = cubic(s, h, p.speed, p.speed_rate, q.speed, q.speed_rate)
     return float(_force_of_law(m, t, y))
 

@@ -54,8 +54,8 @@ def follow_speed(m: Model, last: Record, now: Record, y: Floats) -> None:
     turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
     if turned or (now.speed <= 0.0 < last.speed):
         _look_inside(m, last, now, y, turned)
-    if m.state.extremes.held != 0 and now.place - m.state.extremes.held_place > HELD_WITHIN:
-        m.state.extremes.held = 0  # it has turned on
+    if m.state.extremes.is_stuck != 0 and now.position - m.state.extremes.stuck_position > HELD_WITHIN:
+        m.state.extremes.is_stuck = 0  # it has turned on
 
 
 @compiled
@@ -67,8 +67,8 @@ def _look_inside(m: Model, last: Record, now: Record, y: Floats, turned: bool) -
     if last.speed > 0.0 and min(now.speed, extreme) <= 0.0:
         share = _falls_to_zero(h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         time = last.time + share * h
-        place = last.place + share * h * 0.5 * last.speed * m.scene.phase_rate
-        come_to_stand(m, time, place, is_pulled_back(m, now.time, y))
+        position = last.position + share * h * 0.5 * last.speed * m.scene.phase_rate
+        come_to_stand(m, time, position, is_pulled_back(m, now.time, y))
     if turned:
         note_speed(m, extreme)
 
@@ -95,13 +95,13 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
 
 
 @compiled
-def come_to_stand(m: Model, t: float, place: float, pulled: bool) -> None:
+def come_to_stand(m: Model, t: float, position: float, pulled: bool) -> None:
     """Note that the speed has fallen to zero, and whether teeth that cling to each other turn the gear back there."""
     e = m.state.extremes
     e.reversals += 1
     note_speed(m, 0.0)
-    if e.held == 0:
-        e.held, e.held_time, e.held_place, e.held_exits = 1, t, place, e.mesh_exits
+    if e.is_stuck == 0:
+        e.is_stuck, e.stuck_time, e.stuck_position, e.stuck_exits = 1, t, position, e.mesh_exits
         e.turn_backs = 0
     if pulled:
         if e.turn_backs > 0:
@@ -132,7 +132,9 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
         w = cubic(share, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         note_speed(m, w)
         e.part[i].begun, e.part[i].time = 1, time
-        e.part[i].place = cubic(share, h, last.place, scale * last.speed, now.place, scale * now.speed)
+        e.part[i].position = cubic(
+            share, h, last.position, scale * last.speed, now.position, scale * now.speed
+        )
         e.part[i].lowest = e.part[i].highest = w
         if i == 0:
             e.top = e.bottom = w

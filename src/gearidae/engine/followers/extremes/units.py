@@ -7,8 +7,8 @@ from array import array
 from types import SimpleNamespace
 from typing import Any
 
-from gearidae.engine.followers.exposures.follow import PRESSURE, QUANTITIES, exposures_of
-from gearidae.engine.model.state import MATERIALS, PHASE, ROLLER, Floats, Model, V, W, plain
+from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, V, W, plain
 from gearidae.records import Extremes
 
 __all__ = ["extremes_in_si"]
@@ -38,9 +38,9 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
     if s.kind == ROLLER:
         return Extremes(**forces, final_speed=float(y[V] * s.length_unit / s.time_unit))
     speed = float(s.length_unit / (s.time_unit * s.gear_radius))
-    place = float(y[PHASE] + m.state.turns)
+    position = float(y[PHASE] + m.state.turns)
     rate, part = float(s.phase_rate), [plain(one) for one in e.part]
-    means = [_mean(one, rate, time, place) for one in part]
+    means = [_mean(one, rate, time, position) for one in part]
     spreads = [speed * (one.highest - one.lowest) if one.begun else math.nan for one in part]
     settled = bool(part[0].begun)
     return Extremes(
@@ -55,7 +55,7 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         late_spread=spreads[1],
         last_min_gear_speed=speed * part[2].lowest if part[2].begun else math.nan,
         final_speed=speed * float(y[W]),
-        **_standstill(e, tau, time, place),
+        **_standstill(e, tau, time, position),
         mesh_exits=e.mesh_exits,
         reversals=e.reversals,
         exposures=_exposures(m),
@@ -64,22 +64,22 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
 
 def _exposures(m: Model) -> array[float]:
     """What the flanks have been exposed to; see `gearidae.records.Extremes`."""
-    if m.scene.places == 0:
+    if m.scene.bins == 0:
         return array("d")
     force, length = float(m.scene.force_unit), float(m.scene.length_unit)
-    table = exposures_of(m).reshape(-1, QUANTITIES, int(m.scene.places)).copy()
-    table[:, MATERIALS:PRESSURE] *= force * length
-    table[:, PRESSURE] *= force
+    table = exposures_of(m).reshape(-1, ROWS.total, int(m.scene.bins)).copy()
+    table[:, ROWS.adhesion : ROWS.pressure] *= force * length
+    table[:, ROWS.pressure] *= force
     return array("d", table.tobytes())
 
 
-def _standstill(e: SimpleNamespace, tau: float, time: float, place: float) -> dict[str, Any]:
+def _standstill(e: SimpleNamespace, tau: float, time: float, position: float) -> dict[str, Any]:
     """Where and when the gear came to stand, and how long adhesion has held it."""
-    if e.held:
+    if e.is_stuck:
         return {
-            "stick_time": tau * e.held_time,
-            "stick_exits": e.held_exits,
-            "turned_back": max(e.held_place - place, 0.0),
+            "stick_time": tau * e.stuck_time,
+            "stick_exits": e.stuck_exits,
+            "turned_back": max(e.stuck_position - position, 0.0),
             "turn_backs": e.turn_backs,
             "time_adhering": tau * (e.adhering + (time - e.turn_back_time if e.turn_backs > 1 else 0.0)),
         }
@@ -87,15 +87,15 @@ def _standstill(e: SimpleNamespace, tau: float, time: float, place: float) -> di
     return {
         "stick_time": 0.0 if never_moved else math.nan,
         "stick_exits": e.mesh_exits,
-        "turned_back": max(-place, 0.0) if never_moved else 0.0,
+        "turned_back": max(-position, 0.0) if never_moved else 0.0,
         "turn_backs": 0,
         "time_adhering": tau * e.adhering,
     }
 
 
-def _mean(part: SimpleNamespace, rate: float, time: float, place: float) -> float:
+def _mean(part: SimpleNamespace, rate: float, time: float, position: float) -> float:
     """Mean speed over a part of the run, scaled; `rate` is that of the phase at the speed 1."""
     span = time - part.time
     if not part.begun:
         return math.nan
-    return float((place - part.place) / (span * rate) if span > 0.0 else part.lowest)
+    return float((position - part.position) / (span * rate) if span > 0.0 else part.lowest)

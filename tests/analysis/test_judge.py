@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.archive.verdict import in_touch, is_scheduled, roller_verdict
+from gearidae.analysis.verdict.judge import in_touch, is_scheduled, roller_verdict
 from gearidae.records import EventKind, Extremes
 
 LOW = gd.preset("teodorescu2009_low_speed")

@@ -1,28 +1,26 @@
-"""What a run did, judged from the extremes that the engine kept: turned smoothly, turned irregularly, stuck.
+"""The outcomes of the runs of a dataset: what each did, with the numbers that the verdict rests on.
 
-Samples have no part in it, unless a run is not at its end and only samples are in its archive. The words are defined in
-``docs/verdicts.md``.
+The words are defined in ``docs/verdicts.md``.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import xarray as xr
 
-from gearidae.analysis.kept_verdicts import kept_fields
-from gearidae.analysis.sampled_extremes import extremes_of_samples
-from gearidae.analysis.verdict_table import Outcomes, Shown
-from gearidae.archive.energy import doubt, imbalance_of
+from gearidae.analysis.verdict.judge import gear_verdict, in_touch, is_scheduled, roller_verdict
+from gearidae.analysis.verdict.table import Outcomes, Shown
+from gearidae.archive.energy import doubt, imbalance, imbalance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
-from gearidae.archive.select import is_roller, run_value, runs, scene_of
-from gearidae.archive.verdict import IRREGULAR_ABOVE, gear_verdict, in_touch, is_scheduled, roller_verdict
+from gearidae.archive.select import is_roller, run_value, runs, scene_of, swept_dims
 from gearidae.records import RUN_PARTS, EventKind
 
-__all__ = ["IRREGULAR_ABOVE", "START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
+__all__ = ["START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
 
 START_UP = RUN_PARTS[0]
 """Share of the run in which the teeth may still bounce from how they were set down."""
@@ -187,8 +185,7 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
         If the dataset carries no scene.
     """
     if "verdict" in ds.variables:  # judged when the run ended, of which not everything is there
-        kind = RollerOutcome if is_roller(ds) else GearOutcome
-        return [kind(**fields) for fields in kept_fields(ds)]
+        return _kept(ds)
     if is_roller(ds):
         return Outcomes(_roller(label, run) for label, run in runs(ds))
     scheduled = is_scheduled(scene_of(ds))
@@ -197,7 +194,7 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
 
 def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcome:
     status = str(run_value(run, "status"))
-    found = extremes_of(run) or extremes_of_samples(run)
+    found = extremes_of(run)
     return GearOutcome(
         label=label,
         status=status,
@@ -214,7 +211,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcom
 
 
 def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
-    found = extremes_of(run) or extremes_of_samples(run)
+    found = extremes_of(run)
     status = str(run_value(run, "status"))
     impacts = count(run["event_kind"], EventKind.ONSET)
     kinds = (values for _, values in pieces(run["event_kind"]))
@@ -233,3 +230,36 @@ def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
         wall_time=float(run_value(run, "wall_time")),
         imbalance=imbalance_of(run),
     )
+
+
+def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
+    """Outcomes of runs that have left their verdict; NaN, 0 or nothing where a number has not been kept."""
+    dims = swept_dims(ds)
+    labels = product(*(ds[dim].values.tolist() for dim in dims))
+    columns = {name: ds[name].values.ravel().tolist() for name in _KEPT if name in ds}
+    roller, found = is_roller(ds), list[GearOutcome | RollerOutcome]()
+    for number, label in enumerate(labels):
+        row = _KEPT | {name: values[number] for name, values in columns.items()}
+        both = {name: row[name] for name in ("status", "verdict", "impacts", "wall_time")}
+        both |= {"label": dict(zip(dims, label, strict=True))}
+        both |= {"imbalance": imbalance(row["residual"], row["residual_bound"])}
+        if roller:
+            forces = row["largest_mesh_force"], -row["smallest_mesh_force"]
+            peak, pull = (max(force, 0.0) for force in forces)  # NaN first, which max leaves where it is
+            found.append(RollerOutcome(**both, peak_force=peak, pull_off_force=pull, restitution=math.nan))
+        else:
+            numbers = {"min_speed": row["min_gear_speed"], "max_speed": row["max_gear_speed"]}
+            numbers |= {"stick_time": row["stick_time"], "mesh_exits": row["stick_exits"]}
+            found.append(GearOutcome(**both, **numbers, window=float(ds.attrs["t_end"])))
+    return found
+
+
+_KEPT: dict[str, Any] = {
+    "status": "",
+    "verdict": "",
+    "impacts": 0,
+    "stick_exits": 0,
+    **dict.fromkeys(("wall_time", "min_gear_speed", "max_gear_speed", "stick_time"), math.nan),
+    **dict.fromkeys(("largest_mesh_force", "smallest_mesh_force", "residual", "residual_bound"), math.nan),
+}
+"""Variables of a sweep made with ``keep``, with what stands for one that has not been kept."""

@@ -1,0 +1,97 @@
+"""The newest checkpoint of a run under way, kept beside its archive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from gearidae.archive.store import Store
+from gearidae.records import Extremes, Statistics, Words
+
+__all__ = ["COUNTERS", "Checkpoint", "drop_checkpoints"]
+
+COUNTERS: Final = tuple(field.name for field in fields(Statistics) if field.type == "int")
+_EXTREMES: Final = tuple(field.name for field in fields(Extremes) if field.name != "exposures")
+_PREFIX: Final = "checkpoint_"
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """Where a run can go on from.
+
+    Attributes
+    ----------
+    samples, events : int
+        How many the run had produced there.
+    time : float
+        Simulated time [s].
+    wall_time : float
+        Wall time in the solver until then [s].
+    statistics : Statistics
+        The solver's counters there.
+    state : ndarray of 8-byte words
+        What the engine needs, kept to the last bit and never looked into.
+    extremes : Extremes, optional
+        Of the run until then, without exposures.
+    """
+
+    samples: int
+    events: int
+    time: float
+    wall_time: float
+    statistics: Statistics
+    state: Words
+    extremes: Extremes | None = None
+
+    def keep(self, archive: Path, run: str) -> None:
+        """Write it beside the archive of a run, in the place of the one before, once it is on the disk.
+
+        Parameters
+        ----------
+        archive : Path
+        run : str
+            Tells one run from another into the same archive.
+
+        Raises
+        ------
+        OSError
+            If the disk does not take it.
+        """
+        header = {
+            "samples": self.samples,
+            "events": self.events,
+            "time": self.time,
+            "wall_time": self.wall_time,
+            "statistics": {name: getattr(self.statistics, name) for name in COUNTERS},
+            "extremes": self.extremes and {name: getattr(self.extremes, name) for name in _EXTREMES},
+        }
+        # as words: some may be no numbers
+        words = np.ascontiguousarray(self.state).view(np.uint64)
+        Store(archive).put(_PREFIX + run, header, {"state": words}, durable=True)
+
+    @classmethod
+    def newest(cls, archive: Path, run: str) -> Checkpoint | None:
+        """Read the newest checkpoint of a run; None if there is none, or no longer a whole one."""
+        try:
+            found = Store(archive).take(_PREFIX + run)
+            if found is None:
+                return None
+            header, tables = found
+            statistics, extremes = Statistics(**header.pop("statistics")), header.pop("extremes")
+            return cls(
+                **header,
+                statistics=statistics,
+                state=tables["state"].view(np.float64),
+                extremes=extremes and Extremes(**extremes),
+            )
+        except Exception:  # what a damaged file makes the libraries raise may be anything
+            return None
+
+
+def drop_checkpoints(archive: Path) -> None:
+    """Delete the checkpoints beside an archive: those of its run, which is over, or of runs that it has replaced."""
+    store = Store(archive)
+    store.remove([key for key in store.entries() if key.startswith(_PREFIX)])

@@ -1,0 +1,55 @@
+"""Bins along the path of contact, places to a user, into which the exposures of a tooth are divided."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled
+from gearidae.engine.model.state import MATERIALS, Floats, Model
+from gearidae.records import ExposureRows
+
+__all__ = ["ROWS", "bin_at", "exposures_of", "share_at_edge", "way_to_edge"]
+
+ROWS: Final = ExposureRows.of(MATERIALS)
+"""Of the exposures of a tooth, each over all bins."""
+
+
+def exposures_of(m: Model) -> Floats:
+    """Return the exposures of the flanks among a model's rows; writable."""
+    return m.rows[m.scene.exposures_at : m.scene.exposures_at + m.scene.exposures]
+
+
+@compiled(inline=True)
+def bin_at(m: Model, inside: float) -> int:
+    """Index of the place along the path of contact, whose end belongs to the last one."""
+    return min(int(m.scene.bins_per_pitch * inside), m.scene.bins - 1)
+
+
+@compiled(inline=True)
+def share_at_edge(m: Model, here: int, start: float, end: float) -> float:
+    """Share of the way from one point of the path to another at which a contact leaves a place, given by its index."""
+    edge = (here + 1 if end > start else here) / m.scene.bins_per_pitch
+    return (edge - start) / (end - start)
+
+
+@compiled(inline=True)
+def way_to_edge(m: Model, k: int, inside: float, turn: float) -> float:
+    """Way to the end of the place that a pair is in, in places; infinite where the path of contact ends there.
+
+    Parameters
+    ----------
+    m : Model
+    k : int
+        Index of the pair's history, whose pressure has been looked at there.
+    inside : float
+        Place on the path of contact, in pitches.
+    turn : float
+        Direction in which the phase goes, by its sign.
+    """
+    edge = m.work.exposing.pair[k].seen_bin
+    if (turn > 0.0) == (k < m.scene.slots):
+        edge += 1
+    if edge == 0 or edge == m.scene.bins:
+        return math.inf
+    return abs(edge - m.scene.bins_per_pitch * inside)
