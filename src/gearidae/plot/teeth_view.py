@@ -85,7 +85,7 @@ def mesh_states(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
 
     The force law and what is compiled of it are loaded only here: the other pictures do without.
     """
-    from gearidae.studies.tooth_contacts import tooth_contacts
+    from gearidae.studies._tooth_contacts import tooth_contacts
 
     return tooth_contacts(ds, times)
 

@@ -123,7 +123,7 @@ def _number(value: float, one: xr.Dataset) -> str:
 
 
 def _ensemble_sentence(ds: xr.Dataset) -> str:
-    from gearidae.studies.sticking_probability import sticking_probability
+    from gearidae.studies._sticking_probability import sticking_probability
 
     if not np.isfinite(ds["sticks"]).any():
         return f"None of {ds.sizes['member']} members has been finished."
@@ -139,7 +139,7 @@ def _probability(found: xr.Dataset) -> str:
 
 def _ensemble_rows(ds: xr.Dataset) -> Rows:
     """Probability of sticking, indices, verdicts, figures with their spread."""
-    from gearidae.studies.sticking_probability import sticking_probability
+    from gearidae.studies._sticking_probability import sticking_probability
 
     yield str(ds.attrs["title"]), "", ""
     if np.isfinite(ds["sticks"]).any():
@@ -259,7 +259,7 @@ def _lives_rows(ds: xr.Dataset) -> Rows:
 
 
 def _surviving_rows(ds: xr.Dataset) -> Rows:
-    from gearidae.studies.surviving_share import surviving_share
+    from gearidae.studies._surviving_share import surviving_share
 
     found = surviving_share(ds)
     passages, shares = found["passages"].values, found["share"].values

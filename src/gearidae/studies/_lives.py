@@ -27,10 +27,10 @@ from gearidae.runs.executors import side_by_side
 from gearidae.runs.kept_runs import circumstances, name_of
 from gearidae.runs.running import prepare
 from gearidae.scene.group import did_you_mean
+from gearidae.studies._life import life
 from gearidae.studies.design import check_design, plain_design
 from gearidae.studies.distributions import Distribution, read_distributions
 from gearidae.studies.law_draws import drawn_laws, parameter_units
-from gearidae.studies.life import life
 from gearidae.studies.members import member_plan, names_of
 from gearidae.studies.products import open_lives
 from gearidae.wear import LossLaw
