@@ -12,7 +12,8 @@ from gearidae.analysis.fitting import Fit, RingSet, at_places
 from gearidae.analysis.impacts import angle_of, windows_of
 from gearidae.analysis.map_model import BEFORE, MapModel
 from gearidae.analysis.ringing import HIGHEST, Ring, piece_of
-from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal
+from gearidae.analysis.signal import FEWEST_SAMPLES, Signal
+from gearidae.arrays import Floats
 
 __all__ = [
     "alias",

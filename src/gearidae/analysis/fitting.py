@@ -29,7 +29,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearidae.analysis.map_model import BEFORE, MapModel
-from gearidae.analysis.signal import CALIBRATION, Floats
+from gearidae.analysis.signal import CALIBRATION
+from gearidae.arrays import Floats
 
 __all__ = ["COMMON", "SPEED_RANGE", "WITHIN", "Fit", "RingSet", "at_places", "first_explanation"]
 

@@ -16,7 +16,8 @@ import xarray as xr
 from scipy import signal as dsp
 from scipy.ndimage import uniform_filter1d
 
-from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal, signals, stack
+from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
 __all__ = ["LEAD", "WIDTH", "angle_of", "impact_windows", "lowest_frequency", "unlike_pitch", "windows_of"]

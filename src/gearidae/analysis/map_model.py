@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from gearidae.analysis.impacts import check_width
-from gearidae.analysis.signal import Floats
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
 __all__ = ["AFTER", "BEFORE", "MapModel", "map_model", "require_map"]

@@ -10,16 +10,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive.variables import SAMPLES
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene.units import from_text
 
 __all__ = ["CALIBRATION", "FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
-
-Floats = NDArray[np.float64]
 
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""

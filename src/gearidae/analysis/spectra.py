@@ -17,7 +17,8 @@ import numpy as np
 import xarray as xr
 from scipy import signal as dsp
 
-from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, Floats, signals, stack
+from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 

@@ -13,16 +13,15 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import ClassVar, TypeAlias
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from gearidae.arrays import Floats
 from gearidae.asperities.tip import Asperity
 
-__all__ = ["AsperityLaw", "Floats"]
-
-Floats: TypeAlias = NDArray[np.float64]
+__all__ = ["AsperityLaw"]
 
 _X, _W = np.polynomial.legendre.leggauss(48)
 

@@ -14,7 +14,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from gearidae.arrays import Floats
 
 __all__ = [
     "Geometry",
@@ -26,8 +28,6 @@ __all__ = [
     "place_of_arc",
     "separation",
 ]
-
-Floats = NDArray[np.float64]
 
 
 class GeometryError(ValueError):

@@ -14,13 +14,12 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from gearidae.arrays import Floats
 from gearidae.plot.style import NEGATIVE, POSITIVE
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.studies.tooth_states import ToothContact
 
 __all__ = ["COATING", "FLANKS", "SAMPLES", "close_up", "half_width", "joined_asperities", "rough_sample"]
-
-Floats = NDArray[np.float64]
 
 FLANKS = "#d3e5f3", "#deb968"
 """Colours of pinion and gear, one lighter than the other in grey."""

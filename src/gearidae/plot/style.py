@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.plot.picking import pick
 from gearidae.plot.picture import PictureAxes, new_picture
@@ -42,8 +43,6 @@ __all__ = [
     "thin",
     "tidy",
 ]
-
-Floats = NDArray[np.float64]
 
 # Okabe and Ito's palette, dark colours first: told apart by colour-blind readers and, with the line styles,
 # in grey.

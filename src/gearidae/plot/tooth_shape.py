@@ -17,15 +17,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.mesh.involute import Geometry
 from gearidae.records import Flank
 from gearidae.scene import Scene
 
 __all__ = ["GearPicture", "ToothedWheel", "contact_points", "mesh_picture"]
-
-Floats = NDArray[np.float64]
 
 _FLANK_POINTS = 40
 _DEDENDUM = 1.25  # modules

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import Execution, run_kept
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["calibrate"]
-
-Floats = NDArray[np.float64]
 
 METHODS: Final = ("auto", "grid", "emcee")
 

@@ -11,14 +11,14 @@ from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
 from gearidae.engine import choose_backend
 from gearidae.errors import SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["lives"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _SETTINGS: Final = (
     "passages",

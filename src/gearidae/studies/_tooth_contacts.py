@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearidae.archive.pieces import pieces
 from gearidae.archive.select import is_roller, motion_samples, run_scene, runs, swept_dims
+from gearidae.arrays import Floats
 from gearidae.contact.kernels.law import H_STRETCH, law_value
 from gearidae.engine.setup.build import make_problem
 from gearidae.errors import SceneError
@@ -32,7 +33,6 @@ from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
 __all__ = ["tooth_contacts"]
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 AGREEMENT = 0.1

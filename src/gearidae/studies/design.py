@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import MOST_RUNS
 from gearidae.studies.distributions import Distribution
 
 __all__ = ["DESIGNS", "Design", "check_design", "pick_freeze_design", "plain_design"]
-
-Floats = NDArray[np.float64]
 
 DESIGNS = ("sobol", "random")
 _MOST_DIMENSIONS = 21_201

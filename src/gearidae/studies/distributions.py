@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.keys import find_key
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["KINDS", "Distribution", "read_distributions"]
-
-Floats = NDArray[np.float64]
 
 _CALL: Final = re.compile(r"\s*(\w+)\s*\((.*)\)\s*", re.DOTALL)
 _FIXED: Final = ("run.duration", "run.samples")

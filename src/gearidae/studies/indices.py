@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import sobol_indices
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
 __all__ = ["Indices", "indices_of"]
-
-Floats = NDArray[np.float64]
 
 RESAMPLES: Final = 200
 """Bootstrap samples of rows: the standard deviation of so many is known to 5 %."""

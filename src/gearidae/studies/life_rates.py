@@ -10,12 +10,12 @@ import math
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae import engine
+from gearidae.arrays import Floats
 from gearidae.errors import SolverError
 from gearidae.runs.execution import solutions
 from gearidae.runs.kept_runs import KeptRuns
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from gearidae.wear import Exposure
 
 __all__ = ["MOST_STATES", "DirectCycles", "StateResult", "Windows"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 MOST_STATES: Final = 1000
 """States whose rate may be asked for."""

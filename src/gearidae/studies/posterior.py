@@ -8,14 +8,13 @@ from typing import Any, Final
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.studies.distributions import Distribution
 
 __all__ = ["LEVELS", "grid_posterior", "sampled_posterior", "summary"]
 
-Floats = NDArray[np.float64]
 LogLikelihood = Callable[[Floats], Floats]
 """Of points, shape (n, keys); shape (n,)."""
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.analysis.ringing import characteristic_frequency
 from gearidae.analysis.verdict.codes import sticking, verdict_codes
 from gearidae.archive.keep import read_keep
 from gearidae.archive.select import runs
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution
 from gearidae.runs.kept_runs import KeptRuns
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["Predictor"]
-
-Floats = NDArray[np.float64]
 
 _SAMPLED: Final = ("extremes", "gear_speed", "events")
 _ONE_TIME_AXIS: Final = ("run.duration", "run.samples")

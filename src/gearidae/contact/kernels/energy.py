@@ -38,6 +38,7 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
 from gearidae.contact.gauss import gauss_rule
@@ -61,7 +62,6 @@ from gearidae.contact.kernels.layout import (
     MODE_INTEGRATED,
     MODE_TABLE,
     N_LOADING,
-    Floats,
     Kernel,
 )
 from gearidae.contact.kernels.pieces import hermite_matrix, hermite_pieces

@@ -42,6 +42,7 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.branches import B_JOINED, B_PIECES, branch_length, branch_value, set_branch
@@ -64,7 +65,6 @@ from gearidae.contact.kernels.layout import (
     MODE_INTEGRATED,
     MODE_TABLE,
     N_LOADING,
-    Floats,
     Kernel,
 )
 from gearidae.contact.kernels.pieces import asperity_pieces, hermite_pieces, kernel_table, partial_pieces

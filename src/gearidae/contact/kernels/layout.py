@@ -9,9 +9,6 @@ from __future__ import annotations
 
 from typing import Final, Literal, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gearidae.asperities.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
 
 __all__ = [
@@ -37,11 +34,9 @@ __all__ = [
     "MODE_TABLE",
     "N_LOADING",
     "STRETCH_HIGH",
-    "Floats",
     "Kernel",
 ]
 
-Floats: TypeAlias = NDArray[np.float64]
 Kernel: TypeAlias = Literal["line", "plane"]
 """Force on a parabolic gap, or pressure between planes: loads are integrated against psi or the normal density."""
 

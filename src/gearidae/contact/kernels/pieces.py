@@ -7,19 +7,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.contact.kernels.densities import kernel_at_knots
 from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.knots import stretched_derivatives
-from gearidae.contact.kernels.layout import (
-    DEGREE,
-    GAP_HIGH,
-    GAP_LOW,
-    KNOTS_PER_SIGMA,
-    STRETCH_HIGH,
-    Floats,
-    Kernel,
-)
+from gearidae.contact.kernels.layout import DEGREE, GAP_HIGH, GAP_LOW, KNOTS_PER_SIGMA, STRETCH_HIGH, Kernel
 
 __all__ = ["asperity_pieces", "hermite_matrix", "hermite_pieces", "kernel_table", "partial_pieces"]
 

@@ -14,10 +14,11 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import coefficients, power8, value_and_slope
-from gearidae.contact.kernels.layout import DEGREE, Floats
+from gearidae.contact.kernels.layout import DEGREE
 
 __all__ = ["asperity_energy", "asperity_table", "asperity_value"]
 

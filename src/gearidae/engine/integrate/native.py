@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from gearidae.arrays import Ints
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.elimination import begin_deflections
 from gearidae.engine.events.schedule_knots import next_stop
@@ -42,17 +43,7 @@ from gearidae.engine.motion.residual import is_eliminated, set_deflections
 from gearidae.engine.motion.static_solve import fold_gap
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.sundials import names as sun
-from gearidae.engine.sundials.ida_memory import (
-    DKY,
-    HANDLES,
-    IDA,
-    YP,
-    Ints,
-    Places,
-    Y,
-    close_solver,
-    open_solver,
-)
+from gearidae.engine.sundials.ida_memory import DKY, HANDLES, IDA, YP, Places, Y, close_solver, open_solver
 from gearidae.records import Statistics
 
 FIRST_STEPS = 1_000
