@@ -165,7 +165,7 @@ def first_explanation(model: MapModel, rings: RingSet, history: str, *, may_be_s
 
 
 def _either(start: Fit, unknown: Fit) -> Fit:
-    """Fit by whichever history explains a fraction better, the start being the likelier one beforehand."""
+    """Fit with the history that explains a fraction better; the start has the larger prior probability."""
     later = unknown.chi2 + _LESS_LIKELY < start.chi2
     best = int(np.where(later, unknown.chi2 + _LESS_LIKELY, start.chi2).argmin())
     return Fit(

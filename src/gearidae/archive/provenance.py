@@ -52,7 +52,7 @@ def provenance(scene: Scene, action: str, *, swept: tuple[str, ...] = ()) -> dic
         "history": f"{now} gearidae {gearidae.__version__}: {action}",
         "source": _software(),
         "references": _REFERENCES,
-        "license": "The data belong to whoever ran the simulation; gearidae itself is BSD-3-Clause.",
+        "license": "The data belong to the person who ran the simulation; gearidae itself is BSD-3-Clause.",
         "date_created": now,
         "product_version": gearidae.__version__,
         "schema_version": SCHEMA_VERSION,

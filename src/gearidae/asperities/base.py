@@ -153,7 +153,7 @@ class AsperityLaw(ABC):
 
     @property
     def detachment_energy(self) -> float:
-        """Energy that an asperity stores just before it lets go, counted from free surfaces, and loses there.
+        """Energy stored just before detachment, counted from free surfaces, which is lost there.
 
         It is the integral of the load along the unstable branch, from free surfaces to detachment; joining loses so
         much less. By default 0: a law without such a branch.

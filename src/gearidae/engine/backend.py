@@ -59,7 +59,7 @@ def choose_backend(backend: str, method: str) -> str:
     Raises
     ------
     SceneError
-        If the native driver is asked for and cannot work here, the name is unknown, or numba has been told to compile
+        If the native driver is requested and cannot work here, the name is unknown, or numba has been told to compile
         nothing.
     """
     if not compiles():
@@ -176,14 +176,14 @@ def follow(
     ----------
     scene : Scene
     take : callable
-        Told a block, the solver's counters and the wall time in the solver [s] at its end.
+        Called with a block, the solver's counters and the wall time in the solver [s] at its end.
     backend : {"auto", "native", "sksundae"}, optional
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
     start : Start, optional
         Where the run begins, or is resumed; by default it begins at time 0.
     on_block : callable, optional
-        Told every block of output, after `take`; what returns True ends the run there, with the status ``stopped``.
+        Called with every block of output, after `take`; True ends the run there, with the status ``stopped``.
 
     Returns
     -------

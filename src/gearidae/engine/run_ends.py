@@ -45,4 +45,4 @@ class Ended:
 
 
 OnBlock: TypeAlias = Callable[[Block], object]
-"""What is told every block of output, and ends the run by returning True."""
+"""Function that is called with every block of output, and ends the run by returning True."""

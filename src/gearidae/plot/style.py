@@ -44,7 +44,7 @@ __all__ = [
     "tidy",
 ]
 
-# Okabe and Ito's palette, dark colours first: told apart by colour-blind readers and, with the line styles,
+# Okabe and Ito's palette, dark colours first: distinguishable for colour-blind readers and, with the line styles,
 # in grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 LINE_STYLES = (
@@ -124,7 +124,7 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     Returns
     -------
     list of Run
-        At most seven, because more cannot be told apart in one picture: the first, the last, and those at which the
+        At most seven, because more cannot be distinguished in one picture: the first, the last, and those at which the
         outcome changes, see `gearidae.plot.picking`.
 
     Raises

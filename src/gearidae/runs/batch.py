@@ -45,7 +45,7 @@ class Batch:
     backend : str
         As for `gearidae.simulate`.
     report : callable
-        Told how many runs are done and how many there are.
+        Called with the number of finished runs and the number of all runs.
     kept : KeptRuns or None
         Where finished runs are kept until all are.
     keep : Keep

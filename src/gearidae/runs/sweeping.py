@@ -67,7 +67,7 @@ def sweep(
     overwrite : bool, optional
         Whether `archive` may replace a file, and the runs of an unfinished sweep beside it be discarded.
     progress : bool or callable, optional
-        True for a progress bar on a terminal or in a notebook, or a function that is told the number of runs done (with
+        True for a progress bar on a terminal or in a notebook, or a function of the number of finished runs (with
         fractions for those under way, where they can be seen) and the number of runs.
     jobs : int, optional
         Runs at a time; by default the number of usable cores. Ignored if `executor` is given.

@@ -198,10 +198,10 @@ def _attributes(
         }
         for each in seen
     ]
-    told = {"priors": {each.key: each.text for each in priors}, "observations": listed, **settings}
+    settings_used = {"priors": {each.key: each.text for each in priors}, "observations": listed, **settings}
     return {
         **provenance(scene, "calibrated", swept=tuple(each.key for each in priors)),
         "title": f"{scene.name}: calibration of {', '.join(each.key for each in priors)}",
         "summary": f"Posterior of {', '.join(each.key for each in priors)}, given {len(seen)} observations.",
-        "calibration": json.dumps(told),
+        "calibration": json.dumps(settings_used),
     }

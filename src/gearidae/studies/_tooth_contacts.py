@@ -3,7 +3,7 @@
 The gap of every pair follows from the recorded motion, the history of its asperities from the gaps it went through, and
 from both the force of every pair and whether its asperities stretch. What is not recorded is how far the bodies gave
 way. Where they did (the elastic model), or where samples lie too far apart, the forces of the pairs do not add up to
-the recorded one; then only gaps are told, and neither forces nor states.
+the recorded one; then only gaps are given, and neither forces nor states.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ __all__ = ["tooth_contacts"]
 Integers = NDArray[np.int64]
 
 AGREEMENT = 0.1
-"""Forces and states of the pairs are told if the sum of the forces misses the recorded one by no more than this part of
+"""Forces and states of pairs are given if the sum of the forces misses the recorded one by no more than this part of
 their magnitudes, or of the load that the scene is about."""
 _LONGEST_STRETCH = 400_000
 """Samples looked at together, or looked back upon, at most; forces of pairs that came near earlier will not add up."""

@@ -32,7 +32,7 @@ _FIGURES: Final = (
     "stick_time",
 )
 _SHARES: Final = (0.9, 0.5, 0.1)
-"""Of the gears that still turn, for which the passages are told."""
+"""Of the gears that still turn, for which the passages are given."""
 _SIGNS: Final = {
     Outcome.TURNS: ".",
     Outcome.CROSSES_BACKLASH: "x",
@@ -45,8 +45,8 @@ _MOST_FRACTIONS: Final = 13
 _STEPS_WANTED: Final = 50
 """Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
 _ENDINGS: Final = {
-    "coverage": "the coverage asked for is reached",
-    "passages": "the passages asked for are reached",
+    "coverage": "the requested coverage is reached",
+    "passages": "the requested passages are reached",
     "interrupted": "the study was interrupted",
 }
 

@@ -163,7 +163,7 @@ def read_distributions(
         Dotted key to a frozen distribution of scipy.stats in SI units (anything with a method ``ppf``), or a text, see
         `KINDS`.
     others : callable, optional
-        Told a key and what is given for it: the unit of what is no key of the scene, None of what may be one.
+        Called with a key and its value: the unit of a name that is no key of the scene, None for a possible key.
 
     Returns
     -------

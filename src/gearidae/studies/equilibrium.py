@@ -129,7 +129,7 @@ def contact_resonance(scene: Scene, joined: float | None = None) -> float:
     pressed = gap if joined is None else min(gap, joined)
     step = _STEP * scene.surface.roughness
     here = law(gap, pressed, radius)
-    # a pair that swings stays on the branch on which nothing joins or lets go: the stiffer way of the two
+    # a pair that swings stays on the branch on which nothing joins or detaches: the stiffer way of the two
     opening = here - law(gap + step, pressed, radius)
     closing = law(gap - step, pressed, radius, gap) - here
     stiffness = max(opening, closing) / step

@@ -63,7 +63,7 @@ def parameter_units(law: LossLaw) -> Callable[[str, Any], str | None]:
     Returns
     -------
     callable
-        Told a key and what is given for it: the unit of a parameter, None of what does not begin with ``law.``; raises
+        Called with a key and its value: the unit of a parameter, None of what does not begin with ``law.``; raises
         `SceneError` of what is none of its parameters.
     """
     units = _units(law)

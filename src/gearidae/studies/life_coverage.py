@@ -66,7 +66,7 @@ class Coverage:
 
     @property
     def teeth(self) -> int:
-        """Teeth of the pinion that are told apart."""
+        """Number of teeth of the pinion with coverages of their own."""
         return self.shapes[0][0]
 
     def split(self, numbers: Floats) -> list[Floats]:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 __all__ = ["MOST_STATES", "DirectCycles", "StateResult", "Windows"]
 
 MOST_STATES: Final = 1000
-"""States whose rate may be asked for."""
+"""Largest number of states whose rate is computed."""
 _EVALUATIONS: Final = 3
 """Rates that a step of the integration asks for."""
 _PATIENCE: Final = 20.0

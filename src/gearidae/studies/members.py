@@ -67,7 +67,7 @@ def drawn_members(
     Parameters
     ----------
     make : callable
-        Told the value of each key.
+        Called with the value of each key.
     values : mapping of str to ndarray, shape (members,)
         Of each key, in SI units.
     drawn_from : mapping of str to str

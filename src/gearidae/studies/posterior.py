@@ -19,7 +19,7 @@ LogLikelihood = Callable[[Floats], Floats]
 """Of points, shape (n, keys); shape (n,)."""
 
 LEVELS: Final = (0.025, 0.16, 0.5, 0.84, 0.975)
-"""Quantiles that are told of each key."""
+"""Quantiles that are given for each key."""
 _TAIL: Final = 2e-4
 """Share of the prior that a grid leaves out at each end."""
 _WALKERS: Final = 16
@@ -103,7 +103,7 @@ def sampled_posterior(
     log_likelihood : callable
         -inf where a value is not allowed.
     report : callable
-        Told the steps done and their number.
+        Called with the number of finished steps and of all steps.
 
     Returns
     -------

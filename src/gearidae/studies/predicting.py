@@ -45,7 +45,7 @@ class Predictor:
     base : Scene
         What the runs have in common.
     keys : tuple of str
-        Whose values are asked for.
+        Whose values are computed.
     observations : tuple of Observation
     how : Execution
         Where the runs are computed; with an archive, they are kept beside it.

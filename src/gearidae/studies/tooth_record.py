@@ -187,7 +187,7 @@ def joined_heights(gaps: Floats, wanted: Integers, limit: float) -> Floats:
     gaps : ndarray, shape (n,)
         Gaps one after the other, turning points among them [m].
     wanted : ndarray of int, shape (m,)
-        Where the joined height is asked for.
+        Gap at which the joined height is computed.
     limit : float
         Stretch limit of an asperity [m].
 

@@ -1,7 +1,7 @@
 """Layout of a force law's table: a flat array that compiled code can carry about.
 
 A header of `HEADER` numbers, then the loading branch, and for laws with hysteresis the fully stretched branch and
-either the partly stretched one (`MODE_TABLE`) or what it is integrated from when asked for (`MODE_INTEGRATED`): the
+either the partly stretched one (`MODE_TABLE`) or the data to integrate it on demand (`MODE_INTEGRATED`): the
 density of heights and the load of one asperity. Lengths are in roughnesses.
 """
 

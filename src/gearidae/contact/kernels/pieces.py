@@ -91,7 +91,7 @@ def partial_pieces(
 
 @lru_cache(maxsize=2)
 def kernel_table(kernel: Kernel) -> Floats:
-    """Pieces of the kernel itself, for the branch that is integrated when asked for; the first knot in front."""
+    """Pieces of the kernel itself, for the branch that is integrated on demand; the first knot in front."""
     low = GAP_LOW - STRETCH_HIGH - 1.0
     knots = low + np.arange(round((GAP_HIGH - low) * KNOTS_PER_SIGMA) + 1) / KNOTS_PER_SIGMA
     return np.concatenate([[low], hermite_pieces(knots, kernel_at_knots(kernel, knots)).ravel()])
@@ -100,7 +100,7 @@ def kernel_table(kernel: Kernel) -> Floats:
 def asperity_pieces(law: AsperityLaw, division: Division) -> Floats:
     """Pieces of one asperity's load while it is stretched, and of the work that stretching it has taken.
 
-    Both are smooth in ``e = sqrt((Delta + detach) / D)``, from the fold e = 0, where an asperity lets go, to e = 1,
+    Both are smooth in ``e = sqrt((Delta + detach) / D)``, from the fold e = 0, where an asperity detaches, to e = 1,
     where it joins.
 
     Returns

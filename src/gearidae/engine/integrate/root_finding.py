@@ -113,7 +113,7 @@ def state_at(s: Stepper, t: float, roughly: bool) -> None:
 
 @compiled(inline=True)
 def next_time(s: Stepper) -> int:
-    """Go on to the end of the next step, a stop or a root, whichever comes first.
+    """Advance to the first of the end of the next step, a stop and a root.
 
     Returns
     -------
