@@ -99,7 +99,6 @@ def stop(signal: Signal, model: MapModel) -> str:
     ----------
     signal : Signal
         Gear speed with the gear's teeth.
-    model : MapModel
 
     Returns
     -------
@@ -122,7 +121,6 @@ def slower_than_map(signal: Signal, model: MapModel) -> str:
     ----------
     signal : Signal
         Gear speed, in the median above zero.
-    model : MapModel
 
     Returns
     -------
@@ -183,7 +181,6 @@ def too_coarse(ring: Ring, step: float) -> bool:
 
     Parameters
     ----------
-    ring : Ring
     step : float
         Quantum [rad/s].
 
@@ -201,7 +198,6 @@ def widened(ring: Ring, step: float) -> float:
 
     Parameters
     ----------
-    ring : Ring
     step : float
         Quantum [rad/s].
     """
@@ -252,8 +248,6 @@ def alias(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: float)
 
     Parameters
     ----------
-    model : MapModel
-    rings : RingSet
     fit : Fit
         That explains the record without images.
     rate : float

@@ -141,8 +141,6 @@ def first_explanation(model: MapModel, rings: RingSet, history: str, *, may_be_s
 
     Parameters
     ----------
-    model : MapModel
-    rings : RingSet
     history : {'auto', 'start', 'unknown'}
     may_be_start : bool, optional
         Whether ``auto`` considers that the record begins with the map's start.

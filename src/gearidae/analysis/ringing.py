@@ -349,7 +349,6 @@ def piece_of(signal: Signal, start: float, stop: float) -> Floats:
 
     Parameters
     ----------
-    signal : Signal
     start, stop : float
         Its ends [s]; NaN if it is not whole.
 

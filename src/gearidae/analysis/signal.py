@@ -116,10 +116,6 @@ def signals(
     gear_teeth : int, optional
         Teeth of the gear, in place of what the scene says.
 
-    Returns
-    -------
-    Batch
-
     Raises
     ------
     SceneError
@@ -178,10 +174,6 @@ def stack(
         Of the new variable.
     attrs : mapping
         Of the new variable.
-
-    Returns
-    -------
-    DataArray
     """
     longest = max((len(row) for row in rows), default=0)
     filled = np.full((len(rows), longest), np.nan)

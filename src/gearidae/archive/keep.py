@@ -94,10 +94,6 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     scene : Scene
         What the runs have in common.
 
-    Returns
-    -------
-    Keep
-
     Raises
     ------
     SceneError

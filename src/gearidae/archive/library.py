@@ -69,7 +69,6 @@ def opened(
 
     Parameters
     ----------
-    path : Path
     mode : {"r", "a", "x"}, optional
         To read, to write into it, or to make it.
     form : str, optional
@@ -101,12 +100,7 @@ def close(file: netCDF4.Dataset, *, written: bool) -> None:
 
 
 def loaded(path: Path) -> xr.Dataset:
-    """Read any netCDF file into memory; a damaged one may make the netCDF stack raise any exception.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """Read any netCDF file into memory; a damaged one may make the netCDF stack raise any exception."""
     with uninterrupted():
         await_lock(path)
         with netCDF4.Dataset(path) as declared:
@@ -122,7 +116,6 @@ def check_size(file: netCDF4.Dataset, path: Path) -> None:
     ----------
     file : netCDF4.Dataset
         As it has been opened.
-    path : Path
 
     Raises
     ------

@@ -97,12 +97,7 @@ def claimed(archive: Path, name: str = "archive") -> Iterator[None]:
 
 
 def is_locked(archive: Path) -> bool:
-    """Whether a process is writing an archive; what cannot be asked counts as no.
-
-    Parameters
-    ----------
-    archive : Path
-    """
+    """Whether a process is writing an archive; what cannot be asked counts as no."""
     try:
         descriptor = os.open(_beside(archive), os.O_RDONLY)
     except OSError:

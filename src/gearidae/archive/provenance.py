@@ -68,10 +68,6 @@ def surface_regimes(scene: Scene) -> dict[str, float | str]:
     JKR asperities presume a Tabor parameter of about 5 or more; this is a note on how well the scene meets
     that.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     dict

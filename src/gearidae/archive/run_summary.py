@@ -185,10 +185,6 @@ def account_of(
         The run's energy balance, from `gearidae.archive.energy.balance_of`.
     extremes : Extremes, optional
         The run's extremes, from `gearidae.archive.extremes.extremes_of`.
-
-    Returns
-    -------
-    Account
     """
     start, end = span
     incidents = _Events(scene, start)

@@ -78,10 +78,6 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
     unit : float
         Unit of length [m]. With 1.0 loads are in units of ``tip.hertz_factor`` newtons.
 
-    Returns
-    -------
-    AsperityLaw
-
     Raises
     ------
     SceneError

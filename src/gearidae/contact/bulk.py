@@ -193,10 +193,6 @@ def line_grid(reach: float, width: float, modulus: float, nodes: int, grading: f
     grading : float, optional
         c; spacing at the end over spacing in the middle is ``cosh(c)``.
 
-    Returns
-    -------
-    LineGrid
-
     Raises
     ------
     SceneError

@@ -219,10 +219,6 @@ def elastic_grid(
     radius, width, surface, asperity, coated_surface, sam_fraction, nodes
         As in `elastic_line_force`.
 
-    Returns
-    -------
-    LineGrid
-
     Raises
     ------
     SceneError

@@ -99,7 +99,6 @@ def run_blocks(
         Number of samples, ends included.
     backend : {"native", "sksundae"}
         From `choose_backend`.
-    statistics : Statistics
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
     """
@@ -140,7 +139,6 @@ def _with_its_model(
     ----------
     problem, current : Problem
         Of the scene, and with the contact model that the checkpoint has.
-    checkpoint : ndarray
     """
     here, beyond = current, current.outgrown(checkpoint)
     if beyond and current.elastic is not None:
@@ -174,7 +172,6 @@ def follow(
 
     Parameters
     ----------
-    scene : Scene
     take : callable
         Called with a block, the solver's counters and the wall time in the solver [s] at its end.
     backend : {"auto", "native", "sksundae"}, optional
@@ -261,7 +258,6 @@ def solve(
 
     Parameters
     ----------
-    scene : Scene
     rtol, t_end, samples : optional
         In place of ``run.rtol`` [1], ``run.duration`` [s] and ``run.samples``.
     backend : {"auto", "native", "sksundae"}, optional
@@ -319,7 +315,6 @@ def outlook(
 
     Parameters
     ----------
-    scene : Scene
     backend : {"native", "sksundae"}
     checkpoint : ndarray, optional
         Where the run is to go on.
@@ -351,7 +346,6 @@ def kept_at(
 
     Parameters
     ----------
-    scene : Scene
     checkpoint : ndarray
         From a `Block` of a run of this scene.
     start : Start, optional

@@ -43,7 +43,6 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
 
     Parameters
     ----------
-    scene : Scene
     pair : int
         Number of the pair; `SAMPLES` rows take turns.
 
@@ -73,11 +72,6 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
 def joined_asperities(scene: Scene, contact: ToothContact) -> float:
     """Return how many asperities of a pair are joined on average.
 
-    Parameters
-    ----------
-    scene : Scene
-    contact : ToothContact
-
     Returns
     -------
     float
@@ -103,8 +97,6 @@ def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
     ----------
     ax : matplotlib Axes
         Where to draw; micrometres along the flank, nanometres across.
-    scene : Scene
-    contact : ToothContact
 
     Returns
     -------

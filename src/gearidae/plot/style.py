@@ -166,10 +166,6 @@ def scale_for(largest: float, unit: str) -> Scale:
         Largest magnitude to be shown [SI].
     unit : str
         Unit without prefix.
-
-    Returns
-    -------
-    Scale
     """
     if not (math.isfinite(largest) and largest > 0.0):
         return Scale(1.0, unit)
@@ -248,11 +244,6 @@ def tidy(ax: Axes) -> None:
 
 def label_time(ax: Axes, runs: Sequence[Run]) -> Scale:
     """Label the time axis for runs to be drawn.
-
-    Parameters
-    ----------
-    ax : Axes
-    runs : sequence of Run
 
     Returns
     -------

@@ -135,12 +135,7 @@ class TeethView:
         self._legend(all(each.told for each in states))
 
     def draw(self, state: MeshState) -> None:
-        """Draw a state in place of the one before.
-
-        Parameters
-        ----------
-        state : MeshState
-        """
+        """Draw a state in place of the one before."""
         shown = nearest_pairs(state, self._places)
         _draw_mesh(self._mesh, self._picture, state, shown, self._largest)
         for place, ax in enumerate(self._close):

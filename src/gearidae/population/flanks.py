@@ -57,10 +57,6 @@ class FlankAsperities(NamedTuple):
 def flanks_of(scene: Scene) -> tuple[FlankAsperities, ...]:
     """Return the asperities of all flanks: tooth by tooth, the drive flank first.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     tuple of FlankAsperities

@@ -109,7 +109,6 @@ def run_kept(
 
     Parameters
     ----------
-    how : Execution
     make_store : callable
         Makes what keeps the results beside an archive.
     work : callable
@@ -268,11 +267,8 @@ def solutions(
 
     Parameters
     ----------
-    kept : KeptRuns or None
-    executor : Executor or None
     function : callable
         Runs a scene, given `arguments`: its solution, and what came of it in one word.
-    scenes : sequence of Scene
 
     Yields
     ------

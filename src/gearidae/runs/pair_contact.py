@@ -163,14 +163,6 @@ class PairContact:
 def pair_contact(scene: Scene) -> PairContact:
     """Return the contact that a scene's estimates are made for.
 
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    PairContact
-
     Raises
     ------
     SceneError

@@ -45,10 +45,6 @@ def prepare(
     backend : str, optional
         As for `simulate`.
 
-    Returns
-    -------
-    Scene
-
     Raises
     ------
     SceneError
@@ -76,7 +72,6 @@ def solve(
 
     Parameters
     ----------
-    scene : Scene
     backend : str
         As for `simulate`.
     on_progress : callable, optional

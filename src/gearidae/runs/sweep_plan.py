@@ -93,10 +93,6 @@ def plan_sweep(
     zipped : bool or collection of str, optional
         As for `gearidae.sweep`.
 
-    Returns
-    -------
-    SweepPlan
-
     Raises
     ------
     SceneError

@@ -128,8 +128,6 @@ def run_study(
 
     Parameters
     ----------
-    plan : SweepPlan
-    how : Execution
     about : mapping of str to str
         What the result depends on besides the runs, as attributes.
     finish : callable, optional
@@ -176,16 +174,10 @@ def run_plan(plan: SweepPlan, how: Execution, kept: KeptRuns | None, keep: Keep 
 
     Parameters
     ----------
-    plan : SweepPlan
-    how : Execution
     kept : KeptRuns, optional
         Where finished runs are taken from, and kept.
     keep : Keep, optional
         What each run leaves behind.
-
-    Returns
-    -------
-    Dataset
 
     Raises
     ------

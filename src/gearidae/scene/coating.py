@@ -171,7 +171,6 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
 
     Parameters
     ----------
-    coating : Coating
     surface : Surface
         The bare surface.
 

@@ -72,13 +72,8 @@ def answer(ds: xr.Dataset, kind: str) -> Answer:
 
     Parameters
     ----------
-    ds : Dataset
     kind : str
         From `gearidae.studies.products.open_product`, other than ``runs``.
-
-    Returns
-    -------
-    Answer
     """
     sentence, rows = _ANSWERS[kind]
     return Answer(sentence(ds), tuple(rows(ds)))

@@ -112,10 +112,6 @@ def jump(
     life : Life, optional
         Continued with each step; what it holds is there also where an exception ends the integration. By default a new
         one.
-
-    Returns
-    -------
-    Life
     """
     life, known = Life() if life is None else life, dict[bytes, Floats]()
     life.add(0.0, start)

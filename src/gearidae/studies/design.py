@@ -57,8 +57,6 @@ def check_design(size: int, design: str, seed: int, *, indices: bool) -> None:
     ----------
     size : int
         Number of rows.
-    design : str
-    seed : int
     indices : bool
         Whether Sobol' indices are wanted.
 
@@ -81,16 +79,10 @@ def plain_design(distributions: Sequence[Distribution], size: int, design: str, 
 
     Parameters
     ----------
-    distributions : sequence of Distribution
     size : int
         Number of members.
     design : {"sobol", "random"}
         Scrambled Sobol' points (doi:10.1016/0041-5553(67)90144-9), or pseudo-random ones.
-    seed : int
-
-    Returns
-    -------
-    Design
     """
     points = _points(len(distributions), size, design, seed)
     return Design(_values(distributions, points), np.full(size, ""), np.arange(size, dtype=np.int64))
@@ -101,7 +93,6 @@ def pick_freeze_design(distributions: Sequence[Distribution], size: int, design:
 
     Parameters
     ----------
-    distributions : sequence of Distribution
     size : int
         Rows N of each matrix, a power of 2.
     design, seed

@@ -132,14 +132,6 @@ class Distribution:
     def log_density(self, values: Floats) -> Floats:
         """Logarithm of the density [1/SI]; -inf outside its support.
 
-        Parameters
-        ----------
-        values : ndarray
-
-        Returns
-        -------
-        ndarray
-
         Raises
         ------
         SceneError

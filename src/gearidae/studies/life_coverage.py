@@ -103,7 +103,6 @@ class Coverage:
             With the exposures of its cycles.
         cycles : int
             How many.
-        state : ndarray
         """
         found = exposure_variables(scene, [scene], [solution])
         names = [each.name for each in scene.materials()]

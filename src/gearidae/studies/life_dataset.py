@@ -39,16 +39,10 @@ def life_dataset(
     ----------
     scene : Scene
         That it began with.
-    coverage : Coverage
-    found : Life
     seen : sequence
         What each state has shown.
     frequency : bool
         Whether to find the characteristic frequency of each state.
-
-    Returns
-    -------
-    Dataset
     """
     states = np.array(found.states)
     tables = np.array([coverage.table(state) for state in states])

@@ -118,7 +118,6 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, st
     ----------
     scene : Scene
         From `window_scene`.
-    cycles : Cycles
     backend : str
         As for `simulate`.
 
@@ -163,10 +162,6 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
     ----------
     scene, cycles, backend
         As for `run_window`.
-
-    Returns
-    -------
-    Window
 
     Raises
     ------

@@ -73,10 +73,6 @@ def drawn_members(
     drawn_from : mapping of str to str
         The keys' distributions, for messages.
 
-    Returns
-    -------
-    list
-
     Raises
     ------
     SceneError
@@ -113,7 +109,6 @@ def along_members(ds: xr.Dataset, keys: Sequence[str]) -> xr.Dataset:
     ----------
     ds : Dataset
         Of a plan by `member_plan`.
-    keys : sequence of str
 
     Returns
     -------

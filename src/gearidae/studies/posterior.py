@@ -99,7 +99,6 @@ def sampled_posterior(
         Variables.
     steps : int
         Steps of each walker; the first quarter is not kept.
-    seed : int
     log_likelihood : callable
         -inf where a value is not allowed.
     report : callable
@@ -169,7 +168,6 @@ def summary(
     nodes : ndarray, shape (n, keys)
     weight : ndarray, shape (n,)
         Adds up to 1.
-    keys : sequence of str
     widths : sequence of float, optional
         Of the cells whose centres the nodes are, over which the weight is spread evenly.
 

@@ -100,8 +100,6 @@ class ToothRecord:
 
         Parameters
         ----------
-        flank : Flank
-        pair : int
         last : int
             The sample to end with.
         reach : float

@@ -66,10 +66,6 @@ def band_limited(amplitudes: Floats, size: tuple[float, float], cutoff: float) -
         Extent of the map [m].
     cutoff : float
         Shortest wavelength that is kept [m].
-
-    Returns
-    -------
-    Field
     """
     shape = grid_points(size, cutoff)
     kept = tuple(slice(min(one, other)) for one, other in zip(amplitudes.shape, shape, strict=True))

@@ -95,7 +95,6 @@ def asperity_value(table: Floats, at: int, displacement: float) -> tuple[float, 
 
     Parameters
     ----------
-    table : ndarray
     at : int
         Where the law's table begins in it, from `asperity_table`.
     displacement : float

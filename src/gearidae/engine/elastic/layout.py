@@ -124,8 +124,6 @@ def node_grid(
 
     Parameters
     ----------
-    scene : Scene
-    bounds : ContactBounds
     force_unit : float
         Reference load [N].
     deepest : float

@@ -156,10 +156,8 @@ def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, b
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
-    events : ndarray
     count : int
         See `gearidae.engine.events.record`.
 
@@ -236,7 +234,6 @@ def first_dip(m: Model, y: Floats, h: float) -> float:
 
     Parameters
     ----------
-    m : Model
     y : ndarray, shape (n,)
         State at the end of the step, where `asperity_guard` has been asked.
     h : float

@@ -107,7 +107,6 @@ class Output(NamedTuple):
 
         Parameters
         ----------
-        m : Model
         time : float
             Reached, over tau.
         checkpoint

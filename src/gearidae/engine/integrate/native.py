@@ -137,7 +137,6 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     ----------
     place : int
         Where the model lies, from `Located`; its ``work.driver`` says where the run stands.
-    arrays : Arrays
     out : Output
         Rows and events of this block.
     budget : int
@@ -225,10 +224,6 @@ def run(
     as_ida : bool
         Whether formulas, iteration and the state at a step's end are IDA's own: slower, less accurate, and equal to the
         portable driver to the last bit.
-
-    Yields
-    ------
-    Block
     """
     m = problem.prepare(rtol, total)
     s = make_arrays(problem, m, as_ida)

@@ -58,7 +58,6 @@ class Stepper(NamedTuple):
     ----------
     handles : ndarray of int64
         Of SUNDIALS' objects, see `gearidae.engine.sundials.ida_memory`.
-    m : Model
     y, yp, dky, spare : ndarray, shape (n,)
         State and rates at the time reached, and work space.
     clock : ndarray, shape (1,)

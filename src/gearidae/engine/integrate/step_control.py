@@ -184,7 +184,6 @@ def change_wanted(m: Model, y: Floats, yp: Floats) -> bool:
 
     Parameters
     ----------
-    m : Model
     y, yp : ndarray, shape (n,)
         State and rates at an accepted time.
     """

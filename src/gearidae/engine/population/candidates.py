@@ -57,7 +57,6 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     coast, pair : int

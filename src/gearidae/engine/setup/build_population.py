@@ -41,8 +41,6 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     ----------
     s : record
         ``SCENE``; changed.
-    tables : Tables
-    scene : Scene
     steepness, arc_scale : float
         See ``POPULATION``.
 

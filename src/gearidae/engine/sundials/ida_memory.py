@@ -66,8 +66,6 @@ def open_solver(
         Filled in.
     place : int
         Of the model, from `Located`, which must outlive the solver, as the vectors must.
-    functions : Functions
-    places : Places
     vectors : tuple of three ndarrays, shape (n,)
         State, rates and work space.
     most_failures : int

@@ -79,7 +79,6 @@ def follow_force(m: Model, before: Record, last: Record, now: Record, spare: Flo
 
     Parameters
     ----------
-    m : Model
     before, last, now : record
         ``POINT`` of these times.
     spare : ndarray, shape (n,)
