@@ -15,7 +15,8 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.arrays import Floats
+from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.tip import Asperity, Surface, asperity_of, make_tip
 from gearidae.errors import SceneError
 from gearidae.registry import Registry
@@ -79,10 +80,6 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
         The tip (SI).
     unit : float
         Unit of length [m]. With 1.0 loads are in units of ``tip.hertz_factor`` newtons.
-
-    Returns
-    -------
-    AsperityLaw
 
     Raises
     ------

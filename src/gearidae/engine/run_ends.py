@@ -20,7 +20,6 @@ class Ended:
 
     Attributes
     ----------
-    statistics : Statistics
     status : str
         ``finished``, ``interrupted`` (by Ctrl-C), or the named reason why the run ended early.
     message : str

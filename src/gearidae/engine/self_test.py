@@ -69,7 +69,7 @@ class Expected(NamedTuple):
 
 
 # Seen with SUNDIALS 7.9: errors of 4 and 5 tolerances, 275 steps and order 8; with IDA's own formulas, whose error adds
-# up over the periods, of 326 and 484, and 817 steps. What is not heeded changes one of them by a factor of ten.
+# up over the periods, of 326 and 484, and 817 steps. A part that IDA ignores changes one of them by a factor of ten.
 EXPECTED: Final = {
     "adams": Expected(50.0, (150, 500), 50.0, 5),
     "bdf": Expected(3000.0, (450, 1500), 20.0, 0),

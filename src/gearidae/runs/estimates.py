@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.scene import Drive, Gears, Load, Scene
@@ -22,8 +22,6 @@ __all__ = [
     "resting_gap",
     "steady_speed",
 ]
-
-Floats = NDArray[np.float64]
 
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
 

@@ -177,7 +177,7 @@ class _Run:
         template = self._template(ended)
         if self._scene.roller is None:
             end = float(template.attrs["t_end"]) if ended.status == "finished" else 0.0
-            told = account_of(
+            summary = account_of(
                 self._scene,
                 archive.read,
                 archive.samples,
@@ -186,7 +186,7 @@ class _Run:
                 balance_of(template),
                 ended.extremes,
             )
-            template.attrs["account"] = told.as_json()
+            template.attrs["account"] = summary.as_json()
         log_imbalance(template)
         return template
 

@@ -109,7 +109,6 @@ def free_energies(m: Model, k: int, known: bool, t: float, gap: float, rate: flo
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     known : bool

@@ -60,7 +60,6 @@ def weighed_length(
 
     Parameters
     ----------
-    m : Model
     where : tuple
         Flank and number of the pair, and phase of the gear.
     w, w_rate : float

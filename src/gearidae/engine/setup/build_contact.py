@@ -84,8 +84,6 @@ def add_contact(
     ----------
     s : record
         ``SCENE``; changed.
-    tables : Tables
-    scene : Scene
     width, unit_length : float
         Face width, and ``sqrt(2 R sigma)`` of a contact of unit length [m].
     widest : float

@@ -25,7 +25,6 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) 
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y, yp : ndarray, shape (n,)
