@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 import gearidae as gd
 from gearidae import engine
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, EventKind, sampled_columns
 from gearidae.scene import Scene
@@ -209,8 +210,8 @@ def run_scene(
     -------
     Followed
     """
-    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
-    rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
+    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
+    rows, events = [np.empty((0, len(columns)))], [np.empty((0, EVENT_NUMBERS))]
     found = Followed(rows[0], events[0])
     started = time.perf_counter()
 

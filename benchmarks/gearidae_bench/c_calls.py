@@ -13,6 +13,7 @@ from numba import carray, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.driver import BLOCK_EVENTS
@@ -41,7 +42,7 @@ _REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 def _finish(place, numbers, flag, events):  # type: ignore[no-untyped-def]
     m = model_at(place)
     n, driver = m.scene.states, m.work.driver
-    a, room = carray(numbers, (VECTORS * n + 1,)), carray(events, (BLOCK_EVENTS, 5))
+    a, room = carray(numbers, (VECTORS * n + 1,)), carray(events, (BLOCK_EVENTS, EVENT_NUMBERS))
     driver.time = a[VECTORS * n]
     if not has_room(m.work.driver.events, room):  # nobody reads them
         driver.events = 0

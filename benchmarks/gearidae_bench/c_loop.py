@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, CONVERGENCE_FAILURES_HIGH
 from gearidae.engine.integrate.root_finding import SHARPNESS
 from gearidae.engine.model.located import POINTERS, note_addresses
@@ -92,7 +93,7 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     y[:] = problem.start
     note_addresses(m, pointers)
     rows = np.zeros((times.size, max(len(problem.columns), 9)))
-    events, steps, calls = np.empty((BLOCK_EVENTS, 5)), np.zeros(1, np.int64), addresses()
+    events, steps, calls = np.empty((BLOCK_EVENTS, EVENT_NUMBERS)), np.zeros(1, np.int64), addresses()
     m.work.search.sharpness = SHARPNESS * tolerance
     observe(m, 0.0, y, rows[0])
     where = opened.Places(places(), newton_places())

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.schedule_knots import pass_knot
 from gearidae.engine.model.state import MATERIALS, Model
 from gearidae_bench.compiling import compiled
@@ -74,7 +74,7 @@ def run_rk4(
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
     zero, trial, new, f_new, there = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    room = np.empty((EVENTS_AT_ONCE, 5))
+    room = np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS))
     total = math.ceil(end / step)
     h = end / total
     sample = 0
@@ -118,7 +118,7 @@ def run_dop853(
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
     zero, trial, new, f_new, there = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    room, heights = np.empty((EVENTS_AT_ONCE, 5)), np.empty(MATERIALS * m.scene.histories)
+    room, heights = np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), np.empty(MATERIALS * m.scene.histories)
     sample, t, h = 0, 0.0, 1e-3
     rejected = False
     rates(m, 0.0, y, zero, k[0])
@@ -226,7 +226,7 @@ def run_gauss(
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
     zero, trial, new, f_new, there = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    room, heights = np.empty((EVENTS_AT_ONCE, 5)), np.empty(MATERIALS * m.scene.histories)
+    room, heights = np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), np.empty(MATERIALS * m.scene.histories)
     sample, t, h = 0, 0.0, 1e-3
     rates(m, 0.0, y, zero, k[0])
     armed = arm(m, y, heights)

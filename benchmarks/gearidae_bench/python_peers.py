@@ -16,7 +16,7 @@ from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.integrate.by_address import guard_at, jacobian_at, residual_at
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.located import Located, model_at
@@ -82,7 +82,7 @@ class _Events:
 
     def __init__(self, located: Located, start: Floats) -> None:
         self._located, self._place = located, located.place
-        self._room = np.empty((EVENTS_AT_ONCE, 5))
+        self._room = np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS))
         self._before = guard_at(self._place, 0.0, start)
         self.failed = False
 

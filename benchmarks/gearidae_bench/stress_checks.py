@@ -44,7 +44,7 @@ def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, 
     scene : Scene
     rows : ndarray
         Samples, as the engine's blocks have them.
-    events : ndarray, shape (m, 5)
+    events : ndarray, shape (m, 6)
     unit : float
         The engine's reference force of the scene [N].
     rigid : bool

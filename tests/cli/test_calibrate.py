@@ -92,7 +92,7 @@ def test_a_whole_posterior_is_not_computed_again_nor_replaced(folder, monkeypatc
     calibrate("--seen", SEEN, code=2)
     assert "exists already" in capsys.readouterr().err
     calibrate("--seen", "sticks=false", "--resume", code=2)
-    assert "something else" in capsys.readouterr().err
+    assert "of another sweep or study" in capsys.readouterr().err
     assert (folder / f"{CASE}_posterior.nc").read_bytes() == before
 
 
@@ -143,8 +143,8 @@ def test_numbers_with_uncertainties_and_conditions_reach_the_observation(folder)
         (["--observations", "seen.txt"], "ends in .toml or .csv"),
         (["--observations", "empty.csv"], "at least one observation"),
         (["--observations", "bad.csv"], "observation 2 of bad.csv: value = maybe"),
-        (["--observations", "short.csv"], "other than 2 cells"),
-        (["--observations", "bad.toml"], "is no TOML"),
+        (["--observations", "short.csv"], "3 cells, but there are 2 headings"),
+        (["--observations", "bad.toml"], "cannot be read"),
         (["--observations", "other.toml"], "tables [[observation]]"),
         (["--seen", "sticks=true", "--points", "2"], "points"),
     ],

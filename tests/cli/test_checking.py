@@ -11,8 +11,8 @@ import xarray as xr
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.cli.tables import show_outcomes
-from gearidae.cli.threshold import _rows as threshold_rows
 from gearidae.report.tables import outcome_table
+from gearidae.studies.answers import answer
 
 CASE = str(Path(__file__).parents[2] / "cases" / "low_speed.toml")
 
@@ -69,6 +69,13 @@ def test_a_run_says_beside_its_verdict_that_it_is_a_mean(tmp_path, capfd):
     assert "The verdict is a mean over many gears: 5.13e-08 asperities in contact" in words(capfd)
 
 
+def test_check_does_not_guess_the_speed_that_a_law_gives(capfd):
+    assert main(["check", str(Path(CASE).with_name("microengine.toml"))]) == 0
+    out = words(capfd)
+    assert "gear speed unknown a torque law decides" in out
+    assert "does not overcome" not in out
+
+
 def test_check_counts_events_beside_samples(tmp_path, capfd):
     """Within the factor of three that the number of steps is known to."""
     case = str(Path(CASE).with_name("high_speed.toml"))
@@ -116,5 +123,5 @@ def test_digits_tell_the_ends_of_a_bracket_apart(sticks, passes, shown):
         },
         {"exits": [100], "run": [0.0]},
     )
-    found["limit"].attrs["units"] = unit
-    assert any(shown in remark for _, _, remark in threshold_rows(found, "drive.torque"))
+    found["limit"].attrs.update(units=unit, long_name="sticking limit of drive.torque")
+    assert any(shown in remark for _, _, remark in answer(found, "sticking_threshold").rows)

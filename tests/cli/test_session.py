@@ -92,7 +92,7 @@ WORDS = {
     "gearidae sw": {"sweep"},
     "gearidae sweep --zi": {"--zipped"},
     "gearidae --quiet coating-map --jo": {"--jobs"},
-    "gearidae run lo": {"low.toml"},
+    "gearidae run lo": {"low.toml", "low_speed"},
     "gearidae plot lo": {"low.toml"},
     "gearidae assess --map lo": {"low.toml"},
     "gearidae check star": {"start_up"},

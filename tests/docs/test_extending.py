@@ -177,7 +177,7 @@ ratio, approach = 1.6, 0.7
 scene = SimpleNamespace(contact_ratio=ratio, coast_phase=2.0 * approach + 0.5, time_unit=1.0, length_unit=1.0)
 extremes = SimpleNamespace(mesh_exits=0)
 m = SimpleNamespace(scene=scene, state=SimpleNamespace(turns=0.0, extremes=extremes))
-events, count = np.zeros((99, 5)), 0
+events, count = np.zeros((99, 6)), 0
 for sign in (1.0, -1.0):
     mesh_marks.set_marks(m, sign * -0.01)
     first = count

@@ -5,7 +5,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.events.record import EVENTS_AT_ONCE, record
+from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE, record
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, Ending, Output
 from gearidae.engine.integrate.epilogue import has_room
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
@@ -43,7 +43,7 @@ def test_room_is_for_so_many_and_what_is_full_is_not_written_beyond():
         (BLOCK_EVENTS - EVENTS_AT_ONCE + 1, False),
     ):
         assert has_room(count, out.events) == room
-    table = np.full((4, 5), -7.0)
+    table = np.full((4, EVENT_NUMBERS), -7.0)
     assert record(m, table[:3], 2, 0.0, 1.0, 0, 0.0, 0.0) == 3
     assert record(m, table[:3], 3, 0.0, 1.0, 0, 0.0, 0.0) == 3
     np.testing.assert_array_equal(table[3], -7.0)

@@ -5,6 +5,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, set_marks
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.state import PHASE
 from gearidae.engine.setup.build import make_problem
@@ -23,7 +24,7 @@ PROBLEM = make_problem(SCENES["high_sam"].scene)
 @example(path=1.01, coast=0.0, start=2.01, way=1.0)  # on a mark; its distance from the one before is rounded
 def test_a_phase_that_has_crossed_a_mark_is_on_its_far_side(path, coast, start, way):
     """By one rounding error: else the guard would stay below zero and no further mark be seen."""
-    m, y, events = PROBLEM.shortened(1.0).model, PROBLEM.start.copy(), np.empty((64, 5))
+    m, y, events = PROBLEM.shortened(1.0).model, PROBLEM.start.copy(), np.empty((64, EVENT_NUMBERS))
     m.scene.contact_ratio, m.scene.coast_phase = path, coast
     set_marks(m, start)
     y[PHASE] = start

@@ -87,7 +87,7 @@ WRONG = [
     ("run.samples", 1, "must be a whole number in 2.."),
     ("run.samples", 10**12, "must be a whole number in 2.."),
     # choices and names
-    ("contact.model", "elastc", "must be 'auto', 'asperity' or 'elastic'"),
+    ("contact.model", "elastc", "must be 'auto', 'asperity', 'elastic' or 'population'"),
     ("contact.asperity", 5, "must be one of dmt, hertz, jkr, maugis"),
     ("name", 5, "must be a printable line"),
     ("name", "two\nlines", "must be a printable line"),

@@ -26,7 +26,7 @@ CONTRACT = {
     "initial": "gear_speed gap mesh_phase",
     "run": "balance exposures duration samples rtol method stop checkpoints",
     "roller": "radius mass width speed height",
-    "contact": "model asperity",
+    "contact": "model asperity seed radius_spread asperities",
 }
 
 

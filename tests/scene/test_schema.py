@@ -76,7 +76,7 @@ def test_case_files_have_no_null():
 
 
 def test_choices_are_those_of_today():
-    assert at("contact.model")["enum"] == ["auto", "asperity", "elastic"]
+    assert at("contact.model")["enum"] == ["auto", "asperity", "elastic", "population"]
     assert "maugis" in at("contact.asperity")["enum"]
 
 

@@ -11,8 +11,8 @@ import gearidae as gd
 from gearidae.errors import Interrupted
 from gearidae.runs.kept_runs import folder_beside
 from gearidae.studies import Observation
+from gearidae.studies._predict import posterior_draws
 from gearidae.studies.posterior import LEVELS
-from gearidae.studies.predict import posterior_draws
 
 LOW = gd.preset("teodorescu2009_low_speed")
 SHORT = LOW.replace({"run.duration": 0.05})
@@ -148,7 +148,7 @@ def test_cut_off_and_resumed_it_ends_alike(coverage, tmp_path):
     assert not folder_beside(target).exists()
     again = gd.studies.calibrate(LOW, COVERAGE, stuck, points=11, archive=target, resume=True)
     assert again.attrs["date_created"] == whole.attrs["date_created"]
-    with pytest.raises(gd.SceneError, match="something else"):
+    with pytest.raises(gd.SceneError, match="of another sweep or study"):
         gd.studies.calibrate(LOW, COVERAGE, stuck, points=12, archive=target, resume=True)
 
 

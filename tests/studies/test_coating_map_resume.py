@@ -115,9 +115,9 @@ def test_a_whole_map_is_not_computed_again_and_no_other_is_replaced(tmp_path, co
     assert computed == []
     xr.testing.assert_identical(again, chart)
     for changes in ({"sam_fraction": FRACTIONS[:2]}, {"width": 0.5}, {"over": TORQUES}):
-        with pytest.raises(gd.SceneError, match="of another map"):
+        with pytest.raises(gd.SceneError, match="of another sweep or study"):
             coating_map(LOW, **{"sam_fraction": FRACTIONS, **changes}, archive=archive, resume=True)
-    with pytest.raises(gd.SceneError, match="of another map"):
+    with pytest.raises(gd.SceneError, match="of another sweep or study"):
         coating_map(LOW.replace({"run.rtol": 1e-5}), FRACTIONS, archive=archive, resume=True)
     assert computed == []
 

@@ -15,7 +15,7 @@ from gearidae.analysis.verdict.codes import VerdictCode, sticking, verdict_codes
 from gearidae.analysis.verdict.judge import verdict_of
 from gearidae.archive import to_dataset
 from gearidae.cli import main
-from gearidae.cli.ensemble import executor_for
+from gearidae.cli.request import Request
 from gearidae.errors import Interrupted
 from gearidae.records import EventKind
 from gearidae.runs import batch
@@ -239,9 +239,8 @@ def test_pictures(found, stuck):
     ],
 )
 def test_the_command_takes_processes_where_each_member_needs_tables_of_its_own(key, members, workers, kind):
-    with executor_for(
-        [key], members, workers, None
-    ) as executor:  # no process is started before the first run
+    request = Request(jobs=workers)
+    with request.executor([key], members) as executor:  # no process is started before the first run
         assert type(executor) is kind
 
 

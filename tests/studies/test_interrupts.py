@@ -72,7 +72,7 @@ def test_ctrl_c_ends_a_study(study, jobs, ctrl_c):
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-@pytest.mark.parametrize("study", [threshold, life, lives, ensemble, coating_map])
+@pytest.mark.parametrize("study", [threshold, starting_torque, life, lives, ensemble, coating_map])
 def test_what_is_interrupted_says_how_to_resume(study, jobs, ctrl_c, tmp_path):
     with pytest.raises(gd.Interrupted, match="--resume"):
         study(jobs=jobs, archive=tmp_path / "out.nc")

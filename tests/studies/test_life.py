@@ -25,8 +25,8 @@ def short():
 def test_exposures_of_a_window_are_those_of_its_cycles():
     """One cycle and then three: what four have added up to, less the first."""
     scene = window_scene(LOW, Cycles(1, 3), 4)
-    found, sticks = run_window(scene, Cycles(1, 3), "native")
-    assert not sticks
+    found, word = run_window(scene, Cycles(1, 3), "native")
+    assert word == "turns"
     whole, _ = run_window(window_scene(LOW, Cycles(0, 4), 4), Cycles(0, 4), "native")
     first, _ = run_window(window_scene(LOW, Cycles(0, 1), 4), Cycles(0, 1), "native")
     sums = [
@@ -42,8 +42,8 @@ def test_a_window_goes_on_until_the_motion_is_steady():
     scene = LOW.replace({"coating.sam_fraction": 0.66})
 
     def contacts(cycles):
-        found, sticks = run_window(window_scene(scene, cycles, 4), cycles, "native")
-        assert not sticks
+        found, word = run_window(window_scene(scene, cycles, 4), cycles, "native")
+        assert word == "turns"
         table = np.array(found.extremes.exposures).reshape(2, 19, -1, 4)[0, :, :3]
         return table.sum() / cycles.count, found.extremes.mesh_exits
 
@@ -108,7 +108,7 @@ def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
             raise KeyboardInterrupt
         return run(*args)
 
-    monkeypatch.setattr(sys.modules["gearidae.studies.life_states"], "run_window", cut)
+    monkeypatch.setattr(sys.modules["gearidae.studies.life_rates"], "run_window", cut)
     with pytest.raises(gd.Interrupted, match="resume") as stopped:
         gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
     kept = gd.studies.open_life(path)
@@ -237,7 +237,7 @@ def test_settings_are_checked(changes, key):
 def test_scenes_are_checked():
     with pytest.raises(gd.SceneError, match="gears"):
         gd.studies.life(gd.preset("roller_slow"), LAW)
-    with pytest.raises(gd.SceneError, match="windows of a life are alike"):
+    with pytest.raises(gd.SceneError, match=r"its windows stand for all passages.*use sweep"):
         gd.studies.life(gd.preset("start_up"), LAW)
     with pytest.raises(gd.SceneError, match="loss law"):
         gd.studies.life(LOW, "contacts")

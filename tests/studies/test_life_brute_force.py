@@ -42,8 +42,8 @@ def test_rates_are_what_a_turn_costs(resolved, pairing):
     coverage = coverage_of(scene, resolved, PLACES)
     cycles = Cycles(19, 19)
     window = window_scene(scene, cycles, PLACES).replace(coverage.changes(coverage.start))
-    found, sticks = run_window(window, cycles, "native")
-    assert not sticks
+    found, word = run_window(window, cycles, "native")
+    assert word == "turns"
     rate = law.rate(coverage.start, coverage.exposure(window, found, 19, coverage.start))
     lost = turn < 0.0  # in the other places asperities have joined before: none join anew
     assert lost.sum() >= len(turn) // 4

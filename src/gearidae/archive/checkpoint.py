@@ -52,7 +52,6 @@ class Checkpoint:
 
         Parameters
         ----------
-        archive : Path
         run : str
             Tells one run from another into the same archive.
 

@@ -214,7 +214,8 @@ def _solution(run: xr.Dataset) -> Solution:
     samples = {str(n): each.values for n, each in run.data_vars.items() if each.dims == ("time",)}
     events: dict[str, Any] = {name: np.empty(0) for name in ("time", "kind", "pair", "flank", "gap_rate")}
     if "event" in run.dims:
-        events = {name: run[f"event_{name}"].values for name in events}
+        more = ("asperity",) if "event_asperity" in run else ()
+        events = {name: run[f"event_{name}"].values for name in (*events, *more)}
     numbers = {name: _number(run, name) for name in RUN if name not in ("status", "message")}
     statistics = Statistics(**numbers, skipped=json.loads(run.attrs.get("skipped", "{}")))
     reached = balance_in_attributes(run).get("time", run.attrs["t_end"])
@@ -250,9 +251,9 @@ def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_
             ds[name] = (dims, values.reshape(shape), ds[name].attrs)
     for name, variable in RUN.items():
         if name not in ds and name in ds.attrs:  # of runs that have not kept theirs the parts know the sum
-            told = [part.attrs[name] for part in parts]
+            entries = [part.attrs[name] for part in parts]
             is_text = variable.dtype is np.str_
-            ds.attrs[name] = ", ".join(sorted({*told} - {""})) if is_text else sum(told)
+            ds.attrs[name] = ", ".join(sorted({*entries} - {""})) if is_text else sum(entries)
     return ds
 
 

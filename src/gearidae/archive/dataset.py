@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.asperity_events import tooth_of
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.energy import balance_attribute, balance_numbers
 from gearidae.archive.exposures import exposure_coordinates, exposure_variables
@@ -22,6 +23,7 @@ from gearidae.archive.variables import (
     ENERGY_BALANCE,
     EVENTS,
     OF_SWEPT_RUN,
+    POPULATION_EVENTS,
     RUN,
     SAM_FRACTION,
     SAMPLES,
@@ -31,6 +33,7 @@ from gearidae.archive.variables import (
     columns,
 )
 from gearidae.errors import SceneError
+from gearidae.population.flanks import flanks_digest, flanks_of
 from gearidae.records import Solution
 from gearidae.scene import Scene, describe_key
 
@@ -60,7 +63,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     variables: dict[Hashable, Any] = {
         name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in _columns(scene)
     }
-    variables |= _event_variables([solution], np.array([fraction]))
+    variables |= _event_variables([scene], [solution], np.array([fraction]))
     variables |= extreme_variables(scene, [solution.extremes])
     exposures = exposure_variables(scene, [scene], [solution])
     variables |= exposures
@@ -78,10 +81,18 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             **_totals([solution]),
             **balance_attribute(scene, solution),
             **surface_regimes(scene),
+            **_asperities_digest(scene),
             **end_state_attributes(solution.start, solution.checkpoint),
             "t_end": _end(scene, solution),
         },
     )
+
+
+def _asperities_digest(scene: Scene) -> dict[str, str]:
+    """Attribute that tells the asperities of a population from others."""
+    if scene.contact.model != "population":
+        return {}
+    return {"asperities_sha256": flanks_digest(flanks_of(scene))}
 
 
 def _end(scene: Scene, solution: Solution) -> float:
@@ -211,7 +222,7 @@ def _events_of_sweep(
     labels: Mapping[str, xr.Variable], scenes: Sequence[Scene], solutions: Sequence[Solution]
 ) -> dict[Hashable, Any]:
     """Events of all runs, one after the other, with the labels of their runs."""
-    variables = _event_variables(solutions, np.array([each.coating.sam_fraction for each in scenes]))
+    variables = _event_variables(scenes, solutions, np.array([each.coating.sam_fraction for each in scenes]))
     counts = [len(solution.events) for solution in solutions]
     shape = tuple(label.size for label in labels.values())
     for position, (dim, label) in enumerate(labels.items()):
@@ -229,7 +240,8 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
     """Name the dimension of every swept key.
 
     The last part of the key (``coating.sam_fraction`` gives ``sam_fraction``), unless that is taken by
-    another swept key or by a variable of the dataset; then the whole key with underscores (``roller_speed``).
+    another swept key or by a variable of the dataset; then the whole key with underscores (``roller_speed``), which has
+    ``swept_`` before it where that is a variable, too (``swept_drive_torque``).
 
     Parameters
     ----------
@@ -245,7 +257,9 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
     names = {}
     for key, short in zip(keys, last, strict=True):
         taken = last.count(short) > 1 or short in _RESERVED
-        names[key] = key.replace(".", "_") if taken and key != "coating.sam_fraction" else short
+        whole = key.replace(".", "_")
+        whole = f"swept_{whole}" if whole in _RESERVED else whole
+        names[key] = whole if taken and key != "coating.sam_fraction" else short
     return names
 
 
@@ -255,7 +269,7 @@ def _samples(solution: Solution, name: str) -> NDArray[np.float64]:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(scene.roller is not None, scene.contact.model == "elastic")
+    return columns(scene.roller is not None, scene.contact.model)
 
 
 def key_labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:
@@ -280,15 +294,25 @@ def _key_attributes(key: str) -> dict[str, Any]:
     return {"long_name": f"{key}: {info.description}", "units": info.unit or "1"}
 
 
-def _event_variables(solutions: Sequence[Solution], fractions: NDArray[np.float64]) -> dict[Hashable, Any]:
+def _event_variables(
+    scenes: Sequence[Scene], solutions: Sequence[Solution], fractions: NDArray[np.float64]
+) -> dict[Hashable, Any]:
     """Events of all runs, one after the other."""
     joined: dict[str, NDArray[Any]] = {
         f"event_{name}": np.concatenate([getattr(solution.events, name) for solution in solutions])
         for name in ("time", "kind", "pair", "flank", "gap_rate")
     }
     joined["event_sam_fraction"] = np.repeat(fractions, [len(solution.events) for solution in solutions])
+    catalogue = {**EVENTS}
+    if any(scene.contact.model == "population" for scene in scenes):
+        catalogue |= POPULATION_EVENTS
+        events = [solution.events for solution in solutions]
+        teeth = [1 if scene.gears is None else scene.gears.pinion_teeth for scene in scenes]
+        of_teeth = [tooth_of(z, each.pair, each.flank) for z, each in zip(teeth, events, strict=True)]
+        joined["event_tooth"] = np.concatenate(of_teeth)
+        joined["event_asperity"] = np.concatenate([each.asperity for each in events])
     return {
-        name: (("event",), values.astype(EVENTS[name].dtype, copy=False), EVENTS[name].attributes)
+        name: (("event",), values.astype(catalogue[name].dtype, copy=False), catalogue[name].attributes)
         for name, values in joined.items()
     }
 

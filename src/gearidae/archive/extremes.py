@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.variables import EXTREMES, ROLLER_EXTREMES
+from gearidae.archive.variables import EXTREMES, extreme_names
 from gearidae.records import Extremes
 from gearidae.scene import Scene
 
@@ -39,7 +39,7 @@ def extreme_variables(
     """
     if all(extremes is None for extremes in runs):
         return {}
-    names = list(EXTREMES if scene.roller is None else ROLLER_EXTREMES)
+    names = list(extreme_names(scene.roller is not None, scene.contact.model))
     if scene.contact.model == "elastic":  # of these it is sampled
         names.remove("min_separation")
     made: dict[Hashable, Any] = {}

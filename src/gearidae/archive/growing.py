@@ -21,6 +21,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.asperity_events import teeth_in, tooth_of
 from gearidae.archive.checkpoint import COUNTERS, Checkpoint, drop_checkpoints
 from gearidae.archive.definition import define
 from gearidae.archive.disk import disk_errors, sync
@@ -74,6 +75,8 @@ class GrowingArchive:
             str(name) for name, variable in template.data_vars.items() if variable.dims == ("time",)
         ]
         self._fraction = float(template["sam_fraction"])
+        self._has_asperities = "event_asperity" in template
+        self._teeth = teeth_in(template.attrs)
         self._checkpointed = time.monotonic()
         self.samples = self.events = 0
         with disk_errors():
@@ -213,6 +216,10 @@ class GrowingArchive:
             self._write(name, self.samples, block.rows[:, column])
         for column, name in enumerate(_EVENT_COLUMNS):
             self._write(name, self.events, block.events[:, column].astype(EVENTS[name].dtype))
+        if self._has_asperities:
+            self._write("event_asperity", self.events, block.events[:, 5].astype(np.int64))
+            teeth = tooth_of(self._teeth, block.events[:, 2], block.events[:, 3])
+            self._write("event_tooth", self.events, teeth)
         self._write("event_sam_fraction", self.events, np.full(len(block.events), self._fraction))
         self.samples += len(block.rows)
         self.events += len(block.events)

@@ -1,4 +1,4 @@
-"""What the runs of a sweep leave behind: everything, or the parts that are asked for by their names."""
+"""Data that a sweep keeps of its runs: everything, or parts by their names."""
 
 from __future__ import annotations
 
@@ -13,12 +13,11 @@ from gearidae.archive.variables import (
     ENERGY_BALANCE,
     EVENTS,
     EXPOSURES,
-    EXTREMES,
     OF_SWEPT_RUN,
-    ROLLER_EXTREMES,
     RUN,
     VERDICT,
     columns,
+    extreme_names,
 )
 from gearidae.errors import SceneError
 from gearidae.records import Events, Solution
@@ -43,7 +42,7 @@ class Keep:
     Attributes
     ----------
     asked : tuple of str
-        What was asked for, sorted; the attribute ``keep`` of the dataset.
+        The requested parts, sorted; the attribute ``keep`` of the dataset.
     names : frozenset of str or None
         The variables that are kept; None for all.
     """
@@ -95,10 +94,6 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     scene : Scene
         What the runs have in common.
 
-    Returns
-    -------
-    Keep
-
     Raises
     ------
     SceneError
@@ -110,7 +105,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     if not isinstance(asked, Iterable):
         raise SceneError("keep", shorten(keep), "must be a list of variables, such as verdict or gear_speed")
     asked = list(asked)
-    extremes = list(EXTREMES if scene.roller is None else ROLLER_EXTREMES)
+    extremes = list(extreme_names(scene.roller is not None, scene.contact.model))
     members: dict[str, tuple[str, ...]] = {
         "verdict": tuple(VERDICT),
         "extremes": tuple(extremes),
@@ -138,7 +133,7 @@ def kept_in(attributes: Any, scene: Scene) -> Keep:
     Raises
     ------
     SceneError
-        If it is not what `read_keep` asked for.
+        If it differs from the parts of `read_keep`.
     """
     text = attributes.get("keep")
     if text is None:
@@ -151,4 +146,4 @@ def kept_in(attributes: Any, scene: Scene) -> Keep:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(scene.roller is not None, scene.contact.model == "elastic")
+    return columns(scene.roller is not None, scene.contact.model)

@@ -11,7 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from gearidae.archive.select import own_events, swept_dims
-from gearidae.archive.variables import EVENTS
+from gearidae.archive.variables import EVENTS, POPULATION_EVENTS
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 
@@ -91,7 +91,8 @@ def event_table(ds: xr.Dataset) -> pd.DataFrame:
     if "event" not in ds.dims:
         raise SceneError("events", "(missing)", "have not been kept: sweep with keep=[..., 'events']")
     ds = own_events(ds)
-    labels = [str(name) for name in ds.data_vars if str(name).startswith("event_") and name not in EVENTS]
+    known = {**EVENTS, **POPULATION_EVENTS}
+    labels = [str(name) for name in ds.data_vars if str(name).startswith("event_") and name not in known]
     columns: dict[str, Any] = {name.removeprefix("event_"): ds[name].values for name in labels}
     columns["sam_fraction"] = ds["event_sam_fraction"].values
     columns["time"] = ds["event_time"].values
@@ -99,6 +100,7 @@ def event_table(ds: xr.Dataset) -> pd.DataFrame:
     columns["pair"] = ds["event_pair"].values
     columns["flank"] = _in_words(ds["event_flank"].values, Flank)
     columns["gap_rate"] = ds["event_gap_rate"].values
+    columns |= {name.removeprefix("event_"): ds[name].values for name in POPULATION_EVENTS if name in ds}
     return pd.DataFrame(columns)
 
 

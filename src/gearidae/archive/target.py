@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-import functools
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
 from pathlib import Path
-from typing import Final, ParamSpec, TypeVar
+from typing import Final
 
 from gearidae.archive.disk import DiskError, part_beside, sync
 from gearidae.archive.lock import claimed
 from gearidae.errors import SceneError
 
-__all__ = ["as_path", "check_target", "claims_archive", "claims_target", "whole_file"]
+__all__ = ["as_path", "check_target", "claims_output", "claims_target", "whole_file"]
 
 _USUAL_LONGEST: Final = 255
 """Bytes of a file's name, where the system does not say."""
 
 _CLAIMED: Final[ContextVar[frozenset[Path]]] = ContextVar("claimed", default=frozenset())
 """Archives that the studies under way in this thread will save."""
-
-P = ParamSpec("P")
-R = TypeVar("R")
 
 
 def as_path(path: str | os.PathLike[str], name: str = "archive") -> Path:
@@ -122,22 +118,30 @@ def claims_target(
         yield check_target(path, overwrite=overwrite, name=name, remedy=remedy)
 
 
-def claims_archive(study: Callable[P, R]) -> Callable[P, R]:
-    """Have a study hold the right to write its argument ``archive``, if that is given, to its end."""
+@contextmanager
+def claims_output(archive: str | os.PathLike[str]) -> Iterator[Path]:
+    """Hold the right to write a study's archive until the block is left; inside, `whole_file` needs no other.
 
-    @functools.wraps(study)
-    def claiming(*args: P.args, **kwargs: P.kwargs) -> R:
-        archive = kwargs.get("archive")
-        if archive is None:
-            return study(*args, **kwargs)
-        with claims_target(archive, overwrite=True) as target:  # type: ignore[arg-type]
-            token = _CLAIMED.set(_CLAIMED.get() | {target})
-            try:
-                return study(*args, **kwargs)
-            finally:
-                _CLAIMED.reset(token)
+    Parameters
+    ----------
+    archive : path-like
 
-    return claiming
+    Yields
+    ------
+    Path
+        The file to write, links followed.
+
+    Raises
+    ------
+    SceneError
+        As `claims_target` does.
+    """
+    with claims_target(archive, overwrite=True) as target:
+        token = _CLAIMED.set(_CLAIMED.get() | {target})
+        try:
+            yield target
+        finally:
+            _CLAIMED.reset(token)
 
 
 @contextmanager

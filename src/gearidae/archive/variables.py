@@ -15,15 +15,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gearidae.records import ELASTIC_SAMPLES, GEAR_SAMPLES, ROLLER_SAMPLES, EventKind, Flank, sampled_columns
+from gearidae.records import (
+    ELASTIC_SAMPLES,
+    GEAR_SAMPLES,
+    POPULATION_SAMPLES,
+    ROLLER_SAMPLES,
+    EventKind,
+    Flank,
+    sampled_columns,
+)
 
 __all__ = [
+    "ASPERITY_COUNTS",
     "ENERGY_BALANCE",
     "EVENTS",
     "EXPOSURES",
     "EXTREMES",
     "OF_SWEPT_RUN",
     "PLACES",
+    "POPULATION_EVENTS",
     "ROLLER_EXTREMES",
     "RUN",
     "SAMPLES",
@@ -33,6 +43,7 @@ __all__ = [
     "Variable",
     "by_name",
     "columns",
+    "extreme_names",
 ]
 
 
@@ -85,7 +96,7 @@ SAM_FRACTION = Variable(
 
 SAMPLES: Mapping[str, Variable] = {
     column.name: Variable(column.name, ("time",), column.units, column.long_name, comment=column.comment)
-    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES, *ELASTIC_SAMPLES)
+    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES, *ELASTIC_SAMPLES, *POPULATION_SAMPLES)
 }
 
 _EVENTS = (
@@ -105,6 +116,29 @@ _EVENTS = (
     Variable("event_sam_fraction", ("event",), "1", "SAM fraction of the run the event belongs to"),
 )
 EVENTS: Mapping[str, Variable] = {variable.name: variable for variable in _EVENTS}
+
+POPULATION_EVENTS: Mapping[str, Variable] = {
+    variable.name: variable
+    for variable in (
+        Variable(
+            "event_tooth",
+            ("event",),
+            "1",
+            "tooth of the pinion that the event belongs to, counted from 0",
+            np.int64,
+            comment="-1 where it belongs to none",
+        ),
+        Variable(
+            "event_asperity",
+            ("event",),
+            "1",
+            "asperity that has joined or detached, counted along its flank from 0",
+            np.int64,
+            comment="-1 where the event is of no single asperity; gearidae.population lists them in this order",
+        ),
+    )
+}
+"""What events of a population have besides."""
 
 _RUN = (
     Variable("status", (), "1", "how the run ended", np.str_),
@@ -158,6 +192,10 @@ _FORCE_EXTREMES = (
         comment="of elastic contacts along time, of others over the run",
     ),
     Variable("final_speed", (), "1", "speed of the gear [rad/s] or the roller [m/s] where the run ended"),
+)
+_ASPERITY_COUNTS = (
+    Variable("asperity_onsets", (), "1", "asperities that have joined", np.int64),
+    Variable("asperity_detachments", (), "1", "asperities that have detached", np.int64),
 )
 _GEAR_EXTREMES = (
     Variable("min_gear_speed", (), "rad s-1", "smallest speed of the gear"),
@@ -231,10 +269,14 @@ EXPOSURES: Mapping[str, Variable] = {variable.name: variable for variable in _EX
 PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACES}
 """What the exposures are labelled by."""
 ENERGY_BALANCE: Mapping[str, Variable] = {variable.name: variable for variable in _ENERGY_BALANCE}
-ROLLER_EXTREMES: Mapping[str, Variable] = {variable.name: variable for variable in _FORCE_EXTREMES}
-EXTREMES: Mapping[str, Variable] = {
-    variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES)
+ROLLER_EXTREMES: Mapping[str, Variable] = {
+    variable.name: variable for variable in (*_FORCE_EXTREMES, *_ASPERITY_COUNTS)
 }
+EXTREMES: Mapping[str, Variable] = {
+    variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES, *_ASPERITY_COUNTS)
+}
+ASPERITY_COUNTS = tuple(variable.name for variable in _ASPERITY_COUNTS)
+"""Those that only populations have."""
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
 OF_SWEPT_RUN: Mapping[str, Variable] = {variable.name: variable for variable in _OF_SWEPT_RUN}
 """What every run of a sweep has besides; of a single run these are attributes, or follow from them."""
@@ -242,9 +284,15 @@ VERDICT: Mapping[str, Variable] = {variable.name: variable for variable in _VERD
 """What a run of a sweep leaves behind that keeps only parts of its runs."""
 
 
-def columns(is_roller: bool, is_elastic: bool = False) -> tuple[str, ...]:
-    """Names of the sampled columns of a gear or a roller scene, whose contact model is elastic or not."""
-    return sampled_columns(roller=is_roller, elastic=is_elastic)
+def extreme_names(is_roller: bool, model: str) -> tuple[str, ...]:
+    """Names of the extremes that a run of gears or a roller leaves, with a contact model."""
+    found = ROLLER_EXTREMES if is_roller else EXTREMES
+    return tuple(name for name in found if name not in ASPERITY_COUNTS or model == "population")
+
+
+def columns(is_roller: bool, model: str = "asperity") -> tuple[str, ...]:
+    """Names of the sampled columns of a gear or a roller scene with a contact model."""
+    return sampled_columns(roller=is_roller, model=model)
 
 
 def by_name() -> dict[str, Variable]:
@@ -254,6 +302,7 @@ def by_name() -> dict[str, Variable]:
         "sam_fraction": SAM_FRACTION,
         **SAMPLES,
         **EVENTS,
+        **POPULATION_EVENTS,
         **RUN,
         **OF_SWEPT_RUN,
         **VERDICT,

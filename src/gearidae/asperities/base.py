@@ -11,17 +11,17 @@ for metres, for roughnesses, and for the length by which adhesion deforms a tip.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from typing import ClassVar, TypeAlias
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from gearidae.arrays import Floats
 from gearidae.asperities.tip import Asperity
 
-__all__ = ["AsperityLaw", "Floats"]
-
-Floats: TypeAlias = NDArray[np.float64]
+__all__ = ["AsperityLaw"]
 
 _X, _W = np.polynomial.legendre.leggauss(48)
 
@@ -75,12 +75,19 @@ class AsperityLaw(ABC):
         return 4
 
     @property
-    def kink(self) -> float:
-        """The same square root at a kink of the load between detachment and joining; 1 if there is none.
+    def touch(self) -> float:
+        """Displacement of a kink of the load, at which a tip that attracts begins to touch; ``-detach`` without one.
 
-        Above it the load may grow with the power 3/2 of the way, as it does from touching on.
+        Above it the load may grow with the power 3/2 of the way.
         """
-        return 1.0
+        return -self.detach
+
+    @property
+    def kink(self) -> float:
+        """The same square root at the kink, if that lies between detachment and joining; 1 else."""
+        if not -self.detach < self.touch < -self.join:
+            return 1.0
+        return math.sqrt((self.touch + self.detach) / (self.detach - self.join))
 
     @abstractmethod
     def load(self, displacement: ArrayLike) -> Floats:
@@ -141,5 +148,14 @@ class AsperityLaw(ABC):
 
     @property
     def loss(self) -> float:
-        """Energy that an asperity loses when it joins; nothing more is lost at detachment."""
-        return 0.0 - float(self.energy(-self.join))  # 0.0 without a loss, not -0.0
+        """Energy that an asperity loses when it joins, if what it stores counts from detachment: all of a cycle."""
+        return 0.0 - float(self.energy(-self.join))  # a law that loses nothing says 0.0, not -0.0
+
+    @property
+    def detachment_energy(self) -> float:
+        """Energy stored just before detachment, counted from free surfaces, which is lost there.
+
+        It is the integral of the load along the unstable branch, from free surfaces to detachment; joining loses so
+        much less. By default 0: a law without such a branch.
+        """
+        return 0.0

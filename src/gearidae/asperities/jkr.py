@@ -30,7 +30,8 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.arrays import Floats
+from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
@@ -201,6 +202,11 @@ class Jkr(AsperityLaw):
     def loss(self) -> float:
         """Energy lost by joining, 0.93550 times pull-off load times stretch limit."""
         return JOINING * math.sqrt(3.0) * self.limit**2.5
+
+    @property
+    def detachment_energy(self) -> float:
+        """Energy at the fold, 4/45 times pull-off load times stretch limit: the integral of P over 0 <= t <= 1."""
+        return 4.0 / 45.0 * math.sqrt(3.0) * self.limit**2.5
 
     def load(self, displacement: ArrayLike) -> Floats:
         """Load of an asperity, `jkr_load` in the law's units; see `AsperityLaw.load`."""

@@ -22,7 +22,7 @@ where it attracts without touching,
     \Delta = \tfrac12 C^2 - \tfrac{8}{3\pi} \lambda C - \tfrac{2}{\pi\lambda},
 
 and the two meet at q = pi/2. An approaching tip joins where the stress begins to act, at the distance
-:math:`h_0 = 2/(\pi\lambda)`; a tip drawn away lets go at the single fold, which lies on the second branch for
+:math:`h_0 = 2/(\pi\lambda)`; a receding tip detaches at the single fold, which lies on the second branch for
 :math:`\lambda < 0.938`.
 
 References
@@ -42,7 +42,8 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.arrays import Floats
+from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
@@ -106,6 +107,20 @@ def _landmarks(zone: float) -> tuple[float, float, float, float]:
     finer = np.linspace(z[max(k - 1, 0)], z[k + 1], 20_001)
     pull = -float(np.min(branch_at(finer, zone)[1]))
     return end, apart, least, pull
+
+
+@lru_cache(maxsize=64)
+def _detachment_energy(zone: float) -> float:
+    """Integral of the load over the displacement from free surfaces to the fold, in units of adhesion."""
+    fold = 8.0 * zone / (3.0 * math.pi)
+    radius = min(fold, 2.0 / (4.0 / 3.0 * zone**2 * (HALF_PI - 1.0) + math.sqrt(_zone_square(zone))))
+    apart = -HALF_PI * zone * (radius**4 / 4.0 - fold * radius**3 / 3.0)
+    end = _landmarks(zone)[0]
+    x, w = np.polynomial.legendre.leggauss(64)
+    half = 0.5 * math.log(end / Z_TOUCH)  # 0 if it detaches before it touches
+    z = Z_TOUCH * np.exp(half * (x + 1.0))
+    _, load, rate = branch_at(z, zone)
+    return float(apart + half * (w * z * load * rate).sum())
 
 
 def _zone_square(zone: float) -> float:
@@ -181,11 +196,14 @@ class Maugis(AsperityLaw):
         return 12
 
     @property
-    def kink(self) -> float:
-        """Where a tip that is drawn away ceases to touch before it lets go."""
-        join = -2.0 / (math.pi * self.zone)
-        _, touch, fold, _ = self._marks
-        return math.sqrt((touch - fold) / (join - fold)) if fold < touch < join else 1.0
+    def touch(self) -> float:
+        """Position at which a receding tip ceases to touch, if that is before detachment."""
+        return self.length * self._marks[1]
+
+    @property
+    def detachment_energy(self) -> float:
+        """Energy at the fold: the integral along the unstable branch, without contact first, from no zone at all on."""
+        return self.length**2.5 * _detachment_energy(self.zone)
 
     def load(self, displacement: ArrayLike) -> Floats:
         """Load of an asperity on its stable branch; see `AsperityLaw.load`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from gearidae.cli.values import assignments
 from gearidae.errors import SceneError
@@ -12,7 +12,10 @@ from gearidae.errors import SceneError
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["check_dask", "read_scene"]
+__all__ = ["SHIPPED", "check_dask", "read_scene"]
+
+SHIPPED: Final = {"low_speed": "teodorescu2009_low_speed", "high_speed": "teodorescu2009"}
+"""Shipped cases that are presets under another name."""
 
 
 def read_scene(case: str, settings: Sequence[str]) -> Scene:
@@ -21,13 +24,9 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
     Parameters
     ----------
     case : str
-        Path of a case file, or the name of a preset.
+        Path of a case file, or the name of a preset or of a shipped case.
     settings : sequence of str
         ``key=value`` pairs.
-
-    Returns
-    -------
-    Scene
 
     Raises
     ------
@@ -38,10 +37,14 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
     from gearidae.scene.group import did_you_mean
 
     path = Path(case)
-    meant = "" if path.exists() or path.suffix else did_you_mean(case, PRESETS)
-    if meant and case not in PRESETS:
-        raise SceneError("case", case, f"is neither a file nor a preset; {meant}")
-    scene = preset(case) if case in PRESETS and not path.exists() else load_case(case)
+    known = dict(zip(PRESETS, PRESETS, strict=True)) | SHIPPED
+    if case in known and not path.exists():
+        scene = preset(known[case]).replace({"name": case})
+    else:
+        meant = "" if path.exists() or path.suffix else did_you_mean(case, known)
+        if meant:
+            raise SceneError("case", case, f"is neither a file nor a preset; {meant}")
+        scene = load_case(case)
     changes = assignments(settings)
     return scene.replace(changes) if changes else scene
 

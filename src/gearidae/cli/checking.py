@@ -87,8 +87,12 @@ def _estimates(scene: Scene) -> Rows:
 
     assert scene.gears is not None
     yield "Estimates", "", "from the mean torques over the run, without sticking"
+    assert scene.drive is not None
+    assert scene.load is not None
     speed = steady_speed(scene)
-    if speed == 0.0:
+    if scene.drive.law is not None or scene.load.law is not None:
+        yield "gear speed", "unknown", "a torque law decides"
+    elif speed == 0.0:
         yield "gear speed", "0 rad/s", "the mean drive torque does not overcome the dry resistance"
     elif math.isinf(speed):
         yield "gear speed", "unbounded", "no limit: load.drag is 0"
@@ -163,7 +167,7 @@ def _run(scene: Scene) -> Rows:
     yield "Run", "", ""
     yield "duration", f"{run.duration * 1e3:g} ms", ""
     expected = run_time(scene)
-    numbers = 1 + len(columns(scene.roller is not None, scene.contact.model == "elastic"))  # with the time
+    numbers = 1 + len(columns(scene.roller is not None, scene.contact.model))  # with the time
     event = sum(np.dtype(variable.dtype).itemsize for variable in EVENTS.values())
     sizes = 8e-6 * numbers * run.sample_count, 1e-6 * event * expected.events
     yield "samples", f"{run.sample_count}", f"{sizes[0]:.3g} MB, and some {sizes[1]:.1g} MB of events"

@@ -23,15 +23,17 @@ def presets(context: CompletionContext) -> Iterable[str]:
 
 
 def cases(context: CompletionContext) -> Iterable[str]:
-    """Offer the presets, and the case files and folders that begin like the word.
+    """Offer presets, shipped cases, and the case files and folders that begin like the word.
 
     Parameters
     ----------
     context : CompletionContext
         Its ``incomplete`` is the word so far.
     """
+    from gearidae.cli.case import SHIPPED
+
     folder, slash, begun = str(context.incomplete).rpartition("/")
-    return [*_cases_in(Path(folder or slash or "."), f"{folder}{slash}", begun), *presets(context)]
+    return [*_cases_in(Path(folder or slash or "."), f"{folder}{slash}", begun), *presets(context), *SHIPPED]
 
 
 def _cases_in(folder: Path, prefix: str, begun: str) -> Iterator[str]:

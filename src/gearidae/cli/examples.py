@@ -23,6 +23,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "report": ("gearidae report mine.nc -o mine.html",),
     "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
     "threshold": ("gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",),
+    "starting-torque": (
+        "gearidae starting-torque mine.toml",
+        "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
+    ),
     "ensemble": (
         'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',
         'gearidae ensemble mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.8)" --size 256 --of min_gear_speed',

@@ -12,15 +12,16 @@ import gearidae as gd
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
-from gearidae.cli.machine import archive_facts, say_json
+from gearidae.cli.machine import archive_facts, product_facts, say_json
 from gearidae.cli.output import say
-from gearidae.cli.products import open_product, product_facts, product_rows
 from gearidae.cli.tables import show_account, show_outcomes, show_rows
 from gearidae.cli.validity_table import show_validity
 from gearidae.errors import SceneError
 from gearidae.runs.kept_validity import validity_of
 from gearidae.scene.coating import MATERIAL_NAMES
-from gearidae.scene.validity_row import contact_subject
+from gearidae.scene.validity_row import ATTRIBUTE, contact_subject
+from gearidae.studies.answers import answer
+from gearidae.studies.products import open_product
 
 __all__ = ["describe", "write_case"]
 
@@ -82,20 +83,38 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
         If the archive cannot be read.
     """
     ds, kind = open_product(archive)
-    if kind != "runs":
-        if as_json:
-            say_json(product_facts(archive, ds, kind))
-        else:
-            show_rows([*product_rows(archive, ds), *_scene_rows(ds)])
-        return DONE
     if as_json:
-        say_json(archive_facts(archive, ds))
+        say_json(archive_facts(archive, ds) if kind == "runs" else product_facts(archive, ds, kind))
         return DONE
-    show_rows(_description(archive, ds))
-    show_outcomes(ds)
-    show_account(ds)
-    show_validity(validity_of(ds), about=contact_subject(roller=is_roller(ds), swept=swept_dims(ds)))
+    if kind == "runs":
+        show_rows(_description(archive, ds))
+        show_outcomes(ds)
+        show_account(ds)
+    else:
+        found = answer(ds, kind)
+        show_rows([*_contents(archive, ds), *_scene_rows(ds)])
+        show_rows(found.rows)
+        say(found.sentence)
+    if kind == "runs" or ATTRIBUTE in ds.attrs:  # working the rows out loads the solver
+        show_validity(validity_of(ds), about=contact_subject(roller=is_roller(ds), swept=swept_dims(ds)))
     return DONE
+
+
+def _contents(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
+    """Attributes, dimensions and variables of what a study has written."""
+    yield str(archive), f"{archive.stat().st_size / 1e6:.1f} MB", ""
+    numbers: list[tuple[str, str, str]] = []
+    for name, value in ds.attrs.items():
+        if name in ("title", "summary", "history", "source"):
+            yield str(name), str(value), ""
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            numbers.append((str(name).replace("_", " "), f"{value:.6g}", ""))
+    yield from numbers
+    for dim, size in ds.sizes.items():
+        yield f"dimension: {dim}", str(size), ""
+    yield "variables", "", ""
+    for name, one in ds.data_vars.items():
+        yield str(name), f"({', '.join(map(str, one.dims))})", str(one.attrs.get("units", ""))
 
 
 def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from gearidae.cli.app import Case, Output, Overwrite, Settings, app
-from gearidae.cli.study_commands import Design, Jobs, Seed, Vary
+from gearidae.cli.app import Case, app
+from gearidae.cli.study_commands import USUAL, Design, Seed, Usual, Vary
 
 __all__ = ["life", "lives"]
 
@@ -43,25 +43,22 @@ def life(
     fraction: Fraction = 0.0,
     resolved: Resolved = "uniform",
     tolerance: Tolerance = 3e-3,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    overwrite: Overwrite = False,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished life in the output file.")] = False,
+    request: Usual = USUAL,
 ) -> int:
     """Follow the coverage over the passages of the teeth until the gear sticks."""
-    from gearidae.cli.life import follow_life
+    from gearidae.cli.studies import follow_life
 
-    options = {
-        "passages": passages,
-        "fraction": fraction,
-        "resolved": resolved,
-        "tolerance": tolerance,
-        "jobs": jobs,
-        "overwrite": overwrite,
-        "resume": resume,
-    }
-    return follow_life(str(case), law, parameter, arrhenius or [], options, output, settings or [])
+    return follow_life(
+        str(case),
+        request,
+        law,
+        parameter,
+        arrhenius or [],
+        passages=passages,
+        fraction=fraction,
+        resolved=resolved,
+        tolerance=tolerance,
+    )
 
 
 @app.command
@@ -79,30 +76,27 @@ def lives(
     tolerance: Tolerance = 3e-3,
     design: Design = "sobol",
     seed: Seed = 0,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    overwrite: Overwrite = False,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished lives in the output file.")] = False,
+    request: Usual = USUAL,
 ) -> int:
     """Follow the coatings of gears with keys drawn from distributions: how long they last.
 
     Parameters of the law are drawn as law.NAME, such as --vary "law.energy=lognormal(0.5 mJ/m^2, 3)"; --parameter gives
     those that are not drawn. Lives so far are kept beside the archive, in OUT.nc.lives, until the archive is written.
     """
-    from gearidae.cli.lives import follow_lives
+    from gearidae.cli.studies import follow_lives
 
-    options = {
-        "size": size,
-        "design": design,
-        "seed": seed,
-        "passages": passages,
-        "fraction": fraction,
-        "resolved": resolved,
-        "tolerance": tolerance,
-        "jobs": jobs,
-        "overwrite": overwrite,
-        "resume": resume,
-    }
-    about = (law, parameter or [], arrhenius or [])
-    return follow_lives(str(case), about, vary, options, output, settings or [])
+    return follow_lives(
+        str(case),
+        request,
+        law,
+        parameter or [],
+        arrhenius or [],
+        vary,
+        size=size,
+        design=design,
+        seed=seed,
+        passages=passages,
+        fraction=fraction,
+        resolved=resolved,
+        tolerance=tolerance,
+    )

@@ -15,11 +15,12 @@ from gearidae.analysis.verdict import outcomes
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.output import say
+from gearidae.studies.answers import answer
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["archive_facts", "contents", "say_json"]
+__all__ = ["archive_facts", "product_facts", "say_json"]
 
 _ATTRIBUTES = (
     "title", "history", "source", "product_version", "status", "message", "t_end", "rtol", "steps",
@@ -41,16 +42,12 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         The file.
     ds : xarray.Dataset
         What is in it.
-
-    Returns
-    -------
-    dict
     """
     return {
         "file": str(archive),
         "bytes": archive.stat().st_size,
         **{name: ds.attrs[name] for name in _ATTRIBUTES if name in ds.attrs},
-        **contents(ds),
+        **_contents(ds),
         "swept": {dim: ds[dim].values.tolist() for dim in swept_dims(ds)},
         "outcomes": [{**asdict(one), "words": one.words} for one in outcomes(ds)],
         "run_summary": json.loads(ds.attrs["account"]) if "account" in ds.attrs else None,
@@ -59,17 +56,33 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def contents(ds: xr.Dataset) -> dict[str, Any]:
-    """Sizes and variables of a dataset.
+def product_facts(path: Path, ds: xr.Dataset, kind: str) -> dict[str, Any]:
+    """Say of what a study has written what ``gearidae info`` says.
 
     Parameters
     ----------
+    path : Path
+        The file.
     ds : xarray.Dataset
-
-    Returns
-    -------
-    dict
+        What is in it.
+    kind : str
+        From `gearidae.studies.products.open_product`.
     """
+    found = answer(ds, kind)
+    return {
+        "file": str(path),
+        "bytes": path.stat().st_size,
+        "kind": kind,
+        "attributes": {str(name): value for name, value in ds.attrs.items() if name != "scene"},
+        **_contents(ds),
+        "answer": found.sentence,
+        "rows": [list(row) for row in found.rows],
+        "scene": scene_of(ds),
+    }
+
+
+def _contents(ds: xr.Dataset) -> dict[str, Any]:
+    """Sizes and variables of a dataset."""
     return {
         "sizes": {str(name): size for name, size in ds.sizes.items()},
         "variables": {

@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import xarray as xr
 from matplotlib.figure import Figure
 
 import gearidae as gd
-from gearidae.archive.select import is_roller, swept_dims
-from gearidae.archive.variables import columns
+from gearidae.archive.select import swept_dims
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
-from gearidae.cli.products import open_product
 from gearidae.cli.selection import selected
 from gearidae.cli.values import default_output, quantity
 from gearidae.errors import SceneError
 from gearidae.plot.files import MOVING
+from gearidae.plot.overview import usual_pictures
 from gearidae.plot.picture import usual_style
 from gearidae.scene.group import did_you_mean
+from gearidae.studies.products import open_product
 
 __all__ = ["draw", "picture_names"]
 
@@ -27,7 +26,7 @@ _FUNCTIONS_OF_FILES = ("animate_teeth", "write")
 
 
 def picture_names() -> list[str]:
-    """List the pictures that can be asked for by name."""
+    """List the names of the pictures."""
     return [name for name in gd.plot.__all__ if name not in _FUNCTIONS_OF_FILES]
 
 
@@ -87,7 +86,8 @@ def draw(
     if given and picture != "teeth":
         raise SceneError(*next(iter(given.items())), "needs --picture teeth")
     moves = bool(given.keys() - {"--time"})
-    ds, usual = _open(archive)
+    ds, kind = open_product(archive)
+    usual = next(iter(usual_pictures(ds, kind)))
     ds = selected(ds, select, "--select", swept_dims(ds) if select else ())
     if moves:
         if time is not None:
@@ -116,16 +116,3 @@ def draw(
 
 def _is_moving(path: Path) -> bool:
     return path.suffix.lower().removeprefix(".") in MOVING
-
-
-def _open(archive: Path) -> tuple[xr.Dataset, str]:
-    """Dataset of a file, and its default picture."""
-    ds, kind = open_product(archive)
-    if kind != "runs":
-        return ds, kind
-    if "ensemble" in ds.attrs:
-        return ds, "sobol_indices" if "total_order" in ds else "sticking_probability"
-    if "outcome" in ds:
-        return ds, "outcome_map"
-    sampled = any(name in ds for name in columns(is_roller(ds)))
-    return ds, "overview" if sampled or not swept_dims(ds) else "outcome"

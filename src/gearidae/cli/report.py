@@ -35,16 +35,12 @@ def report_archive(archive: Path, output: Path | None, *, overwrite: bool) -> in
         If the archive cannot be read or the page cannot be written.
     """
     from gearidae.archive.select import scene_of
-    from gearidae.cli.products import open_product
-    from gearidae.errors import SceneError
     from gearidae.report import write_report
     from gearidae.runs.kept_validity import with_validity
     from gearidae.scene.validity_row import ATTRIBUTE
+    from gearidae.studies.products import open_product
 
-    ds, kind = open_product(archive)
-    if kind not in ("runs", "life"):
-        allowed = "must hold runs or the life of a coating; gearidae plot draws this one"
-        raise SceneError("archive", archive, allowed)
+    ds, _ = open_product(archive)
     if ATTRIBUTE not in ds.attrs:
         ds = with_validity(ds, gd.Scene.from_dict(scene_of(ds)))
     target = write_report(ds, output or default_output(str(archive), ".html"), overwrite=overwrite)

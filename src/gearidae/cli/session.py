@@ -25,7 +25,7 @@ __all__ = ["app", "session"]
 
 _WRITERS = (
     "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "report",
-    "run", "sweep", "threshold",
+    "run", "starting-torque", "sweep", "threshold",
 )  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
@@ -69,7 +69,7 @@ def session(
     Raises
     ------
     SceneError
-        If both `quiet` and `verbose` are asked for, or the log cannot be written.
+        If both `quiet` and `verbose` are given, or the log cannot be written.
     """
     if quiet and verbose:
         raise SceneError("--quiet", "--verbose", "choose one of the two")

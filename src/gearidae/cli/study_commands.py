@@ -11,22 +11,24 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gearidae.cli import completing
-from gearidae.cli.app import Case, Dask, Output, Overwrite, Settings, app
+from gearidae.cli.app import Case, app
+from gearidae.cli.request import Request
 
 __all__ = [
+    "USUAL",
     "Design",
-    "Jobs",
     "Seed",
+    "Usual",
     "Vary",
     "calibrate",
     "coating_map",
     "ensemble",
     "operating_map",
     "predict",
+    "starting_torque",
     "threshold",
 ]
 
-Jobs = Annotated[int | None, Parameter(help="Number of simultaneous runs. Default: one per core.")]
 Vary = Annotated[
     list[str],
     Parameter(
@@ -38,6 +40,8 @@ Vary = Annotated[
 ]
 Design = Annotated[str, Parameter(help="sobol or random.")]
 Seed = Annotated[int, Parameter(help="Seed of the design.")]
+Usual = Annotated[Request, Parameter(name="*")]
+USUAL = Request()
 
 
 @app.command(name="coating-map")
@@ -52,24 +56,15 @@ def coating_map(
             completer=completing.keys,
         ),
     ] = None,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    resume: Annotated[
-        bool, Parameter(help="Resume an interrupted map; its finished runs are reused.")
-    ] = False,
-    dask: Dask = None,
-    overwrite: Overwrite = False,
+    request: Usual = USUAL,
 ) -> int:
     """Map the frequency of the impact response against the SAM fraction.
 
     Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
     """
-    from gearidae.cli.coating import map_case
+    from gearidae.cli.studies import map_coating
 
-    return map_case(
-        str(case), over or [], output, settings or [], jobs, dask, resume=resume, overwrite=overwrite
-    )
+    return map_coating(str(case), request, over or [])
 
 
 @app.command
@@ -81,17 +76,37 @@ def threshold(
         Parameter(help="Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7."),
     ],
     exits: Annotated[int, Parameter(help="Mesh exits to wait for.")] = 100,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    overwrite: Overwrite = False,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished search in the output file.")] = False,
+    request: Usual = USUAL,
 ) -> int:
     """Search where the gear begins to stick, against the number of mesh exits waited for."""
-    from gearidae.cli.threshold import search_threshold
+    from gearidae.cli.studies import search_threshold
 
-    given = settings or []
-    return search_threshold(str(case), over, exits, output, given, jobs, overwrite=overwrite, resume=resume)
+    return search_threshold(str(case), request, over, exits)
+
+
+@app.command(name="starting-torque")
+def starting_torque(
+    case: Case,
+    *,
+    over: Annotated[
+        str | None,
+        Parameter(
+            help="SAM fractions, coating.sam_fraction=1:0.4:-0.1. Default: the coating of the case as it is."
+        ),
+    ] = None,
+    impacts: Annotated[int, Parameter(help="Pitches to be turned, each with its mesh exit.")] = 3,
+    lowest: Annotated[
+        float | None, Parameter(help="Lowest torque to try in N m. Default: 0.001 of the drive's own.")
+    ] = None,
+    tolerance: Annotated[float, Parameter(help="Relative width at which the search ends.")] = 0.1,
+    request: Usual = USUAL,
+) -> int:
+    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion."""
+    from gearidae.cli.studies import search_starting_torque
+
+    return search_starting_torque(
+        str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance
+    )
 
 
 @app.command(name="operating-map")
@@ -106,21 +121,15 @@ def operating_map(
             completer=completing.keys,
         ),
     ],
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    dask: Dask = None,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished map in the output file.")] = False,
-    overwrite: Overwrite = False,
+    request: Usual = USUAL,
 ) -> int:
     """Map over two keys where the gear turns, where it sticks, and where its teeth cross the backlash.
 
     Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
     """
-    from gearidae.cli.operating_map import map_outcomes
+    from gearidae.cli.studies import map_outcomes
 
-    given = settings or []
-    return map_outcomes(str(case), over, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+    return map_outcomes(str(case), request, over)
 
 
 @app.command
@@ -134,22 +143,15 @@ def ensemble(
     ] = None,
     design: Design = "sobol",
     seed: Seed = 0,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    dask: Dask = None,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished ensemble in the output file.")] = False,
-    overwrite: Overwrite = False,
+    request: Usual = USUAL,
 ) -> int:
     """Run a scene with keys drawn from distributions: how often it sticks, and what that depends on.
 
     Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
     """
-    from gearidae.cli.ensemble import run_ensemble
+    from gearidae.cli.studies import run_ensemble
 
-    drawn = {"size": size, "design": design, "seed": seed, "of": of}
-    given = settings or []
-    return run_ensemble(str(case), vary, drawn, output, given, jobs, dask, resume=resume, overwrite=overwrite)
+    return run_ensemble(str(case), request, vary, size=size, design=design, seed=seed, of=of)
 
 
 @app.command
@@ -179,12 +181,7 @@ def calibrate(
     points: Annotated[int, Parameter(help="Cells a key of the grid.")] = 41,
     steps: Annotated[int, Parameter(help="Steps of each of emcee's walkers.")] = 500,
     seed: Annotated[int, Parameter(help="Seed of emcee.")] = 0,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    dask: Dask = None,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished calibration of the output file.")] = False,
-    overwrite: Overwrite = False,
+    request: Usual = USUAL,
 ) -> int:
     """Find out what observations of gears say about keys that are not known: their posterior.
 
@@ -192,9 +189,8 @@ def calibrate(
     """
     from gearidae.cli.calibrate import calibrate_case
 
-    options: dict[str, object] = {"method": method, "points": points, "steps": steps, "seed": seed}
-    options |= {"jobs": jobs, "resume": resume, "overwrite": overwrite}
-    return calibrate_case(str(case), vary, seen or [], observations, options, output, settings or [], dask)
+    options = {"method": method, "points": points, "steps": steps, "seed": seed}
+    return calibrate_case(str(case), request, vary, seen or [], observations, **options)
 
 
 @app.command
@@ -204,12 +200,7 @@ def predict(
     posterior: Annotated[Path, Parameter(help="Posterior, from gearidae calibrate.")],
     size: Annotated[int, Parameter(help="Number of runs.")],
     seed: Annotated[int, Parameter(help="Seed of the draws.")] = 0,
-    output: Output = None,
-    settings: Settings = None,
-    jobs: Jobs = None,
-    dask: Dask = None,
-    resume: Annotated[bool, Parameter(help="Resume the unfinished prediction in the output file.")] = False,
-    overwrite: Overwrite = False,
+    request: Usual = USUAL,
 ) -> int:
     """Run a scene with the keys that were calibrated drawn from their posterior: how often it sticks.
 
@@ -217,5 +208,4 @@ def predict(
     """
     from gearidae.cli.calibrate import predict_case
 
-    options = {"size": size, "seed": seed, "jobs": jobs, "resume": resume, "overwrite": overwrite}
-    return predict_case(str(case), posterior, options, output, settings or [], dask)
+    return predict_case(str(case), request, posterior, size=size, seed=seed)

@@ -14,6 +14,7 @@ from gearidae.compiled import compiles
 from gearidae.engine.changeover import change_over, deepen, lighten
 from gearidae.engine.continuing import checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.integrate.driver import Block, Ending
 from gearidae.engine.run_ends import Ended, OnBlock
 from gearidae.engine.setup.problem import Problem
@@ -58,7 +59,7 @@ def choose_backend(backend: str, method: str) -> str:
     Raises
     ------
     SceneError
-        If the native driver is asked for and cannot work here, the name is unknown, or numba has been told to compile
+        If the native driver is requested and cannot work here, the name is unknown, or numba has been told to compile
         nothing.
     """
     if not compiles():
@@ -98,7 +99,6 @@ def run_blocks(
         Number of samples, ends included.
     backend : {"native", "sksundae"}
         From `choose_backend`.
-    statistics : Statistics
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
     """
@@ -139,7 +139,6 @@ def _with_its_model(
     ----------
     problem, current : Problem
         Of the scene, and with the contact model that the checkpoint has.
-    checkpoint : ndarray
     """
     here, beyond = current, current.outgrown(checkpoint)
     if beyond and current.elastic is not None:
@@ -173,16 +172,15 @@ def follow(
 
     Parameters
     ----------
-    scene : Scene
     take : callable
-        Told a block, the solver's counters and the wall time in the solver [s] at its end.
+        Called with a block, the solver's counters and the wall time in the solver [s] at its end.
     backend : {"auto", "native", "sksundae"}, optional
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
     start : Start, optional
         Where the run begins, or is resumed; by default it begins at time 0.
     on_block : callable, optional
-        Told every block of output, after `take`; what returns True ends the run there, with the status ``stopped``.
+        Called with every block of output, after `take`; True ends the run there, with the status ``stopped``.
 
     Returns
     -------
@@ -209,13 +207,16 @@ def follow(
         ready_driver(name, problem)
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
-        resume, at_start = start.checkpoint, np.empty((0, 5))
+        resume, at_start = start.checkpoint, np.empty((0, EVENT_NUMBERS))
         if resume is None and start.scene is not None:
             resume = checkpoint_of_start(scene, start)
             at_start = knots_at_start(problem)
         for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
             if len(at_start):
-                block.events, at_start = np.concatenate([at_start, block.events]), np.empty((0, 5))
+                block.events, at_start = (
+                    np.concatenate([at_start, block.events]),
+                    np.empty((0, EVENT_NUMBERS)),
+                )
             take(block, statistics, start.wall_time + time.perf_counter() - started)
             reached = block.time
             balance, extremes = block.balance or balance, block.extremes or extremes
@@ -257,7 +258,6 @@ def solve(
 
     Parameters
     ----------
-    scene : Scene
     rtol, t_end, samples : optional
         In place of ``run.rtol`` [1], ``run.duration`` [s] and ``run.samples``.
     backend : {"auto", "native", "sksundae"}, optional
@@ -281,8 +281,8 @@ def solve(
     given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
-    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
-    rows, events = [np.empty((0, len(columns)))], [np.empty((0, 5))]
+    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
+    rows, events = [np.empty((0, len(columns)))], [np.empty((0, EVENT_NUMBERS))]
 
     def take(block: Block, statistics: Statistics, wall_time: float) -> None:
         rows.append(block.rows)
@@ -297,7 +297,7 @@ def solve(
         statistics=ended.statistics,
         status=ended.status,
         message=ended.message,
-        reached=ended.reached,
+        reached=ended.end_time,
         balance=ended.balance,
         extremes=ended.extremes,
         start=start.time,
@@ -315,7 +315,6 @@ def outlook(
 
     Parameters
     ----------
-    scene : Scene
     backend : {"native", "sksundae"}
     checkpoint : ndarray, optional
         Where the run is to go on.
@@ -347,7 +346,6 @@ def kept_at(
 
     Parameters
     ----------
-    scene : Scene
     checkpoint : ndarray
         From a `Block` of a run of this scene.
     start : Start, optional
@@ -371,4 +369,5 @@ def _events(table: NDArray[np.float64]) -> Events:
         pair=table[:, 2].astype(np.int64),
         flank=table[:, 3].astype(np.int8),
         gap_rate=np.ascontiguousarray(table[:, 4]),
+        asperity=table[:, 5].astype(np.int64),
     )

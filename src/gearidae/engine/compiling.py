@@ -14,16 +14,22 @@ from numba.core import event
 
 from gearidae.compiled import is_ready, make_ready
 
-__all__ = ["ELASTIC", "EXPOSURES", "HOW_LONG", "SOLVER", "compiling", "make_part_ready"]
+__all__ = ["ELASTIC", "EXPOSURES", "HOW_LONG", "POPULATION", "SOLVER", "compiling", "make_part_ready"]
 
 log = logging.getLogger(__name__)
 
 SOLVER: Final = "the solver"
 ELASTIC: Final = "elastic contacts"
 EXPOSURES: Final = "exposures"
+POPULATION: Final = "populations of asperities"
 """Parts of the engine, each compiled with the first scene that needs it."""
 
-HOW_LONG: Final = {SOLVER: "about a minute", ELASTIC: "some ten seconds", EXPOSURES: "some ten seconds"}
+HOW_LONG: Final = {
+    SOLVER: "about a minute",
+    ELASTIC: "some ten seconds",
+    EXPOSURES: "some ten seconds",
+    POPULATION: "some ten seconds",
+}
 """How long that takes."""
 
 _one_at_a_time = threading.RLock()

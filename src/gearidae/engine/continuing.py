@@ -4,7 +4,7 @@ Gears and mesh are the same; drive, load, coating and settings may differ. Time,
 extremes go on. Where nothing but settings of the run differ, all units are the same and every number is kept to the
 last bit. A new torque changes the units of time and force, a new coating what asperities do:
 
-- Joined heights are places on the surface, and stay; where asperities cannot stretch so far any more they have let go.
+- Joined heights are places on the surface, and stay; asperities beyond the new stretch limit have detached.
   A material that remembers nothing so far, or has not been there, starts with nothing stretched.
 - What the contacts store with the new materials less what they stored is booked as change of the model. An energy
   balance that the other run has not kept begins here.
@@ -26,8 +26,9 @@ from gearidae.engine.changeover import (
     take_over,
 )
 from gearidae.engine.energy.contacts import stored_energy
+from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
-from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
 from gearidae.engine.integrate.start import rebase
@@ -46,8 +47,10 @@ from gearidae.engine.model.state import (
     assign,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.population.restore import take_joined
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.build_torques import KNOT_SPACING
+from gearidae.engine.setup.kept_asperities import joined_asperities
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import Start
 from gearidae.engine.torques.schedule import segment_ends
@@ -126,6 +129,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     take_over(source, m)
     units.convert_state(m.state)
     changed = not _same_materials(source, m)
+    changed |= m.scene.population.flanks > 0 and start.scene.coating != scene.coating
     if changed:  # what other materials have been exposed to says nothing of these
         exposures_of(m)[:] = 0.0
     else:
@@ -150,15 +154,15 @@ def knots_at_start(problem: Problem) -> Floats:
 
     Returns
     -------
-    ndarray, shape (0 or 1, 5)
+    ndarray, shape (0 or 1, EVENT_NUMBERS)
         Time [s], kind, pair, flank, gap rate [m/s].
     """
     s, tables = problem.model.scene, problem.model.tables
     ends = np.concatenate([segment_ends(own, tables) for own in s.schedule])
     if not ((ends <= s.start) & (s.start - ends <= KNOT_SPACING * s.start)).any():
-        return np.empty((0, 5))
+        return np.empty((0, EVENT_NUMBERS))
     time = float(s.start * s.time_unit)
-    return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0]])
+    return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0, -1.0]])
 
 
 def _restored(scene: Scene, words: Floats, began: float) -> tuple[Problem, Floats]:
@@ -247,6 +251,12 @@ def _materials(m: Model) -> Floats:
 def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:
     """Carry what contacts remember to the new materials and nodes, and book the change of the stored energy."""
     source, m = old.model, new.model
+    if m.scene.population.flanks > 0:
+        take_joined(m, y, joined_asperities(source))
+        if changed:
+            join_at_start(m, y)
+            _note_change(source, old_y, m, y)
+        return
     for k in range(int(m.scene.histories)):
         if m.state.history[k].pair != EMPTY and changed:
             remember(source, m, k)
@@ -258,8 +268,13 @@ def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, cha
             settle_nodes(m, float(m.state.time), y)
         note_gaps(m, y)
     if changed or not same_nodes:
-        was = stored_energy(source, old_y)[0] * float(source.scene.force_unit / m.scene.force_unit)
-        m.state.energy.model_change += stored_energy(m, y)[0] - was
+        _note_change(source, old_y, m, y)
+
+
+def _note_change(source: Model, old_y: Floats, m: Model, y: Floats) -> None:
+    """Book by how much contacts store more with the new materials than they did with the old ones."""
+    was = stored_energy(source, old_y)[0] * float(source.scene.force_unit / m.scene.force_unit)
+    m.state.energy.model_change += stored_energy(m, y)[0] - was
 
 
 def _carry_deflections(source: Model, old_y: Floats, m: Model, y: Floats) -> bool:
@@ -310,4 +325,4 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
         s.slip, s.slipping = float(np.sign(y[W])), int(abs(y[W]) > m.scene.rest_speed)
     s.stop_armed = 0
     if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:
-        stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, 5)), 0)
+        stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)

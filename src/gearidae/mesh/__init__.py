@@ -5,8 +5,19 @@ from gearidae.mesh.involute import (
     GeometryError,
     check_geometry,
     curvature_radii,
+    flank_arc,
     mesh_geometry,
+    place_of_arc,
     separation,
 )
 
-__all__ = ["Geometry", "GeometryError", "check_geometry", "curvature_radii", "mesh_geometry", "separation"]
+__all__ = [
+    "Geometry",
+    "GeometryError",
+    "check_geometry",
+    "curvature_radii",
+    "flank_arc",
+    "mesh_geometry",
+    "place_of_arc",
+    "separation",
+]

@@ -14,11 +14,20 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-__all__ = ["Geometry", "GeometryError", "check_geometry", "curvature_radii", "mesh_geometry", "separation"]
+from gearidae.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = [
+    "Geometry",
+    "GeometryError",
+    "check_geometry",
+    "curvature_radii",
+    "flank_arc",
+    "mesh_geometry",
+    "place_of_arc",
+    "separation",
+]
 
 
 class GeometryError(ValueError):
@@ -100,10 +109,6 @@ def mesh_geometry(base_radius: float, pinion_teeth: int, gear_teeth: int, pressu
     pressure_angle : float
         Pressure angle alpha [rad], 0 < alpha < pi/2.
 
-    Returns
-    -------
-    Geometry
-
     Raises
     ------
     GeometryError
@@ -146,10 +151,6 @@ def mesh_geometry(base_radius: float, pinion_teeth: int, gear_teeth: int, pressu
 def check_geometry(geometry: Geometry) -> None:
     """Refuse a pair that cannot run.
 
-    Parameters
-    ----------
-    geometry : Geometry
-
     Raises
     ------
     GeometryError
@@ -187,7 +188,6 @@ def curvature_radii(geometry: Geometry, xi: ArrayLike) -> tuple[Floats, Floats, 
 
     Parameters
     ----------
-    geometry : Geometry
     xi : array_like, any shape
         Position along the path of contact [m]. Outside the path the contact stays at the tooth's end, and the
         radii keep their values there.
@@ -204,12 +204,44 @@ def curvature_radii(geometry: Geometry, xi: ArrayLike) -> tuple[Floats, Floats, 
     return pinion, gear, pinion * gear / total
 
 
+def flank_arc(geometry: Geometry, xi: ArrayLike) -> Floats:
+    """Arc of the pinion's involute from the base circle to where a pair touches.
+
+    Parameters
+    ----------
+    xi : array_like, any shape
+        Position along the path of contact [m]; outside the path the contact stays at the tooth's end.
+
+    Returns
+    -------
+    ndarray, shape of `xi`
+        ``r1^2 / (2 R1)`` [m], with the pinion's radius of curvature r1.
+    """
+    return np.asarray(curvature_radii(geometry, xi)[0] ** 2 / (2.0 * geometry.base_radius_pinion))
+
+
+def place_of_arc(geometry: Geometry, arc: ArrayLike) -> Floats:
+    """Position along the path of contact of a place on the pinion's flank: the inverse of `flank_arc`.
+
+    Parameters
+    ----------
+    arc : array_like, any shape
+        From the base circle along the involute [m]; less than zero counts as zero.
+
+    Returns
+    -------
+    ndarray, shape of `arc`
+        xi [m], outside 0 .. `Geometry.path_length` where the flank goes on beyond the path.
+    """
+    curvature = np.sqrt(2.0 * geometry.base_radius_pinion * np.maximum(arc, 0.0))
+    return np.asarray(curvature - (geometry.tangent_pinion - geometry.approach))
+
+
 def separation(geometry: Geometry, xi: ArrayLike, tip_relief_radius: float) -> tuple[Floats, Floats]:
     """Additional gap of a pair outside the path of contact because of the rounded tooth end.
 
     Parameters
     ----------
-    geometry : Geometry
     xi : array_like, any shape
         Position along the path of contact [m].
     tip_relief_radius : float

@@ -8,9 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
 from gearidae.analysis.assessment import Assessment
+from gearidae.analysis.map_model import require_map
 from gearidae.errors import SceneError
 from gearidae.plot.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
-from gearidae.studies.coating_map import require_map
+from gearidae.studies.products import require
 
 __all__ = ["coating_map", "starting_torque"]
 
@@ -101,11 +102,7 @@ def starting_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is none of starting torques, or adhesion holds the gear nowhere.
     """
-    missing = [name for name in ("static_torque", "simulated_torque", "simulated_stuck") if name not in ds]
-    if missing:
-        raise SceneError(
-            "plot", ", ".join(missing), "is missing: make the dataset with analysis.starting_torque"
-        )
+    require(ds, "starting_torque")
     ax = new_axes(ax, height=3.8)
     percent = 100.0 * ds["sam_fraction"].values
     drawn = False
@@ -134,7 +131,14 @@ def starting_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax.set_ylabel("starting torque on the pinion (N m)")
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     tidy(ax)
-    ax.set_xlim(percent.min(), percent.max())
+    if len(percent) > 1:
+        ax.set_xlim(percent.min(), percent.max())
+    else:
+        ax.set_xticks(percent)
+    if ds.attrs.get("drive_torque", 0.0) > 0.0:
+        ax.axhline(
+            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
+        )
     ax.legend(frameon=False, fontsize="small")
     return ax
 

@@ -2,17 +2,60 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import xarray as xr
 from matplotlib.figure import Figure
 
-from gearidae.archive.select import is_roller, scene_of
+from gearidae.archive.select import is_roller, scene_of, swept_dims
+from gearidae.archive.variables import columns
 from gearidae.plot.gears import gear_speed
 from gearidae.plot.picture import new_picture
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.style import runs_of
 from gearidae.plot.torque import contact_torque
 
-__all__ = ["overview"]
+__all__ = ["overview", "usual_pictures"]
+
+_PICTURES: Final = {
+    "coating_map": {"coating_map": "Frequency of the impact response against the coverage"},
+    "ensemble": {
+        "sobol_indices": "What the figure depends on",
+        "sticking_probability": "Probability of sticking against one of the keys",
+    },
+    "life": {
+        "life": "Coverage and frequency of the impact response over passages",
+        "coverage_along_flank": "Coverage along the path of contact",
+    },
+    "lives": {"lives": "Share of the gears that still turn"},
+    "operating_map": {"outcome_map": "What the gears do over two keys"},
+    "posterior": {"posterior": "Posterior of each key, and of each two"},
+    "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
+    "sticking_threshold": {"sticking_threshold": "Sticking limit against the mesh exits waited for"},
+}
+"""Pictures of what studies have written, and their captions: the one that says most first."""
+
+
+def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
+    """Name the pictures of a dataset that there is something to draw of.
+
+    Parameters
+    ----------
+    kind : str
+        From `gearidae.studies.products.open_product`.
+
+    Returns
+    -------
+    dict of str to str
+        Functions of `gearidae.plot` and their captions, the one that says most first.
+    """
+    if kind == "runs":
+        sampled = any(name in ds for name in columns(is_roller(ds)))
+        return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
+    needed = {"sobol_indices": "total_order", "coverage_along_flank": "coverage_by_place"}
+    return {
+        name: words for name, words in _PICTURES[kind].items() if name not in needed or needed[name] in ds
+    }
 
 
 def overview(ds: xr.Dataset) -> Figure:

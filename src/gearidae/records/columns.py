@@ -14,9 +14,13 @@ __all__ = [
     "ELASTIC_SAMPLES",
     "GEAR",
     "GEAR_COLUMNS",
+    "GEAR_POPULATION",
     "GEAR_SAMPLES",
+    "POPULATION_COLUMNS",
+    "POPULATION_SAMPLES",
     "ROLLER",
     "ROLLER_COLUMNS",
+    "ROLLER_POPULATION",
     "ROLLER_SAMPLES",
     "Column",
     "sampled_columns",
@@ -90,6 +94,9 @@ ROLLER_SAMPLES: Final = (
     Column("speed", "m s-1", "velocity of the roller", "positive upwards, away from the plane"),
     Column("force", "N", "contact force on the roller", "positive pushes the bodies apart"),
 )
+POPULATION_SAMPLES: Final = (
+    Column("asperities_in_contact", "1", "number of asperities in contact, of all pairs"),
+)
 ELASTIC_SAMPLES: Final = (
     Column("min_separation", "m", "smallest distance of the flanks, deflection included"),
 )
@@ -97,7 +104,8 @@ ELASTIC_SAMPLES: Final = (
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
-"""Additional columns of elastic contacts, after the others."""
+POPULATION_COLUMNS = tuple(column.name for column in POPULATION_SAMPLES)
+"""Additional columns of elastic contacts and of populations, after the others."""
 
 
 def _places(*columns: str) -> Any:
@@ -108,9 +116,12 @@ def _places(*columns: str) -> Any:
 
 GEAR: Final = _places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
 ROLLER: Final = _places(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
+GEAR_POPULATION: Final = _places(*GEAR_COLUMNS, *POPULATION_COLUMNS)
+ROLLER_POPULATION: Final = _places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
 """Places of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
 
 
-def sampled_columns(*, roller: bool, elastic: bool) -> tuple[str, ...]:
-    """Names of the columns of a scene of gears or a roller, whose contact model is `elastic` or not."""
-    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + (ELASTIC_COLUMNS if elastic else ())
+def sampled_columns(*, roller: bool, model: str) -> tuple[str, ...]:
+    """Names of what is sampled of a scene of gears or a roller with a contact model, as ``contact.model`` names it."""
+    more = {"elastic": ELASTIC_COLUMNS, "population": POPULATION_COLUMNS}.get(model, ())
+    return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + more

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -24,6 +24,8 @@ class EventKind(IntEnum):
     SLIP = 7
     FLANK_CHANGE = 8
     SCHEDULE_KNOT = 9
+    ASPERITY_ONSET = 10
+    ASPERITY_DETACHMENT = 11
 
 
 class Flank(IntEnum):
@@ -50,6 +52,8 @@ class Events:
         A `Flank`.
     gap_rate : ndarray of float64
         Rate of change of that pair's gap [m/s]; negative while it closes.
+    asperity : ndarray of int64, optional
+        Number of the asperity on its flank, of a population; -1, the default, where an event is of no single one.
     """
 
     time: NDArray[np.float64]
@@ -57,6 +61,12 @@ class Events:
     pair: NDArray[np.int64]
     flank: NDArray[np.int8]
     gap_rate: NDArray[np.float64]
+    asperity: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+
+    def __post_init__(self) -> None:
+        """Let events be of no single asperity where none are named."""
+        if self.asperity.size == 0:
+            object.__setattr__(self, "asperity", np.full(len(self.time), -1, np.int64))
 
     def __len__(self) -> int:
         return len(self.time)

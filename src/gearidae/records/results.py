@@ -26,8 +26,8 @@ class Block:
     ----------
     rows : ndarray, shape (n, columns)
         Samples after those of the previous block, SI units.
-    events : ndarray, shape (m, 5)
-        Time [s], kind, pair, flank, gap rate [m/s].
+    events : ndarray, shape (m, 6)
+        Time [s], kind, pair, flank, gap rate [m/s], asperity by its place on its flank or -1.
     time : float
         Simulated time reached [s].
     checkpoint : ndarray of 8-byte words, optional
@@ -57,8 +57,6 @@ class Solution:
         Uniform sample times [s].
     samples : dict of str to ndarray, shape (n,)
         One array per column of `GEAR_COLUMNS` or `ROLLER_COLUMNS`, SI units.
-    events : Events
-    statistics : Statistics
     status : str
         ``finished``, or the named reason why the run ended early.
     message : str

@@ -14,6 +14,10 @@ class Ending(Enum):
 
     FINISHED = ("finished", "")
     CHATTER = ("chatter", "events followed each other while the time did not advance")
+    MANY_EVENTS = (
+        "many_events",
+        "asperities joined and detached more than 100000 times in a mesh cycle, or hundreds at once",
+    )
     STEP_UNDERFLOW = ("step_underflow", "the error test failed repeatedly: the steps became too small")
     NO_CONVERGENCE = ("no_convergence", "Newton's iteration did not converge with any step size")
     TOO_ACCURATE = (

@@ -194,6 +194,8 @@ class Extremes:
         Smallest distance of the flanks [m], with the deflection of elastic bodies.
     final_speed : float
         Speed of the gear [rad/s] or the roller [m/s] at the end of the data.
+    asperity_onsets, asperity_detachments : int
+        Asperities of a population that have joined, and detached.
     exposures : array of float
         Exposures of the flanks, in the order flank, tooth of the pinion, quantity, place: for each
         material asperities joined over those of a unit contact length, for each the energy they lost [J], sliding work
@@ -222,4 +224,6 @@ class Extremes:
     smallest_mesh_force_time: float = math.nan
     smallest_separation: float = math.nan
     final_speed: float = math.nan
+    asperity_onsets: int = 0
+    asperity_detachments: int = 0
     exposures: array[float] = field(default_factory=lambda: array("d"))

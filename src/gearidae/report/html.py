@@ -9,7 +9,7 @@ from typing import Any
 
 from gearidae.printable import printable
 
-__all__ = ["definitions", "json_block", "paragraph", "section", "table", "text"]
+__all__ = ["definitions", "folded", "json_block", "paragraph", "section", "table", "text"]
 
 
 def text(value: object) -> str:
@@ -44,16 +44,10 @@ def table(
 
     Parameters
     ----------
-    headings : sequence of str
     rows : iterable of sequence
         Cells as they shall read.
-    caption : str, optional
     numeric : sequence of int, optional
         Columns to set to the right.
-
-    Returns
-    -------
-    str
     """
     heads = "".join(
         f'<th scope="col"{_class("number" if place in numeric else "")}>{text(name)}</th>'
@@ -73,6 +67,11 @@ def table(
         f'<div class="wide" role="region" tabindex="0" aria-label="{text(caption or "table")}"><table>{title}'
         f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>"
     )
+
+
+def folded(summary: str, content: str) -> str:
+    """Write something long that is shown on demand."""
+    return f"<details><summary>{text(summary)}</summary>\n{content}\n</details>"
 
 
 def definitions(pairs: Iterable[tuple[str, object]]) -> str:

@@ -10,36 +10,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae import plot
 from gearidae.report import html
-from gearidae.report.pictures import figures
 from gearidae.report.tables import law_table
 from gearidae.scene.prefixes import with_prefix
 
-__all__ = ["is_life", "life_headline", "life_pictures", "life_table", "life_viewer", "pack_life"]
-
-_ENDINGS = {
-    "coverage": "the coverage asked for is reached",
-    "passages": "the passages asked for are reached",
-    "interrupted": "the study was interrupted",
-}
-
-
-def is_life(ds: xr.Dataset) -> bool:
-    """Whether a dataset is the life of a coating."""
-    return "passages" in ds.dims and {"coverage", "verdict"} <= set(map(str, ds.data_vars))
-
-
-def life_headline(ds: xr.Dataset) -> str:
-    """Say in one sentence how the life ends."""
-    last = _count(ds["passages"].values[-1])
-    ending = str(ds.attrs.get("ending", ""))
-    if ending == "sticks":
-        return (
-            f"The gear sticks by {_count(ds.attrs.get('passages_to_sticking', math.nan))} passages of each tooth of "
-            f"the pinion; after {last} it still turns."
-        )
-    return f"After {last} passages of each tooth of the pinion {_ENDINGS.get(ending, 'the life ends')}."
+__all__ = ["life_table", "life_viewer", "pack_life"]
 
 
 def life_table(ds: xr.Dataset) -> str:
@@ -71,14 +46,6 @@ def life_viewer(ds: xr.Dataset) -> str:
         "<noscript><p>The viewer needs JavaScript; the pictures below do not.</p></noscript>\n"
         + html.json_block("life-data", pack_life(ds))
     )
-
-
-def life_pictures(ds: xr.Dataset) -> str:
-    """Draw the life, and the coverage along the flank where it is resolved."""
-    wanted = [(plot.life, "Coverage and frequency of the impact response over passages")]
-    if "coverage_by_place" in ds:
-        wanted.append((plot.coverage_along_flank, "Coverage along the path of contact"))
-    return figures(ds, wanted)
 
 
 def pack_life(ds: xr.Dataset) -> dict[str, Any]:

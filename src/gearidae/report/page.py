@@ -9,22 +9,29 @@ from pathlib import Path
 
 import xarray as xr
 
+from gearidae import plot
 from gearidae.archive.select import scene_of
 from gearidae.archive.target import whole_file
+from gearidae.plot.overview import usual_pictures
 from gearidae.report import html
-from gearidae.report.life import is_life, life_headline, life_pictures, life_table, life_viewer
-from gearidae.report.pictures import pictures
+from gearidae.report.life import life_table, life_viewer
+from gearidae.report.pictures import figures, pictures
 from gearidae.report.series import MOST_VALUES, pack
 from gearidae.report.tables import (
     account_table,
+    answer_tables,
     event_table,
     headline,
+    law_table,
+    member_table,
     outcome_table,
     parameter_tables,
     provenance_list,
     validity_table,
 )
 from gearidae.report.teeth import pack_teeth
+from gearidae.studies.answers import answer
+from gearidae.studies.products import kind_of
 
 __all__ = ["build_report", "write_report"]
 
@@ -53,8 +60,9 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     SceneError
         If the dataset carries no scene.
     """
-    if is_life(ds):
-        return _life_page(ds)
+    kind = kind_of(ds)
+    if kind != "runs":
+        return _study_page(ds, kind)
     sections = (
         html.section("outcome", "Outcome", outcome_table(ds), account_table(ds)),
         html.section("series", "Time series", _viewer(ds, most_values)),
@@ -66,14 +74,23 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     return _page(ds, headline(ds), sections, scripts)
 
 
-def _life_page(ds: xr.Dataset) -> str:
-    """Make the page about the life of a coating."""
+def _study_page(ds: xr.Dataset, kind: str) -> str:
+    """Make the page about what a study has found."""
+    found = answer(ds, kind)
+    drawn = [(getattr(plot, name), words) for name, words in usual_pictures(ds, kind).items()]
+    shown = html.section("pictures", "Pictures", figures(ds, drawn))
+    sections: tuple[str, ...]
+    if kind == "life":
+        viewer = html.section("life", "Over passages", life_viewer(ds))
+        sections = (viewer, html.section("outcome", "Steps", life_table(ds)), shown)
+        return _page(ds, found.sentence, sections, ("common.js", "save.js", "life.js"))
+    rows = () if kind == "operating_map" else found.rows  # its picture says the same
     sections = (
-        html.section("life", "Over passages", life_viewer(ds)),
-        html.section("outcome", "Steps", life_table(ds)),
-        html.section("pictures", "Pictures", life_pictures(ds)),
+        html.section("outcome", "Outcome", answer_tables(rows), law_table(ds)),
+        shown,
+        html.section("members", "Runs", member_table(ds, kind)),
     )
-    return _page(ds, life_headline(ds), sections, ("common.js", "save.js", "life.js"))
+    return _page(ds, found.sentence, sections, ("common.js", "save.js"))
 
 
 def _page(ds: xr.Dataset, told: str, sections: Sequence[str], scripts: Sequence[str]) -> str:

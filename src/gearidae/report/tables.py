@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
+from gearidae.archive.dataset import dimension_names
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.pieces import pieces
 from gearidae.archive.run_summary import counted_over
@@ -25,9 +26,11 @@ from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, holds_rows, 
 
 __all__ = [
     "account_table",
+    "answer_tables",
     "event_table",
     "headline",
     "law_table",
+    "member_table",
     "outcome_table",
     "parameter_tables",
     "provenance_list",
@@ -110,6 +113,57 @@ def outcome_table(ds: xr.Dataset) -> str:
     return html.table((*dims, *headings), rows, caption="Outcome of each run", numeric=numeric)
 
 
+def answer_tables(rows: Sequence[tuple[str, str, str]]) -> str:
+    """List what a study has found: a table for each heading, which is a row without a value."""
+    tables: list[tuple[str, list[tuple[str, str, str]]]] = []
+    for row in rows:
+        if not row[1]:
+            tables.append((" ".join(filter(None, (row[0], row[2]))), []))
+        elif not tables:
+            tables.append(("", [row]))
+        else:
+            tables[-1][1].append(row)
+    return "\n".join(
+        html.table(("", "value", ""), listed, caption=caption) for caption, listed in tables if listed
+    )
+
+
+def member_table(ds: xr.Dataset, kind: str) -> str:
+    """List the members of an ensemble with the values that were drawn, or the runs of a map, folded."""
+    if kind == "lives":
+        drawn = [str(name) for name in ds.coords if name != "member" and ds[name].dims == ("member",)]
+        columns = [*drawn, "ending", "passages_to_sticking", "passages_turning", "final_coverage", "status"]
+        rows = [
+            [str(number), *(_value(one[name].item(), _unit(one[name])) for name in columns)]
+            for number, one in ((number, ds.isel(member=number)) for number in range(ds.sizes["member"]))
+        ]
+        listed = html.table(
+            ("member", *(name.replace("_", " ") for name in columns)), rows, caption="Members"
+        )
+    elif kind == "ensemble":
+        judged, rtol = outcomes(ds), scene_of(ds)["run"]["rtol"]
+        drawn = [str(name) for name in dimension_names(json.loads(ds.attrs["swept"])).values()]
+        headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
+        rows = [
+            [
+                str(number),
+                *(_value(values.item(), _unit(values)) for values in columns),
+                *_outcome_cells(one, rtol),
+            ]
+            for number, (one, *columns) in enumerate(zip(judged, *(ds[name] for name in drawn), strict=True))
+        ]
+        listed = html.table(("member", *drawn, *headings), rows, caption="Members")
+    elif kind == "operating_map":
+        listed = outcome_table(ds)
+    else:
+        return ""
+    return html.folded("Outcome of each run", listed)
+
+
+def _unit(values: xr.DataArray) -> str:
+    return str(values.attrs.get("units", "1"))
+
+
 def account_table(ds: xr.Dataset) -> str:
     """Tell where time and energy of a single run went, of a roller energy only; nothing of a sweep."""
     told = json.loads(ds.attrs.get("account", "{}"))
@@ -126,7 +180,7 @@ def account_table(ds: xr.Dataset) -> str:
     ]
     if not rows:
         return ""
-    return html.table(("quantity", "value"), rows, caption="Account of the run", numeric=(1,))
+    return html.table(("quantity", "value"), rows, caption="Run summary", numeric=(1,))
 
 
 def _with_reach(ds: xr.Dataset, name: str, words: str) -> str:
@@ -184,12 +238,15 @@ def parameter_tables(ds: xr.Dataset) -> str:
     """List the scene key by key, in units with prefixes, with what each key means."""
     scene = scene_of(ds)
     swept = json.loads(ds.attrs.get("swept", "{}"))
+    drawn = json.loads(ds.attrs.get("ensemble", "{}")).get("distributions", {})
     known = {info.key: info for info in describe_keys()}
     rows = []
     for key, value in _flatten(scene, swept):
         info = known.get(".".join(part for part in key.split(".") if not part.isdecimal()))
         unit, meaning = (info.unit, info.description) if info else ("", "")
         shown = f"swept: {_values(swept[key], unit)}" if key in swept else _value(value, unit)
+        if key in drawn:
+            shown = f"drawn from {drawn[key]}: {_values(swept.get(key, []), unit)}"
         rows.append((key, shown, meaning))
     return html.table(("key", "value", "meaning"), rows, caption="Parameters of the scene")
 

@@ -32,7 +32,14 @@ _KEY: Final = re.compile(r"[0-9a-f]{64}")
 """Keys of runs."""
 _FORMER: Final = re.compile(r"([0-9a-f]{64}\.nc|runs\.jsonl)")
 """Files in which version 0.1.0 kept runs."""
-_EVENTS = {"time": np.float64, "kind": np.int8, "pair": np.int64, "flank": np.int8, "gap_rate": np.float64}
+_EVENTS = {
+    "time": np.float64,
+    "kind": np.int8,
+    "pair": np.int64,
+    "flank": np.int8,
+    "gap_rate": np.float64,
+    "asperity": np.int64,
+}
 """Rows of the table of events, all of which double precision holds exactly, and their types in memory."""
 
 _STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not in ("ending", "fold_gap"))
@@ -66,7 +73,6 @@ def name_of(scene: Scene, about: Mapping[str, Any]) -> str:
 
     Parameters
     ----------
-    scene : Scene
     about : mapping
         Ready for JSON; from `circumstances`, and more.
     """

@@ -16,7 +16,7 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["early_end", "prepare", "runs_in_threads", "solve", "solve_to_end", "unsolved"]
+__all__ = ["early_end", "prepare", "solve", "solve_to_end", "unsolved"]
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
@@ -45,10 +45,6 @@ def prepare(
     backend : str, optional
         As for `simulate`.
 
-    Returns
-    -------
-    Scene
-
     Raises
     ------
     SceneError
@@ -76,7 +72,6 @@ def solve(
 
     Parameters
     ----------
-    scene : Scene
     backend : str
         As for `simulate`.
     on_progress : callable, optional
@@ -84,7 +79,7 @@ def solve(
     start : Start, optional
         Where the run begins, if it goes on from another.
     on_block : callable, optional
-        Told every block of output; ends the run by returning True.
+        Called with every block of output; ends the run by returning True.
 
     Returns
     -------
@@ -110,11 +105,6 @@ def solve_to_end(scene: Scene, backend: str, start: engine.Start = engine.AT_ONC
     if solution.status == "interrupted":
         raise KeyboardInterrupt
     return solution
-
-
-def runs_in_threads(backend: str, method: str) -> bool:
-    """Whether a backend solves outside Python's lock, so that threads of one process work side by side."""
-    return engine.choose_backend(backend, method) == "native"
 
 
 def unsolved(status: str, message: str) -> Solution:
@@ -148,7 +138,7 @@ def early_end(ds: xr.Dataset, time: float, message: str = "", advice: str = _ADV
     Parameters
     ----------
     ds : xarray.Dataset
-        What there is of the run, with a status other than ``finished``.
+        The data of the run so far, with a status other than ``finished``.
     time : float
         Simulated time reached [s].
     message, advice : str, optional

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from concurrent.futures import Executor
-from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearidae.archive import check_target, open_archive, save
 from gearidae.archive.keep import EVERYTHING, Keep, read_keep
-from gearidae.archive.provenance import provenance
-from gearidae.archive.target import claims_archive
-from gearidae.engine import choose_backend
-from gearidae.errors import Interrupted, SceneError
+from gearidae.errors import Interrupted
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.batch import Batch
-from gearidae.runs.executors import check_executor, check_jobs, own_executor
+from gearidae.runs.execution import Execution, origin_of, run_kept
 from gearidae.runs.imbalance import log_imbalance
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.kept_validity import with_validity
-from gearidae.runs.running import prepare, runs_in_threads
+from gearidae.runs.running import prepare
 from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
 
 if TYPE_CHECKING:
@@ -30,10 +24,9 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["kept_beside", "prepare_archive", "run_plan", "sweep", "whole_archive"]
+__all__ = ["run_plan", "run_study", "sweep"]
 
 
-@claims_archive
 def sweep(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],
@@ -74,7 +67,7 @@ def sweep(
     overwrite : bool, optional
         Whether `archive` may replace a file, and the runs of an unfinished sweep beside it be discarded.
     progress : bool or callable, optional
-        True for a progress bar on a terminal or in a notebook, or a function that is told the number of runs done (with
+        True for a progress bar on a terminal or in a notebook, or a function of the number of finished runs (with
         fractions for those under way, where they can be seen) and the number of runs.
     jobs : int, optional
         Runs at a time; by default the number of usable cores. Ignored if `executor` is given.
@@ -119,237 +112,87 @@ def sweep(
     parts = read_keep(keep, base)
     if not parts.columns(base):
         base = base.replace({"run.samples": "off"})
-    plan = plan_sweep(base, over, zipped=zipped)
-    check_jobs(jobs)
-    check_executor(executor)
-    kept, whole = prepare_archive(
-        archive,
-        plan.scenes,
-        backend,
-        partial(whole_archive, plan=plan, backend=backend, keep=parts),
-        keep=parts,
-        overwrite=overwrite,
-        resume=resume,
-    )
-    if whole is not None:
-        return whole
-    ds, interrupted = run_plan(
-        plan,
-        kept if resume else None,
-        kept,
-        executor,
-        keep=parts,
-        backend=backend,
-        jobs=jobs,
-        progress=progress,
-    )
-    if archive is not None:
-        save(with_validity(ds, plan.base), archive, overwrite=overwrite or resume)
-    if interrupted:
-        where = (
-            f"stopped before all {len(plan.scenes)} runs were done; the error's dataset has those that are"
-        )
-        if archive is not None:
-            where = f"the finished runs are in {os.fspath(archive)}; go on with --resume"
-        raise Interrupted(where, ds)
-    if kept is not None:
-        kept.remove(plan.scenes)
-    return ds
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    return run_study(plan_sweep(base, over, zipped=zipped), how, {}, keep=parts)
 
 
-def run_plan(
+def run_study(
     plan: SweepPlan,
-    former: KeptRuns | None,
-    kept: KeptRuns | None,
-    executor: Executor | None,
+    how: Execution,
+    about: Mapping[str, str],
+    finish: Callable[[xr.Dataset], xr.Dataset] = lambda ds: ds,
     *,
-    keep: Keep = EVERYTHING,
-    backend: str,
-    jobs: int | None,
-    progress: bool | SweepProgress,
-) -> tuple[xr.Dataset, bool]:
-    """Compute the runs of a sweep.
+    keep: Keep | None = None,
+) -> xr.Dataset:
+    """Compute the runs of a plan, and make the dataset of a sweep or a study of them.
 
     Parameters
     ----------
-    plan : SweepPlan
-    former, kept : KeptRuns, optional
-        Where to take finished runs from, and where to keep those that finish.
-    executor, backend, jobs, progress
-        As for `sweep`.
+    about : mapping of str to str
+        What the result depends on besides the runs, as attributes.
+    finish : callable, optional
+        Makes the study's dataset of that of the runs.
     keep : Keep, optional
-        What each run leaves behind; by default everything.
+        What each run leaves behind; by default its verdict and its extremes.
 
     Returns
     -------
     Dataset
-        As from `sweep`.
-    bool
-        Whether Ctrl-C ended it early.
-    """
-    workers, releases_gil = check_jobs(jobs), runs_in_threads(backend, plan.base.run.method)
-    if not releases_gil and jobs is None:
-        workers = 1
-    with sweep_progress(progress, len(plan.scenes)) as report:
-        batch = Batch(plan, backend, report, kept, keep)
-        interrupted = False
-        try:
-            if former is not None:
-                batch.take_kept(former)
-            if executor is not None:
-                batch.run(executor)
-            else:
-                with own_executor(workers, batch.left, releases_gil=releases_gil) as own:
-                    batch.run(own, threads=workers if releases_gil else 0)
-        except KeyboardInterrupt:
-            interrupted = True
-    ds = batch.dataset()
-    log_imbalance(ds)
-    return ds, interrupted
-
-
-def prepare_archive(
-    archive: str | os.PathLike[str] | None,
-    scenes: Sequence[Scene],
-    backend: str,
-    whole: Callable[[Path], xr.Dataset | None],
-    *,
-    keep: Keep = EVERYTHING,
-    overwrite: bool,
-    resume: bool,
-) -> tuple[KeptRuns | None, xr.Dataset | None]:
-    """Find out where to keep finished runs, and whether all is done already.
-
-    Parameters
-    ----------
-    archive, backend, overwrite, resume
-        As for `sweep`.
-    scenes : sequence of Scene
-        All runs.
-    whole : callable
-        Told the archive that is there: its content if it holds all of these runs, None if some are missing; raises
-        `SceneError` if it is of others.
-    keep : Keep, optional
-        What each run leaves behind; by default everything.
-
-    Returns
-    -------
-    KeptRuns, optional
-        None without an archive.
-    Dataset, optional
-        What is there, if it is all.
+        Of an archive that is whole, its content.
 
     Raises
     ------
     SceneError
-        If the archive cannot be written, or is there and may not be replaced.
+        If the archive cannot be written, or is of something else.
+    Interrupted
+        On Ctrl-C, with the runs so far as its ``dataset``; `archive` holds the same and can be resumed.
     """
-    kept = kept_beside(archive, scenes[0], backend, keep=keep, overwrite=overwrite, resume=resume)
-    if archive is None or kept is None or not resume:
-        return kept, None
-    target = check_target(archive, overwrite=True)
-    if kept.count():
-        kept.note_strangers(scenes)
-    elif target.exists():
-        return kept, whole(target)
-    return kept, None
-
-
-def kept_beside(
-    archive: str | os.PathLike[str] | None,
-    scene: Scene,
-    backend: str,
-    *,
-    keep: Keep = EVERYTHING,
-    overwrite: bool,
-    resume: bool,
-) -> KeptRuns | None:
-    """Find out where to keep finished runs.
-
-    Parameters
-    ----------
-    archive, backend, overwrite, resume
-        As for `sweep`.
-    scene : Scene
-        Any of them.
-    keep : Keep, optional
-        What each run leaves behind; by default everything.
-
-    Returns
-    -------
-    KeptRuns or None
-        None without an archive. Without `resume`, empty.
-
-    Raises
-    ------
-    SceneError
-        If the archive cannot be written, or is there, or was cut off, and may not be replaced.
-    """
-    if archive is None:
-        if resume:
-            raise SceneError("resume", resume, "needs an archive: the runs to go on from are kept beside it")
-        return None
-    target = check_target(archive, overwrite=True)
-    kept = KeptRuns(target, scene, choose_backend(backend, scene.run.method), keep)
-    count = 0 if resume else kept.count()
-    if count and not overwrite:
-        raise SceneError(
-            "archive",
-            archive,
-            f"was cut off, {count} of its runs are in {kept.folder.name}: "
-            "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)",
-        )
-    if count:
-        kept.remove()
-    elif not resume:
-        check_target(archive, overwrite=overwrite)
-    return kept
-
-
-def whole_archive(
-    target: Path, plan: SweepPlan, backend: str, keep: Keep, more: Mapping[str, str] | None = None
-) -> xr.Dataset | None:
-    """Return the archive of this very sweep, None if runs of it are missing; refuse any other file.
-
-    Parameters
-    ----------
-    target : Path
-        That is there.
-    plan : SweepPlan
-    backend : str
-        As for `sweep`.
-    keep : Keep
-    more : mapping of str to str, optional
-        Further attributes that it must have.
-
-    Returns
-    -------
-    Dataset or None
-
-    Raises
-    ------
-    SceneError
-        If it is of another sweep, or cannot be read.
-    """
-    try:
-        ds = open_archive(target)
-    except SceneError as error:
-        raise SceneError("archive", target, f"exists and cannot be resumed: it {error.allowed}") from None
+    keep = read_keep(("extremes",), plan.base) if keep is None else keep
     asked = "" if keep.names is None else json.dumps(keep.asked)
     expected = {
-        name: str(value) for name, value in provenance(plan.base, "").items() if name in ("scene", "source")
-    }
-    expected |= {"swept": plan.swept, "zipped": plan.zipped, "keep": asked, **(more or {})}
-    differing = [name for name, value in expected.items() if ds.attrs.get(name, "") != value]
-    if differing or ds.attrs["backend"] not in ("", choose_backend(backend, plan.base.run.method)):
-        ds.close()
-        raise SceneError(
-            "archive",
-            target,
-            "exists and is of another sweep, other settings or another version: name another, or allow "
-            "--overwrite (overwrite=True)",
-        )
-    if "interrupted" not in ds["status"].values:
-        return ds
-    ds.close()
-    return None
+        **origin_of(plan.base), "swept": plan.swept, "zipped": plan.zipped, "keep": asked, **about,
+    }  # fmt: skip
+
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        try:
+            return finish(run_plan(plan, how, kept, keep))
+        except Interrupted as interrupt:
+            raise Interrupted("", finish(interrupt.dataset)) from None
+
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, plan.base, how.driver, keep),
+        work,
+        expected,
+        scenes=plan.scenes,
+        prepared=lambda ds: with_validity(ds, plan.base),
+    )
+
+
+def run_plan(plan: SweepPlan, how: Execution, kept: KeptRuns | None, keep: Keep = EVERYTHING) -> xr.Dataset:
+    """Compute the runs of a sweep.
+
+    Parameters
+    ----------
+    kept : KeptRuns, optional
+        Where finished runs are taken from, and kept.
+    keep : Keep, optional
+        What each run leaves behind.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C, with the runs that are finished; the others are marked.
+    """
+    with sweep_progress(how.progress, len(plan.scenes)) as report:
+        batch = Batch(plan, how.backend, report, kept, keep)
+        try:
+            if kept is not None:
+                batch.take_kept(kept)
+            with how.computing(batch.left) as executor:
+                batch.run(executor, threads=how.threads())
+        except KeyboardInterrupt:
+            raise Interrupted("", batch.dataset()) from None
+    ds = batch.dataset()
+    log_imbalance(ds)
+    return ds

@@ -49,11 +49,11 @@ def load_case(path: str | os.PathLike[str]) -> Scene:
 
 
 def _find_files(data: dict[str, object], folder: Path) -> None:
-    """Let files that schedules name lie beside the case file."""
-    for name in ("drive", "load"):
+    """Let files that schedules and lists name lie beside the case file."""
+    for name in ("drive", "load", "contact"):
         table = data.get(name)
         if isinstance(table, dict):
-            for key in ("schedule", "speed"):
+            for key in ("schedule", "speed", "asperities"):
                 if key in table:
                     table[key] = in_folder(table[key], folder)
 

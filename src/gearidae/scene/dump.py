@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
+from gearidae.scene.asperity_list import ListedAsperities
 from gearidae.scene.group import Group
 from gearidae.scene.knots import Knots
 from gearidae.scene.quantity import Quantity
@@ -79,7 +80,10 @@ def _table(group: Group) -> Iterator[str]:
     for name, field in type(group).model_fields.items():
         value = getattr(group, name)
         if isinstance(value, tuple):
-            if value and isinstance(value[0], float):
+            if isinstance(value, ListedAsperities):
+                if value:
+                    entries.append((f"{name} = {_columns(value)}", field.description))
+            elif value and isinstance(value[0], float):
                 entries.append((f"{name} = {_plain(value)}", field.description))
             elif isinstance(value, Knots) and value:
                 entries.append((f"{name} = {_knots(value)}", field.description))
@@ -112,6 +116,17 @@ def _knots(knots: tuple[tuple[float, float], ...]) -> str:
     return (
         text if interpolation == "linear" else f"{{ interpolation = {_text(interpolation)}, knots = {text} }}"
     )
+
+
+def _columns(listed: ListedAsperities) -> str:
+    """Write a list of asperities by its columns, one in a line; a cell without a number is an empty text."""
+    lists = {
+        name: ", ".join(
+            '""' if cell is None else _text(cell) if isinstance(cell, str) else repr(cell) for cell in cells
+        )
+        for name, cells in listed.columns.items()
+    }
+    return "{ " + ", ".join(f"{name} = [\n    {cells}\n]" for name, cells in lists.items()) + " }"
 
 
 def _rows(rows: tuple[tuple[float, ...], ...]) -> str:

@@ -81,6 +81,10 @@ class Run(Group):
     balance: Switch = Field(
         default=True, description="whether the energy balance is kept; exposures and a life need it"
     )
+    asperity_events: Switch = Field(
+        default=True,
+        description="whether each joining and detachment of a population's asperities is an event kept",
+    )
     stop: Annotated[str, BeforeValidator(_read_stop)] = Field(
         default="time", description="what ends the run before its time: sticks, or turns N of the gear"
     )

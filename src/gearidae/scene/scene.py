@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
+from gearidae.scene.asperity_list import check_asperities
 from gearidae.scene.coating import Coating, Material, materials_of
 from gearidae.scene.coating_table import check_tables
 from gearidae.scene.gears import Gears, Mesh
@@ -19,6 +20,7 @@ from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
 from gearidae.scene.showing import as_html, as_line
+from gearidae.scene.strip import check_population
 from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.torque import Drive, Load
 
@@ -32,6 +34,7 @@ _NOTHING_IF_EMPTY = (
     ("run", "checkpoints"),
     ("coating", "pinion_table"),
     ("coating", "gear_table"),
+    ("contact", "asperities"),
 )
 _DEEPEST_OVERLAP = 8.0  # rms roughnesses that the mean planes may overlap at the start
 
@@ -103,6 +106,7 @@ class Scene(Group):
         check_stretch(self)
         check_thickness(self)
         check_tables(self)
+        check_asperities(self)
         if self.roller is not None:
             if given:
                 raise SceneError(
@@ -114,6 +118,7 @@ class Scene(Group):
                 raise SceneError("run.stop", self.run.stop, "must be time in a scene with a roller")
             if self.run.exposures != 0:
                 raise SceneError("run.exposures", self.run.exposures, "must be 0 in a scene with a roller")
+            check_population(self)
             return self
         for table in ("gears", "mesh", "drive", "initial"):
             if table not in given:
@@ -165,6 +170,7 @@ class Scene(Group):
             )
         check_gaps(self)
         check_reach(self)
+        check_population(self)
 
     @property
     def geometry(self) -> Geometry:

@@ -8,9 +8,10 @@ from pydantic import BeforeValidator, Field
 
 from gearidae.asperities import law_names
 from gearidae.asperities.tip import INTERACTION_RANGE
+from gearidae.scene.asperity_list import Listed, ListedAsperities
 from gearidae.scene.group import Group
 from gearidae.scene.named import Named
-from gearidae.scene.quantity import Quantity
+from gearidae.scene.quantity import Count, Quantity
 
 __all__ = ["Contact", "Energy", "Surface"]
 
@@ -56,7 +57,20 @@ class Surface(Group):
 class Contact(Group):
     """Which laws of contact to use."""
 
-    model: Literal["auto", "asperity", "elastic"] = Field(
-        default="auto", description="asperity: teeth stay rigid; elastic: they deflect too; auto: as needed"
+    model: Literal["auto", "asperity", "elastic", "population"] = Field(
+        default="auto",
+        description="asperity: teeth stay rigid; elastic: they deflect too; auto: as needed; "
+        "population: rigid teeth with real asperities on each flank in place of the mean of many",
     )
     asperity: Annotated[str, Named(law_names)] = Field(default="jkr", description="force law of one asperity")
+    seed: Annotated[int, Count(at_least=0, at_most=2**53)] = Field(
+        default=0, description="which surface of this kind a population is drawn as"
+    )
+    radius_spread: Annotated[float, Quantity(unit="1", at_least=0, at_most=10)] = Field(
+        default=0.0,
+        description="standard deviation of a population's tip radii over their mean; they are lognormal",
+    )
+    asperities: Listed = Field(
+        default=ListedAsperities(),
+        description="list of asperities in place of drawn ones: a CSV file, or columns",
+    )

@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
 from gearidae.studies.cycle_jump import Life
 from gearidae.studies.life_coverage import Coverage
 from gearidae.studies.life_signals import signal_of
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
-    from gearidae.wear import Exposure
+    from gearidae.studies.life_rates import StateResult
 
 __all__ = ["life_dataset"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _EXPOSURES = {
     "contacts": ("m-2", "asperity contacts made on coated flank in a passage, per area of it"),
@@ -32,32 +30,8 @@ _EXPOSURES = {
 }
 
 
-class Seen(Protocol):
-    """What the windows of a state have shown."""
-
-    @property
-    def sticks(self) -> bool:
-        """Whether the gear sticks."""
-
-    @property
-    def rate(self) -> Floats:
-        """Change of the state in a passage."""
-
-    @property
-    def exposures(self) -> tuple[Exposure, ...]:
-        """Of each start; none where the gear sticks."""
-
-    @property
-    def mean_speed(self) -> float:
-        """Mean speed of the gear [rad/s]."""
-
-    @property
-    def min_speed(self) -> float:
-        """Smallest speed of the gear [rad/s]."""
-
-
 def life_dataset(
-    scene: Scene, coverage: Coverage, found: Life, seen: Sequence[Seen], *, frequency: bool
+    scene: Scene, coverage: Coverage, found: Life, seen: Sequence[StateResult], *, frequency: bool
 ) -> xr.Dataset:
     """Make the dataset of a life.
 
@@ -65,16 +39,10 @@ def life_dataset(
     ----------
     scene : Scene
         That it began with.
-    coverage : Coverage
-    found : Life
     seen : sequence
         What each state has shown.
     frequency : bool
         Whether to find the characteristic frequency of each state.
-
-    Returns
-    -------
-    Dataset
     """
     states = np.array(found.states)
     tables = np.array([coverage.table(state) for state in states])
@@ -140,11 +108,11 @@ def _about(units: str, long_name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name}
 
 
-def _word(seen: Seen) -> str:
+def _word(seen: StateResult) -> str:
     return "sticks" if seen.sticks else "turns"
 
 
-def _mean(seen: Seen, name: str, size: int) -> Floats:
+def _mean(seen: StateResult, name: str, size: int) -> Floats:
     """Mean of an exposure over the starts; NaN where the gear sticks."""
     if not seen.exposures:
         return np.full(size, math.nan)

@@ -9,9 +9,9 @@ import xarray as xr
 
 from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
+from gearidae.runs.execution import interruptible
 from gearidae.scene import Scene
-from gearidae.studies.life_file import require_life
-from gearidae.studies.study_run import interruptible
+from gearidae.studies.products import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -56,7 +56,7 @@ def assess_life(ds: xr.Dataset, chart: xr.Dataset, *, noise: float = 0.0, seed: 
     """
     from gearidae.analysis import assess
 
-    require_life(ds)
+    require(ds, "life")
     if not 0.0 <= noise < np.inf:
         raise SceneError("noise", noise, "must be a speed in rad/s, 0 or more")
     random = np.random.default_rng(seed)

@@ -10,12 +10,12 @@ import math
 from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae import engine
+from gearidae.arrays import Floats
 from gearidae.errors import SolverError
 from gearidae.records import ExposureRows
 from gearidae.runs.estimates import steady_speed
@@ -39,8 +39,6 @@ __all__ = [
     "window_scene",
     "with_exposures",
 ]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _PATIENCE: Final = 4.0
 """Time that each part of a window gets, over that of its cycles at the steady speed."""
@@ -113,14 +111,13 @@ class Window:
     start: engine.Start | None = None
 
 
-def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bool]:
+def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, str]:
     """Run a window.
 
     Parameters
     ----------
     scene : Scene
         From `window_scene`.
-    cycles : Cycles
     backend : str
         As for `simulate`.
 
@@ -128,8 +125,8 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     -------
     solution : Solution
         Without events, and with the exposures of a block.
-    sticks : bool
-        Whether the gear has come to stand, or has not passed the cycles in its time.
+    word : str
+        ``sticks`` if the gear has come to stand, or has not passed the cycles in its time; else ``turns``.
 
     Raises
     ------
@@ -139,8 +136,8 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, bo
     window = steady_window(scene, cycles, backend)
     found = replace(window.solution, events=unsolved("", "").events, checkpoint=None)
     if window.exposures is None:
-        return found, True
-    return with_exposures(found, window.exposures), False
+        return found, "sticks"
+    return with_exposures(found, window.exposures), "turns"
 
 
 def with_exposures(found: Solution, exposures: Floats) -> Solution:
@@ -165,10 +162,6 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
     ----------
     scene, cycles, backend
         As for `run_window`.
-
-    Returns
-    -------
-    Window
 
     Raises
     ------

@@ -8,24 +8,21 @@ from typing import Any, Final
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.studies.distributions import Distribution
 
-__all__ = ["LEVELS", "STEPS_WANTED", "grid_posterior", "sampled_posterior", "summary"]
+__all__ = ["LEVELS", "grid_posterior", "sampled_posterior", "summary"]
 
-Floats = NDArray[np.float64]
 LogLikelihood = Callable[[Floats], Floats]
 """Of points, shape (n, keys); shape (n,)."""
 
 LEVELS: Final = (0.025, 0.16, 0.5, 0.84, 0.975)
-"""Quantiles that are told of each key."""
+"""Quantiles that are given for each key."""
 _TAIL: Final = 2e-4
 """Share of the prior that a grid leaves out at each end."""
 _WALKERS: Final = 16
-STEPS_WANTED: Final = 50
-"""Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
 
 
 def grid_posterior(
@@ -102,18 +99,17 @@ def sampled_posterior(
         Variables.
     steps : int
         Steps of each walker; the first quarter is not kept.
-    seed : int
     log_likelihood : callable
         -inf where a value is not allowed.
     report : callable
-        Told the steps done and their number.
+        Called with the number of finished steps and of all steps.
 
     Returns
     -------
     Dataset
         A variable for each key along ``draw``, and ``log_likelihood``; attributes ``acceptance``, ``steps_kept`` (of
         each walker) and ``autocorrelation_time`` (steps between independent draws, which is found too small where
-        fewer than `STEPS_WANTED` times as many are kept).
+        fewer than 50 times as many are kept).
 
     Raises
     ------
@@ -172,7 +168,6 @@ def summary(
     nodes : ndarray, shape (n, keys)
     weight : ndarray, shape (n,)
         Adds up to 1.
-    keys : sequence of str
     widths : sequence of float, optional
         Of the cells whose centres the nodes are, over which the weight is spread evenly.
 

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.analysis.ringing import characteristic_frequency
 from gearidae.analysis.verdict.codes import sticking, verdict_codes
 from gearidae.archive.keep import read_keep
 from gearidae.archive.select import runs
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.runs.execution import Execution
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.sweep_plan import SweepPlan
-from gearidae.runs.sweeping import kept_beside, run_plan
+from gearidae.runs.sweeping import run_plan
 from gearidae.scene.keys import scene_value
 from gearidae.studies.observations import RING, STICKS, Observation
-from gearidae.studies.study_run import KEPT, Execution
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,9 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Predictor"]
 
-Floats = NDArray[np.float64]
-
-_SAMPLED: Final = (*KEPT, "gear_speed", "events")
+_SAMPLED: Final = ("extremes", "gear_speed", "events")
 _ONE_TIME_AXIS: Final = ("run.duration", "run.samples")
 _AT_A_TIME: Final = 64
 """Runs with samples that are in memory at a time."""
@@ -45,7 +45,7 @@ class Predictor:
     base : Scene
         What the runs have in common.
     keys : tuple of str
-        Whose values are asked for.
+        Whose values are computed.
     observations : tuple of Observation
     how : Execution
         Where the runs are computed; with an archive, they are kept beside it.
@@ -63,16 +63,13 @@ class Predictor:
             raise SceneError("conditions", fixed[0], f"cannot differ beside {RING}: runs share one time axis")
         self._base = base if self._sampled else base.replace({"run.samples": "off"})
         self._keys, self._observations, self._how = keys, observations, how
-        self._keep = read_keep(_SAMPLED if self._sampled else KEPT, self._base)
-        self.kept: KeptRuns | None = kept_beside(
-            how.archive,
-            self._base,
-            how.backend,
-            keep=self._keep,
-            overwrite=how.overwrite,
-            resume=how.resume,
-        )
+        self._keep = read_keep(_SAMPLED if self._sampled else ("extremes",), self._base)
+        self.kept: KeptRuns | None = None
         """Where finished runs are."""
+
+    def store(self, archive: Path) -> KeptRuns:
+        """Make the folder of finished runs beside an archive."""
+        return KeptRuns(archive, self._base, self._how.driver, self._keep)
 
     def figures(self, values: Floats, progress: bool | SweepProgress = False) -> Floats:
         """Predict all observations.
@@ -124,19 +121,8 @@ class Predictor:
             part = list(scenes[first : first + size])
             axis: dict[str, list[Any]] = {"name": [f"run {first + number}" for number in range(len(part))]}
             axis |= {key: [scene_value(scene, key) for scene in part] for key in self._varied}
-            ds, interrupted = run_plan(
-                SweepPlan(self._base, (axis,), part),
-                self.kept,
-                self.kept,
-                self._how.executor,
-                keep=self._keep,
-                backend=self._how.backend,
-                jobs=self._how.jobs,
-                progress=progress,
-            )
-            if interrupted:
-                raise KeyboardInterrupt
-            read += self._read(ds)
+            how = replace(self._how, progress=progress)
+            read += self._read(run_plan(SweepPlan(self._base, (axis,), part), how, self.kept, self._keep))
         return read
 
     def _read(self, ds: xr.Dataset) -> list[dict[str, float]]:

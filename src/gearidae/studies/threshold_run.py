@@ -62,7 +62,7 @@ class ThresholdRun:
         return cls(value, found.stick_exits, found.stick_time, solution.reached or 0.0)
 
 
-def run_until(scene: Scene, exits: int, backend: str) -> Solution:
+def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
     """Run a scene until the gear has stuck or passed so many exits, without its events.
 
     Parameters
@@ -70,7 +70,6 @@ def run_until(scene: Scene, exits: int, backend: str) -> Solution:
     scene : Scene
         With the time that a gear without adhesion would take, and some more. A gear that neither sticks in it nor
         passes the exits gets more time.
-    exits : int
     backend : str
         As for `simulate`.
     """
@@ -80,7 +79,7 @@ def run_until(scene: Scene, exits: int, backend: str) -> Solution:
         found = solution.extremes
         slow = found is not None and math.isnan(found.stick_time) and found.mesh_exits < exits
         if not slow or solution.status != "finished" or duration >= longest:
-            return replace(solution, events=unsolved("", "").events)
+            return replace(solution, events=unsolved("", "").events), ""
         duration *= 2.0
 
 

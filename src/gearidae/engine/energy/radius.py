@@ -14,17 +14,15 @@ elastic bodies store besides, B per length, adds :math:`-B\,d\ell/dx_2`.
 
 from __future__ import annotations
 
-import math
-
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.energy import nodes_energies, nodes_length_force, nodes_losses
 from gearidae.engine.energy.contacts import free_energies, stored_energies
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import NONE, Shares, note_shares, noted_shares, path_position, weighed
 from gearidae.engine.pairs.lengths import length_and_rates, weighed_length
-from gearidae.engine.pairs.tooth_pairs import history_of
+from gearidae.engine.pairs.tooth_pairs import history_of, pairs_on_path
 
-__all__ = ["pairs_on_path", "radius_force", "radius_power"]
+__all__ = ["radius_force", "radius_power"]
 
 
 @compiled
@@ -82,17 +80,6 @@ def _elastic(
 
 
 @compiled
-def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
-    """First and last number of a flank's pairs on the path of contact.
-
-    The last two mesh marks tell, so that a step that ends at a mark sees the side it comes from.
-    """
-    between = 0.5 * (m.state.mark_low + m.state.mark_high)
-    lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
-    return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
-
-
-@compiled
 def radius_force(
     m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float, rate: float
 ) -> tuple[float, float, float]:
@@ -100,7 +87,6 @@ def radius_force(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray

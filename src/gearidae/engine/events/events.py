@@ -13,6 +13,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import middle_gap
+from gearidae.engine.events.asperity_events import asperity_guard
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import pair_guard
@@ -57,6 +58,9 @@ def guard(m: Model, t: float, y: Floats) -> float:
             least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
     if m.state.near[DRIVE] == 0:
         least = min(least, nearest_gap(m, DRIVE, y) - m.scene.cutoff)
+    if m.scene.population.flanks != 0:
+        least = min(least, asperity_guard(m, y))
+        return least if least != 0.0 else _TINY
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -81,7 +85,7 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
         Time over tau; `accept` has been there.
     y : ndarray, shape (n,)
         State there; set to rest where dry resistance takes hold.
-    events : ndarray, shape (n, 5)
+    events : ndarray, shape (n, EVENT_NUMBERS)
         See `gearidae.engine.events.record`.
     count : int
         Events already there.
@@ -98,6 +102,7 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
     restart, crossed = False, crossed_mark(m, y)
     if crossed:
         count = cross_mark(m, t, y, events, count)
+        m.state.cycle_events = 0
         if m.scene.nodes > 0 and _light(m):
             m.state.light = 1
         # the force of a pair there jumps, or it would part unseen

@@ -7,9 +7,10 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.histories import follow_nodes, init_nodes
 from gearidae.engine.elastic.nodes import middle_gap
+from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, note_slip, stick_or_slip
 from gearidae.engine.events.mesh_marks import set_marks
-from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import arm_stop
 from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
@@ -20,6 +21,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_touching,
     set_joined,
 )
+from gearidae.engine.population.candidates import forget
 
 __all__ = ["accept", "begin"]
 
@@ -53,7 +55,7 @@ def accept(m: Model, t: float, y: Floats) -> None:
         h.gap, h.gap_rate = gap, rate
         if gap < m.scene.lowest_gap:
             m.state.bound_exceeded = 1
-        if h.direction == 0.0:
+        if h.direction == 0.0 and m.scene.population.flanks == 0:
             h.direction = float(np.sign(rate))
 
 
@@ -64,6 +66,7 @@ def clear_history(m: Model, coast: int) -> None:
     for k in range(m.scene.slots):
         m.state.history[coast * m.scene.slots + k].pair = EMPTY
         m.state.history[coast * m.scene.slots + k].lag = 0.0
+        forget(m, coast * m.scene.slots + k)
 
 
 @compiled
@@ -72,7 +75,8 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
     h = m.state.history[k]
     if h.pair != pair:
         h.pair = pair
-        h.in_contact = 1 if gap < m.scene.contact_gap else 0
+        h.in_contact = 1 if gap < m.scene.contact_gap and m.scene.population.flanks == 0 else 0
+        forget(m, k)
         for material in range(MATERIALS):
             if m.scene.material[material].stretch_limit > 0.0:
                 set_joined(m, k, material, middle)
@@ -93,5 +97,9 @@ def begin(m: Model, t: float, y: Floats) -> None:
     accept(m, t, y)
     if m.scene.kind == GEARS:
         set_marks(m, y[PHASE])
-        if m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0:  # nothing holds it from the start
-            stick_or_slip(m, t, y, np.empty((EVENTS_AT_ONCE, 5)), 0)
+    if m.scene.population.flanks != 0:
+        join_at_start(m, y)
+    if (
+        m.scene.dry != 0 and m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0
+    ):  # nothing holds it from the start
+        stick_or_slip(m, t, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)

@@ -7,8 +7,10 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model
 
-__all__ = ["EVENTS_AT_ONCE", "record"]
+__all__ = ["EVENTS_AT_ONCE", "EVENT_NUMBERS", "record", "record_asperity"]
 
+EVENT_NUMBERS: Final = 6
+"""Numbers of an event."""
 EVENTS_AT_ONCE: Final = 8 * 64 + 64
 """More than can be recorded at one accepted time: four for each pair, and those of mesh, gear and schedules."""
 
@@ -21,10 +23,9 @@ def record(
 
     Parameters
     ----------
-    m : Model
-    events : ndarray, shape (n, 5)
-        Time [s], kind, pair, flank, gap rate [m/s]. Where it is full nothing is written; drivers keep `EVENTS_AT_ONCE`
-        free before they look for events.
+    events : ndarray, shape (n, EVENT_NUMBERS)
+        Time [s], kind, pair, flank, gap rate [m/s], asperity or -1. Where it is full nothing is written;
+        drivers keep `EVENTS_AT_ONCE` free before they look for events.
     count : int
         Events already there.
     t, kind, pair, flank, rate : float
@@ -37,4 +38,17 @@ def record(
     events[count, 2] = pair + (m.state.turns if flank >= 0.0 else 0.0)
     events[count, 3] = flank
     events[count, 4] = rate * m.scene.length_unit / m.scene.time_unit
+    events[count, 5] = -1.0
     return count + 1
+
+
+@compiled
+def record_asperity(
+    m: Model, events: Floats, count: int, what: tuple[float, float, int, int, float], asperity: float
+) -> int:
+    """Write an event of a single asperity, given by its place among those of its flank, likewise."""
+    t, kind, pair, flank, rate = what
+    after = record(m, events, count, t, kind, pair, flank, rate)
+    if after > count:
+        events[count, 5] = asperity
+    return after

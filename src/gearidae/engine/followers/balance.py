@@ -124,7 +124,6 @@ def step(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y, yp : ndarray, shape (n,)
@@ -158,6 +157,8 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
+    if m.scene.population.flanks != 0:  # forces jump
+        return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
         return False
     if crossed_mark(m, y) or (m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0):
@@ -180,7 +181,6 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray, shape (n,)

@@ -14,12 +14,11 @@ from __future__ import annotations
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import joining_losses
-from gearidae.engine.energy.radius import pairs_on_path
 from gearidae.engine.formulas.quadrature import integral
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import NONE, WHOLE, Shares, path_position, shares_of, weighed
 from gearidae.engine.pairs.lengths import weighed_length
-from gearidae.engine.pairs.tooth_pairs import contact_length, history_of
+from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pairs_on_path
 
 __all__ = ["begin", "event", "joining_lag", "resume", "step"]
 

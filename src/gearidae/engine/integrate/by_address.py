@@ -1,4 +1,4 @@
-"""The compiled functions that are called from Python at every step, told where the model lies and not the model.
+"""Compiled functions that Python calls at every step, with the address of the model in place of the model.
 
 Numba needs some 50 us to look at the three records of a model that is handed over from Python, and a fifth of one for
 a number. Between compiled functions a model costs nothing.
@@ -7,6 +7,7 @@ a number. Between compiled functions a model costs nothing.
 from __future__ import annotations
 
 from gearidae.compiled import compiled
+from gearidae.engine.events.asperity_events import first_dip, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.integrate.epilogue import finish_step
 from gearidae.engine.model.located import model_at
@@ -16,8 +17,10 @@ from gearidae.engine.motion.residual import jacobian, residual
 
 __all__ = [
     "finish_step_at",
+    "first_dip_at",
     "guard_at",
     "jacobian_at",
+    "note_step_start_at",
     "observe_at",
     "residual_at",
 ]
@@ -39,6 +42,22 @@ def jacobian_at(place: int, t: float, cj: float, y: Floats, out: Floats) -> None
 def guard_at(place: int, t: float, y: Floats) -> float:
     """`gearidae.engine.events.events.guard`."""
     return guard(model_at(place), t, y)
+
+
+@compiled
+def note_step_start_at(place: int, t: float, y: Floats) -> None:
+    """`gearidae.engine.events.asperity_events.note_step_start`, with the guard asked there."""
+    m = model_at(place)
+    guard(m, t, y)
+    note_step_start(m, y)
+
+
+@compiled
+def first_dip_at(place: int, t: float, y: Floats, h: float) -> float:
+    """`gearidae.engine.events.asperity_events.first_dip`, with the guard asked at the end of the step."""
+    m = model_at(place)
+    guard(m, t, y)
+    return first_dip(m, y, h)
 
 
 @compiled

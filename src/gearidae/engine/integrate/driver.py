@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearidae.compiled import compiled
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
 from gearidae.records import Block, Ending, EnergyBalance, Extremes, Statistics
 
@@ -20,6 +21,7 @@ __all__ = [
     "CHATTER",
     "CONVERGENCE_FAILURES_HIGH",
     "LIGHT",
+    "MANY_EVENTS",
     "MODEL_CHANGES",
     "Block",
     "Ending",
@@ -39,16 +41,16 @@ BLOCK_EVENTS = 16_384
 BLOCK_STEPS = 50_000
 """Steps after which a driver comes back to Python in any case."""
 BLOCK_SECONDS = 0.2
-"""Wall time after which it should: progress is shown and Ctrl-C is heeded between blocks."""
+"""Wall time after which it should: progress and Ctrl-C are handled between blocks."""
 CHECKPOINT_STEPS = 200_000
 """Steps between checkpoints. Every run restarts IDA there, so that a resumed run is equal to an uninterrupted one."""
 
 
 CONVERGENCE_FAILURES_HIGH = 40
 """Failures of Newton's iteration in one step, each of which quarters it: a step out of long flight lands in a tooth."""
-CHATTER, BOUND_EXCEEDED, LIGHT = 1, 2, 3
+CHATTER, BOUND_EXCEEDED, LIGHT, MANY_EVENTS = 1, 2, 3, 4
 """What a driver may end a run with of its own: crowded events, a gap beyond the model's bound, contacts of elastic
-bodies that have been light for long."""
+bodies that have been light for long, more events of asperities than can be followed."""
 MODEL_CHANGES: Final = (BOUND_EXCEEDED, LIGHT)
 """Those from which a run goes on, with another contact model."""
 
@@ -58,6 +60,7 @@ _FLAGS = {
     -3: Ending.STEP_UNDERFLOW,
     -4: Ending.NO_CONVERGENCE,
     CHATTER: Ending.CHATTER,
+    MANY_EVENTS: Ending.MANY_EVENTS,
     LIGHT: Ending.LIGHT,
 }
 
@@ -82,7 +85,7 @@ class Output(NamedTuple):
     Attributes
     ----------
     rows : ndarray, shape (BLOCK_ROWS, columns)
-    events : ndarray, shape (BLOCK_EVENTS, 5)
+    events : ndarray, shape (BLOCK_EVENTS, EVENT_NUMBERS)
     """
 
     rows: Floats
@@ -91,7 +94,7 @@ class Output(NamedTuple):
     @classmethod
     def empty(cls, columns: int) -> Output:
         """Room for a block."""
-        return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, 5)))
+        return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, EVENT_NUMBERS)))
 
     def block(
         self,
@@ -100,11 +103,10 @@ class Output(NamedTuple):
         checkpoint: Floats | None = None,
         kept: tuple[EnergyBalance | None, Extremes | None] = (None, None),
     ) -> Block:
-        """Hand out what there is, and begin anew.
+        """Return the data so far as a block, and begin a new one.
 
         Parameters
         ----------
-        m : Model
         time : float
             Reached, over tau.
         checkpoint

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
+from gearidae.engine.events.asperity_events import flip_asperities, record_flips
 from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
@@ -11,11 +12,11 @@ from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
 from gearidae.engine.followers import in_turn as followers
-from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT
+from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
-from gearidae.engine.pairs.tooth_pairs import history_of, in_flight, pair_at, pairs_near
+from gearidae.engine.pairs.tooth_pairs import NO_PAIRS, history_of, in_flight, pair_at, pairs_near
 
 __all__ = ["finish_step", "handle", "has_room", "prepare_restart", "prepare_start"]
 
@@ -42,7 +43,7 @@ def finish_step(
         Work space.
     flag : int
         0, `STOP` or `ROOT`.
-    events : ndarray, shape (n, 5)
+    events : ndarray, shape (n, EVENT_NUMBERS)
         Of the block; see `has_room`.
 
     Returns
@@ -88,7 +89,7 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
     """
     driver, joined = m.work.driver, False
     count, crossed, restart = handle_mesh(m, t, y, events, driver.events)
-    reach = pairs_near(m, y)
+    reach = pairs_near(m, y) if m.scene.population.flanks == 0 else NO_PAIRS
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
         k = history_of(m, coast, pair)
@@ -98,6 +99,11 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
                 joined |= found.turns and m.state.history[k].direction < 0.0
                 followers.event(m, t, y, yp, found)
                 count = take_event(m, t, y, found, events, count)
+    if m.scene.population.flanks != 0:
+        restart |= flip_asperities(m, y)
+        count, too_many = record_flips(m, t, events, count)
+        if too_many:
+            driver.error = MANY_EVENTS
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
     if chatters(m, t):

@@ -8,6 +8,7 @@ itself, because the API has no dense output.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -20,8 +21,10 @@ from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.integrate.by_address import (
     finish_step_at,
+    first_dip_at,
     guard_at,
     jacobian_at,
+    note_step_start_at,
     observe_at,
     residual_at,
 )
@@ -81,7 +84,7 @@ def run(
     handed_out, yp = time.monotonic(), np.zeros_like(y)
     while driver.done == 0 and driver.error == 0:
         flag, *reached = solver.step(y)
-        if driver.error != 0:  # what there is belongs to the last accepted time
+        if driver.error != 0:  # the data belong to the last accepted time
             break
         y, yp = reached
         yield from _samples(solver, out, y)
@@ -144,6 +147,7 @@ class _Solver:
         self._last: Any = None
         self._counted = (0, 0)  # of its evaluations, what the run's counters already have
         self.ending: Ending | None = None
+        self._look = math.inf  # time of a dip to stop at
         self.trail = _Trail(self._driver.time, y, y)
 
     def start(self, y: Floats) -> None:
@@ -153,9 +157,31 @@ class _Solver:
         stop = next_stop(m)
         self._make(y.size, first_step(m, t, y, yp, stop - t))
         self._ida.init_step(t, y, yp)
-        self._stop = stop
+        self._stop, self._look = stop, math.inf
         self._last, self._counted = None, (0, 0)
         self.trail = _Trail(t, y, yp)
+        self._note(y)
+
+    def _note(self, y: Floats) -> None:
+        """Note the asperities at a state from which the next step goes on."""
+        if self.m.scene.population.flanks > 0:
+            note_step_start_at(self.located.place, float(self._driver.time), y)
+
+    def _dip(self, t: float, y: Floats) -> float:
+        """Time in the step up to t at which an asperity dips below its guard and comes back; infinite if none does."""
+        before = float(self._driver.time)
+        if self.m.scene.population.flanks == 0 or t <= before:
+            return math.inf
+        share = first_dip_at(self.located.place, t, y, t - before)
+        return before + share * (t - before) if share > 0.0 else math.inf
+
+    def _look_at(self, dip: float) -> None:
+        """Take the last step anew, and stop where an asperity dips: its root is then found."""
+        t, y, yp = self.trail.last
+        self.count()
+        self._make(y.size, 0.25 * (dip - t))
+        self._ida.init_step(t, y, yp)
+        self._last, self._counted, self._look = None, (0, 0), dip
 
     def _make(self, n: int, step: float) -> None:
         m, place = self.m, self.located.place
@@ -201,7 +227,7 @@ class _Solver:
         driver = self._driver
         driver.since += 1
         try:
-            result = self._ida.step(self.m.scene.end, method="onestep", tstop=self._stop)
+            result = self._ida.step(self.m.scene.end, method="onestep", tstop=min(self._stop, self._look))
         except KeyError as error:  # a status of SUNDIALS that scikit-sundae has no name for
             driver.error = min(int(error.args[0]), -1)
             return int(driver.error), y, y
@@ -211,7 +237,16 @@ class _Solver:
             driver.error = flag if flag < 0 else -1
             self.ending = None if flag < 0 else Ending.NOT_FINITE
             return flag, result.y, result.yp
+        dip = self._dip(result.t, result.y.copy()) if self._look == math.inf else math.inf
+        if dip < math.inf:
+            self._look_at(dip)
+            return self.step(y)
+        if flag == STOP and result.t == self._look < self._stop:
+            flag, self._look = 0, math.inf
         driver.time = result.t
+        if driver.time >= self._look:
+            self._look = math.inf
+        self._note(result.y.copy())
         self.m.state.progress.steps += flag != ROOT
         self.trail.add(result.t, result.y, result.yp)
         if flag == ROOT:
@@ -241,6 +276,10 @@ class _Trail:
 
     def __init__(self, t: float, y: Floats, yp: Floats) -> None:
         self._points = [(t, y.copy(), yp.copy())]
+
+    @property
+    def last(self) -> tuple[float, Floats, Floats]:
+        return self._points[-1]
 
     def add(self, t: float, y: Floats, yp: Floats) -> None:
         self._points = [*self._points[1 - _POINTS :], (t, y.copy(), yp.copy())]

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.engine.events.asperity_events import first_dip, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.formulas import adams
 from gearidae.engine.model.state import Floats, Model
@@ -31,6 +32,7 @@ __all__ = ["SHARPNESS", "Arrays", "Stepper", "next_time", "start_search", "state
 
 SHARPNESS: Final = 0.01
 """Of the relative tolerance; a tenth of it changes no number of steps beyond scatter, ten times as much some."""
+DIPS: Final = 16  # of asperities that are looked for in an interval
 TRIES: Final = 3  # by which the interval has to be halved, or is halved
 
 _ROUNDING: Final = 100.0 * float(np.finfo(float).eps)
@@ -56,7 +58,6 @@ class Stepper(NamedTuple):
     ----------
     handles : ndarray of int64
         Of SUNDIALS' objects, see `gearidae.engine.sundials.ida_memory`.
-    m : Model
     y, yp, dky, spare : ndarray, shape (n,)
         State and rates at the time reached, and work space.
     clock : ndarray, shape (1,)
@@ -79,12 +80,20 @@ def _look(s: Stepper, t: float) -> float:
     return guard(s.m, t, s.y)
 
 
+@compiled(inline=True)
+def _begin_interval(s: Stepper, low: float) -> None:
+    """Search from the time reached on, where the guard is `low`."""
+    search = s.m.work.search
+    search.low, search.low_time = low, s.clock[0]
+    if s.m.scene.population.flanks != 0:
+        note_step_start(s.m, s.y)
+
+
 @compiled
 def start_search(s: Stepper) -> None:
     """Begin at a time at which IDA has been started."""
-    search = s.m.work.search
-    search.low, search.low_time = _look(s, s.clock[0]), s.clock[0]
-    search.rest = search.stop = 0
+    _begin_interval(s, _look(s, s.clock[0]))
+    s.m.work.search.rest = s.m.work.search.stop = 0
 
 
 @compiled(inline=True)
@@ -103,7 +112,7 @@ def state_at(s: Stepper, t: float, roughly: bool) -> None:
 
 @compiled(inline=True)
 def next_time(s: Stepper) -> int:
-    """Go on to the end of the next step, a stop or a root, whichever comes first.
+    """Advance to the first of the end of the next step, a stop and a root.
 
     Returns
     -------
@@ -112,7 +121,7 @@ def next_time(s: Stepper) -> int:
     """
     search = s.m.work.search
     if search.rest != 0:
-        search.low, search.low_time = _look(s, s.clock[0]), s.clock[0]
+        _begin_interval(s, _look(s, s.clock[0]))
         if abs(search.step_end - s.clock[0]) <= _rounding(s):
             search.rest = 0
     rest = search.rest != 0
@@ -125,9 +134,11 @@ def next_time(s: Stepper) -> int:
         flag = _step(s)
         if flag < 0:
             return flag
-    high = _look(s, s.clock[0])
+    high, end = _look(s, s.clock[0]), s.clock[0]
+    if s.m.scene.population.flanks != 0 and search.low > 0.0 < high:
+        high = _dip(s, high)
     if search.low > 0.0 > high:
-        search.step_end = s.clock[0]
+        search.step_end = end
         search.rest = 1
         if search.as_ida != 0:
             _find_as_ida(s, high)
@@ -139,12 +150,48 @@ def next_time(s: Stepper) -> int:
                     s.clock[0] = search.step_end
                     state_at(s, search.step_end, False)
                     _find(s, high, False)
+        if s.m.scene.population.flanks != 0:
+            _find_dips(s)
         return sun.IDA_ROOT_RETURN
-    search.low, search.low_time = high, s.clock[0]
+    _begin_interval(s, high)
     search.rest = 0
     if search.stop != 0 and not rest:
         return _stop(s)
     return 0
+
+
+@compiled
+def _dip(s: Stepper, high: float) -> float:
+    """Look where an asperity may dip below its guard within the interval; go there if it does.
+
+    Returns
+    -------
+    float
+        The guard at the time reached, which is `high` at the end of the interval unless there is a dip.
+    """
+    end, low = s.clock[0], s.m.work.search.low_time
+    share = first_dip(s.m, s.y, end - low)
+    if share <= 0.0:
+        return high
+    s.clock[0] = low + share * (end - low)
+    state_at(s, s.clock[0], False)
+    value = _look(s, s.clock[0])
+    if value < 0.0:
+        return value
+    s.clock[0] = end
+    state_at(s, end, False)
+    return _look(s, end)
+
+
+@compiled
+def _find_dips(s: Stepper) -> None:
+    """Look for dips before a root that has been found, and find the first of them instead."""
+    for _ in range(DIPS):
+        root = s.clock[0]
+        value = _dip(s, 1.0)
+        if s.clock[0] == root:
+            return
+        _find(s, value, True)
 
 
 @compiled(inline=True)

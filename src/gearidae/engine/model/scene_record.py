@@ -20,6 +20,7 @@ __all__ = [
     "COVERAGE",
     "FOLLOW",
     "MATERIAL",
+    "POPULATION",
     "SCENE",
     "SCHEDULE",
     "TORQUE",
@@ -33,7 +34,6 @@ MATERIAL: Final = record_type(
     ("table_at", INT),  # force law among the tables [index]
     ("energy_at", INT),  # stored energy among the tables [index]
     ("number_at", INT),  # number of asperities above a height, among the tables [index]
-    ("table_count", INT),  # numbers in each of the first two [1]
 )
 
 COVERAGE: Final = record_type(  # of one side's flanks
@@ -61,6 +61,29 @@ SCHEDULE: Final = record_type(
     ("knot_count", INT),  # [1]
     ("knots_at", INT),  # time and value of each, then coefficients of the pieces of a cubic one [index]
     ("cubic", INT),  # 1 for monotone cubics between the knots, 0 for straight lines
+)
+
+POPULATION: Final = record_type(
+    (
+        "flanks",
+        INT,
+    ),  # of the pinion, both sides of each tooth, or one of a roller; 0 for the mean of many surfaces [1]
+    (
+        "starts_at",
+        INT,
+    ),  # of each level and flank the first asperity, and of each level one past the last [index]
+    ("listed_at", INT),  # asperities of the levels, one level after the other, among the tables [index]
+    ("arcs_at", INT),  # places along the flank of all asperities, among the tables [index]
+    ("heights_at", INT),  # their heights among the tables [index]
+    ("kinds_at", INT),  # where the numbers of their kinds are, among the tables [index]
+    ("highest", REAL),  # of their heights [sigma]
+    ("join", REAL),  # farthest distance at which any joins [sigma]
+    ("steepness", REAL),  # base pitch, or a roller's radius, over sigma [1]
+    ("arc_scale", REAL),  # arc over the squared radius of curvature [1/pb]
+    ("capacity", INT),  # candidates of a pair at most [1]
+    ("rows_at", INT),  # candidates of all histories among the rows [index]
+    ("quiet", INT),  # 1 where events of single asperities are not recorded
+    ("digest", REAL, (4,)),  # of all asperities [1]
 )
 
 FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
@@ -112,6 +135,7 @@ SCENE: Final = record_type(
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
     ("loading_at", INT),  # loading branch of all materials, or with `by_place` of each, in forces [index]
     ("potential_at", INT),  # potentials of these branches [index]
+    ("population", POPULATION),  # real asperities on the flanks
     ("slots", INT),  # histories per flank in use, a power of two [1]
     ("histories", INT),  # histories of all flanks [1]
     ("branch_length", INT),  # numbers of a branch of the force law or stored energy; 0 if none is kept [1]

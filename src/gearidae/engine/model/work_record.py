@@ -208,6 +208,22 @@ SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminat
     ("before_rate", REAL),  # of the gap [sigma/tau]
 )
 
+CONTACT: Final = record_type(  # of a population: the candidates of a pair
+    ("known", INT),  # 1 where they have been chosen for the pair of the history
+    ("gap", REAL),  # down to which they hold [sigma]
+    ("low", REAL),  # place along the path from which they hold [pb]
+    ("high", REAL),  # place up to which they hold [pb]
+    ("count", INT),  # [1]
+    ("joined", INT),  # those that are joined [1]
+    ("flips", INT),  # asperities that have joined or detached at the present root [1]
+    ("started", INT),  # 1 where the pair was there when the step began
+    ("start_moves", INT),  # 1 where it was on the path of contact then
+    ("start_gap", REAL),  # its gap then [sigma]
+    ("start_rate", REAL),  # its gap rate then [sigma/tau]
+    ("start_place", REAL),  # its place along the path then [pb]
+    ("start_place_rate", REAL),  # the rate of that [pb/tau]
+)
+
 WORK: Final = record_type(
     ("quadrature", QUADRATURE),  # of the energy balance
     ("resistance", RESISTANCE),  # of the energy balance
@@ -219,8 +235,9 @@ WORK: Final = record_type(
         "shares",
         REAL,
         (2 * SLOTS_HIGH, MATERIALS),
-    ),  # by tooth and place, of elastic contacts as last asked for [1]
+    ),  # by tooth and place, of elastic contacts as last computed [1]
     ("settling", SETTLING, (2 * SLOTS_HIGH,)),  # of elastic contacts
+    ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
     ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),  # of the integrator
     ("search", SEARCH),  # of the root search

@@ -11,8 +11,9 @@ from gearidae.engine.motion.residual import is_stuck, mesh_forces, resisting_for
 from gearidae.engine.motion.separation import separation
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
+from gearidae.engine.population.forces import asperities_joined
 from gearidae.engine.torques.torque import torque_force
-from gearidae.records.columns import GEAR, ROLLER
+from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
 
 __all__ = ["observe"]
 
@@ -39,7 +40,9 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         row[ROLLER.height] = u * length
         row[ROLLER.speed] = v * speed
         row[ROLLER.force] = force * m.scene.force_unit
-        if row.size > ROLLER.min_separation:
+        if m.scene.population.flanks != 0:
+            row[ROLLER_POPULATION.asperities_in_contact] = asperities_joined(m)[0]
+        elif row.size > ROLLER.min_separation:
             row[ROLLER.min_separation] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
@@ -74,5 +77,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)
-    if row.size > GEAR.min_separation:
+    if m.scene.population.flanks != 0:
+        row[GEAR_POPULATION.asperities_in_contact], row[GEAR.pairs_in_contact] = asperities_joined(m)
+    elif row.size > GEAR.min_separation:
         row[GEAR.min_separation] = separation(m, y) * length

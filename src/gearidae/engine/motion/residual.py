@@ -33,6 +33,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_touching,
     static_error,
 )
+from gearidae.engine.population.forces import mesh_sums, roller_sum
 from gearidae.engine.torques.torque import torque_force
 
 __all__ = [
@@ -54,6 +55,8 @@ __all__ = [
 @compiled_once(SOLVER)
 def roller_force(m: Model, t: float, y: Floats, settling: bool) -> tuple[float, float]:
     """Force on a roller and its slope in the height, scaled; `settling` as for `mesh_forces`."""
+    if m.scene.population.flanks != 0:
+        return roller_sum(m, y)
     height, speed = y[U], y[V]
     elastic = m.scene.nodes > 0
     if elastic:
@@ -76,7 +79,6 @@ def mesh_forces(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray
@@ -92,6 +94,8 @@ def mesh_forces(
     force_u, force_phase, relief_u, relief_phase : float
         Their partial derivatives in u and phase.
     """
+    if m.scene.population.flanks != 0:
+        return mesh_sums(m, y)
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
     u, v, phase, w = y[U], y[V], y[PHASE], y[W]
     cutoff = m.scene.cutoff
@@ -278,7 +282,6 @@ def residual(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y, yp, out : ndarray, shape (4,) or (2,), and the nodes
@@ -299,7 +302,6 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
 
     Parameters
     ----------
-    m : Model
     t, cj : float
         Time over tau, and IDA's leading coefficient.
     y : ndarray

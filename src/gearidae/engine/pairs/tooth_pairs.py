@@ -12,7 +12,7 @@ tables are read, and nowhere else.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap, joined_height
@@ -40,6 +40,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.pairs.coverage import Shares, loading_of
 
 __all__ = [
+    "NO_PAIRS",
     "Reach",
     "all_pairs",
     "contact_length",
@@ -52,6 +53,7 @@ __all__ = [
     "pair_force",
     "pair_gap",
     "pairs_near",
+    "pairs_on_path",
     "pairs_touching",
     "set_joined",
     "static_error",
@@ -79,9 +81,12 @@ class Reach(NamedTuple):
     total: int
 
 
+NO_PAIRS: Final = Reach(0, 0, 0, 0)
+
+
 @compiled(inline=True)
 def _reach(m: Model, phase: float, drive: bool, coast: bool) -> Reach:
-    """Pairs within reach of the flanks asked for."""
+    """Pairs within reach of the given flanks."""
     s = m.scene
     if s.kind == ROLLER:
         count = 1 if drive else 0
@@ -134,6 +139,17 @@ def history_of(m: Model, coast: int, pair: int) -> int:
     """Index of a pair's history; they go round, with at least as many of them as pairs can be within reach."""
     slots = m.scene.slots
     return coast * slots + (pair & (slots - 1))
+
+
+@compiled
+def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
+    """First and last number of a flank's pairs on the path of contact.
+
+    The last two mesh marks tell, so that a step that ends at a mark sees the side it comes from.
+    """
+    between = 0.5 * (m.state.mark_low + m.state.mark_high)
+    lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
+    return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
 # -- kinematics ------------------------------------------------------------------------------------------------------
@@ -248,7 +264,7 @@ def set_joined(m: Model, k: int, material: int, joined: float) -> None:
 def set_branches(m: Model, k: int, material: int) -> None:
     """Work out the branch of a history's joined height.
 
-    A law that is integrated when asked for keeps no branches, nor does an elastic contact. That of the stored energy
+    A law that is integrated on demand keeps no branches, nor does an elastic contact. That of the stored energy
     waits until the energy balance asks for it.
     """
     own = m.scene.material[material]

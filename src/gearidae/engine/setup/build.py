@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from gearidae.contact.kernels.law import GAP_LOW
-from gearidae.engine.compiling import ELASTIC, EXPOSURES, SOLVER, make_part_ready
+from gearidae.engine.compiling import ELASTIC, EXPOSURES, POPULATION, SOLVER, make_part_ready
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
@@ -30,6 +30,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
 from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
+from gearidae.engine.setup.build_population import add_population, population_rows
 from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop
 from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
@@ -62,7 +63,6 @@ def make_problem(
 
     Parameters
     ----------
-    scene : Scene
     nodes : Nodes, optional
         Layout of an elastic contact's nodes, in place of the one that is estimated.
     digest : tuple of four floats, optional
@@ -130,7 +130,11 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     s.rest_speed = 10.0 * scene.run.rtol
     widest = math.sqrt(0.25 / float(s.sum_curvature))
     unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
-    add_contact(s, tables, scene, gears.face_width, unit_length, widest)
+    if scene.contact.model == "population":
+        s.radius_force = 1  # the asperities' own, which pays for all that changes along the path
+        add_population(s, tables, scene, float(1.0 / s.phase_rate), math.pi / gears.pinion_teeth)
+    else:
+        add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
@@ -173,7 +177,10 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     energy = 0.5 * roller.mass * roller.speed**2
     bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
     grid = choose_model(s, scene, bounds, nodes)
-    add_contact(s, tables, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
+    if scene.contact.model == "population":
+        add_population(s, tables, scene, roller.radius / sigma, 0.0)
+    else:
+        add_contact(s, tables, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
     s.slots = s.histories = 1
     set_run(s, tables, scene, set(), begin.time)
     add_nodes(s, tables, grid)
@@ -275,6 +282,7 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.point_branches_at = rows.add(np.zeros(branches))
     s.scratch_at = rows.add(np.zeros(scratch_size(nodes) if nodes else 0))
     s.trial_at = rows.add(np.zeros(int(s.states) if nodes else 0))
+    s.population.rows_at = rows.add(population_rows(s))
     return blank_model(s, tables.whole(), rows.size)
 
 
@@ -299,12 +307,14 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         settle_nodes(m, 0.0, y)
     if s.bins > 0:
         make_part_ready(EXPOSURES)
+    if s.population.flanks > 0:
+        make_part_ready(POPULATION)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
     if s.follow.balance != 0:
         open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]
-    columns = sampled_columns(roller=scene.roller is not None, elastic=scene.contact.model == "elastic")
+    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
     return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
 
 
@@ -314,5 +324,6 @@ def _skipped(m: Model, scene: Scene) -> dict[str, int]:
     shares = {one.name: one.share for one in scene.materials()}
     for own, name in zip(m.scene.material, MATERIAL_NAMES, strict=True):
         skipped[f"{name}_surface"] = int(shares.get(name, 0.0) == 0.0)
-        skipped[f"{name}_hysteresis"] = int(own.stretch_limit == 0.0)
+        without = own.stretch_limit == 0.0 and m.scene.population.flanks == 0
+        skipped[f"{name}_hysteresis"] = int(without or shares.get(name, 0.0) == 0.0)
     return skipped

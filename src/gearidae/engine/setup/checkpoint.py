@@ -1,7 +1,8 @@
 """Checkpoints: the state of a run as one vector of words, taken back once it has been checked.
 
 A checkpoint holds state only: a header (layout, scene, contact model, sizes), the record ``STATE``, the state vector,
-of an elastic contact what its nodes remember, and the exposures of the flanks where they are kept. Constants, offsets
+of an elastic contact what its nodes remember, the exposures of the flanks where they are kept, and of a population the
+asperities that are joined, with a digest of all. Constants, offsets
 and addresses are made from the scene by the process that resumes, never read, and so is what follows from the state.
 What compiled code uses as an index, a count or a flag is bounded (`gearidae.engine.setup.checkpoint_checks`) before
 anything runs.
@@ -18,6 +19,7 @@ from gearidae.engine.elastic.kept_rows import KEPT_ROWS, kept_rows, restore_rows
 from gearidae.engine.followers.exposures.bins import exposures_of
 from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, copied, empty_history
 from gearidae.engine.setup.checkpoint_checks import check, refused
+from gearidae.engine.setup.kept_asperities import asperity_words, joined_in, kept_asperities
 
 __all__ = [
     "HEADER",
@@ -52,7 +54,6 @@ def pack(m: Model, digest: tuple[float, ...], depth: int, y: Floats) -> Floats:
 
     Parameters
     ----------
-    m : Model
     digest : tuple of four floats
         See `scene_digest`.
     depth : int
@@ -63,7 +64,7 @@ def pack(m: Model, digest: tuple[float, ...], depth: int, y: Floats) -> Floats:
     state = copied(m.state)
     histories = state.history
     histories[histories["pair"] == EMPTY] = _NOTHING
-    rows = np.concatenate([kept_rows(m), exposures_of(m)])
+    rows = np.concatenate([kept_rows(m), exposures_of(m), kept_asperities(m)])
     header = [float(_LAYOUT), *digest, float(depth), float(y.size), float(rows.size)]
     return np.concatenate([header, np.frombuffer(state.tobytes(), np.float64), y, rows])
 
@@ -88,7 +89,7 @@ def depth_of(checkpoint: Floats, digest: tuple[float, ...]) -> int:
     return int(depth)
 
 
-def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
+def unpack(m: Model, checkpoint: Floats, y: Floats) -> Floats:
     """Take a checkpoint back, once its bounds have been checked.
 
     Parameters
@@ -100,13 +101,20 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
     y : ndarray, shape (n,)
         Set to the state vector.
 
+    Returns
+    -------
+    ndarray
+        Joined asperities of a population, which `restore_asperities` takes.
+
     Raises
     ------
     SceneError
         If it is of another size, or `check` refuses it.
     """
     nodes = kept_rows(m).size
-    count = nodes + int(m.scene.exposures)
+    count = (
+        nodes + int(m.scene.exposures) + asperity_words(m, checkpoint[HEADER - 1] - nodes - m.scene.exposures)
+    )
     if checkpoint.size != HEADER + _WORDS + y.size + count or tuple(checkpoint[6:HEADER]) != (
         float(y.size),
         float(count),
@@ -116,12 +124,14 @@ def unpack(m: Model, checkpoint: Floats, y: Floats) -> None:
     state = _state_of(checkpoint)
     # copies: compiled functions take arrays that may be written only
     vector, rows = checkpoint[ends[1] : ends[2]].copy(), checkpoint[ends[2] :].copy()
-    rows, exposures = rows[:nodes], rows[nodes:]
+    rows, exposures, asperities = np.split(rows, [nodes, nodes + int(m.scene.exposures)])
+    joined = joined_in(m, asperities)
     check(m, state, vector, rows, exposures)
     assign(m.state, state)
     y[:] = vector
     restore_rows(m, rows)
     exposures_of(m)[:] = exposures
+    return joined
 
 
 def exceeded(checkpoint: Floats) -> bool:

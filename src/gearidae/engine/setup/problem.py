@@ -29,6 +29,7 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.pairs.tooth_pairs import set_branches
 from gearidae.engine.setup import checkpoint as checkpoints
+from gearidae.engine.setup.kept_asperities import restore_asperities
 from gearidae.engine.torques.harmonic import fastest_harmonic
 from gearidae.engine.torques.schedule import fastest_schedule
 from gearidae.errors import SceneError
@@ -246,8 +247,9 @@ class Problem:
             If a number is none that a run of this scene could have left.
         """
         m = self.model
-        checkpoints.unpack(m, checkpoint, state)
+        joined = checkpoints.unpack(m, checkpoint, state)
         blank_work(m.work)
+        restore_asperities(m, state, joined)
         for k in range(m.scene.histories):
             for material in range(MATERIALS):
                 set_branches(m, k, material)

@@ -29,6 +29,8 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
     s, e = m.scene, plain(m.state.extremes)
     force, tau = float(s.force_unit), float(s.time_unit)
     forces: dict[str, Any] = {
+        "asperity_onsets": int(m.state.asperity_onsets),
+        "asperity_detachments": int(m.state.asperity_detachments),
         "largest_mesh_force": force * e.largest_force,
         "largest_mesh_force_time": tau * e.largest_force_time,
         "smallest_mesh_force": force * e.smallest_force,

@@ -1,0 +1,204 @@
+"""The commands that conduct a study: it is run, kept, and what it has found is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import gearidae as gd
+from gearidae.cli.case import check_dask, read_scene
+from gearidae.cli.codes import DONE, UNFINISHED
+from gearidae.cli.output import complain, is_quiet, say
+from gearidae.cli.request import Request
+from gearidae.cli.tables import name_failures, show_rows
+from gearidae.cli.values import assignments, default_output, sweep_values, texts
+from gearidae.errors import SceneError
+from gearidae.runs.executors import check_jobs
+from gearidae.studies.answers import answer
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gearidae.wear import LossLaw
+
+__all__ = [
+    "conduct",
+    "follow_life",
+    "follow_lives",
+    "map_coating",
+    "map_outcomes",
+    "run_ensemble",
+    "search_starting_torque",
+    "search_threshold",
+]
+
+_FRACTION: Final = "coating.sam_fraction"
+_TORQUE: Final = "drive.torque"
+
+
+def conduct(
+    case: str,
+    request: Request,
+    kind: str,
+    title: str,
+    study: Callable[..., xr.Dataset],
+    *arguments: Any,
+    keys: Mapping[str, Any] | Sequence[str] = (),
+    members: int = 0,
+    **options: Any,
+) -> int:
+    """Conduct a study of a case, keep it, show what it has found.
+
+    Parameters
+    ----------
+    case : str
+        Path of a case file, or name of a preset.
+    kind : str
+        What comes of it, as `gearidae.studies.products.open_product` calls it.
+    title : str
+        How it is called; the file is named after it.
+    study : callable
+        Function of `gearidae.studies`.
+    *arguments
+        Of the function, after the scene.
+    keys, members
+        What differs between the members of an ensemble, and how many they are.
+    **options
+        Of the function.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    target = request.output or default_output(case, f"_{title.lower().replace(' ', '_')}.nc")
+    check_dask(request.dask, request.jobs)
+    workers = check_jobs(request.jobs)
+    scene = read_scene(case, request.settings or ())
+    with request.executor(keys, members) as executor:
+        ds = study(
+            scene,
+            *arguments,
+            **options,
+            executor=executor,
+            jobs=workers,
+            progress=not is_quiet(),
+            archive=target,
+            overwrite=request.overwrite,
+            resume=request.resume,
+        )
+    found = answer(ds, kind)
+    show_rows(found.rows)
+    say(found.sentence)
+    say(f"{title}: {target}")
+    return _code(ds)
+
+
+def _code(ds: xr.Dataset) -> int:
+    """Name what could not be finished."""
+    if "status" not in ds:
+        return DONE
+    if ds["status"].dims == ("member",):
+        return UNFINISHED if name_failures(ds) else DONE
+    failed = int((ds["status"].values != "finished").sum())
+    if failed:
+        complain(f"{failed} runs could not be finished: their status and message are in the file")
+    return UNFINISHED if failed else DONE
+
+
+def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
+    """Search the sticking threshold of a case between two values of a key, ``key=value,value``."""
+    ((key, ends),) = sweep_values([over]).items()
+    if len(ends) != 2:
+        raise SceneError("--over", over, f"needs two values, at one of which the gear sticks: {key}=0.4,0.7")
+    return conduct(
+        case,
+        request,
+        "sticking_threshold",
+        "Threshold",
+        gd.studies.sticking_threshold,
+        key,
+        (ends[0], ends[1]),
+        exits,
+    )
+
+
+def search_starting_torque(case: str, request: Request, over: str | None, **options: Any) -> int:
+    """Search the starting torque of a case at its own coating, or at fractions, ``coating.sam_fraction=1:0.4:-0.1``."""
+    fractions: Any = "own"
+    if over is not None:
+        ((key, fractions),) = sweep_values([over]).items()
+        if key != _FRACTION:
+            raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
+    return conduct(
+        case,
+        request,
+        "starting_torque",
+        "Starting torque",
+        gd.studies.starting_torque,
+        fractions,
+        **options,
+    )
+
+
+def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
+    """Map what the gears of a case do over two keys."""
+    values = sweep_values(over)
+    return conduct(case, request, "operating_map", "Operating map", gd.studies.operating_map, values)
+
+
+def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
+    """Make a coating map of a case, over fractions, and over other keys for several lines."""
+    values = sweep_values([pair for pair in over if pair.strip() != _TORQUE])
+    fractions = values.pop(_FRACTION, None)
+    usual_torques = any(pair.strip() == _TORQUE for pair in over)
+    if usual_torques and values:
+        raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
+    further = _TORQUE if usual_torques else values
+    return conduct(case, request, "coating_map", "Map", gd.studies.coating_map, fractions, over=further)
+
+
+def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any) -> int:
+    """Run an ensemble of a case."""
+    keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
+    drawn |= {"keys": keys, "members": drawn["size"]}
+    return conduct(case, request, "ensemble", "Ensemble", gd.studies.ensemble, keys, **drawn)
+
+
+def follow_life(
+    case: str, request: Request, law: str, parameters: Sequence[str], arrhenius: Sequence[str], **options: Any
+) -> int:
+    """Follow the life of a case's coating by a loss law, given its parameters and a factor of Arrhenius."""
+    found = _read_law(law, parameters, arrhenius)
+    return conduct(case, request, "life", "Life", gd.studies.life, found, **options)
+
+
+def follow_lives(
+    case: str,
+    request: Request,
+    law: str,
+    parameters: Sequence[str],
+    arrhenius: Sequence[str],
+    vary: Sequence[str],
+    **options: Any,
+) -> int:
+    """Follow the coatings of an ensemble of gears."""
+    keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
+    found = _read_law(law, parameters, arrhenius, keys)
+    return conduct(case, request, "lives", "Lives", gd.studies.lives, found, keys, **options)
+
+
+def _read_law(
+    name: str, parameters: Sequence[str], arrhenius: Sequence[str], vary: Mapping[str, Any] | None = None
+) -> LossLaw:
+    """Make a loss law, whose parameters that are drawn may be missing."""
+    from gearidae.studies.law_draws import law_of_medians
+
+    law = law_of_medians(name, assignments(parameters, "--parameter", "energy=2 J/m^2"), vary or {})
+    if not arrhenius:
+        return law
+    given = assignments(arrhenius, "--arrhenius", "activation_energy=1 eV")
+    known = ("activation_energy", "activation_volume", "temperature")
+    if sorted(given) != sorted(known):
+        raise SceneError("--arrhenius", ", ".join(given), "needs " + ", ".join(known))
+    return gd.wear.Arrhenius(law, **given)

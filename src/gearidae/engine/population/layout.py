@@ -1,0 +1,73 @@
+"""Where a population lies among a model's tables and rows.
+
+Tables hold all asperities of all flanks, one flank after the other and each in the order of places; an asperity is
+known by its place among them. Rows hold for each pair's history its candidates, those that may join or detach soon:
+`FIELDS` columns of as many numbers as a flank has asperities at most.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gearidae.compiled import compiled
+from gearidae.engine.model.state import Model
+
+__all__ = [
+    "ARC",
+    "BOUND",
+    "FIELDS",
+    "HEIGHT",
+    "INDEX",
+    "JOINED",
+    "KIND",
+    "KINDS",
+    "K_DETACH",
+    "K_ENERGY",
+    "K_JOIN",
+    "K_LOAD",
+    "K_OFFSET",
+    "K_SCALE",
+    "K_TABLE",
+    "REMEMBERED",
+    "SIGN",
+    "column",
+    "flank_of",
+]
+
+# columns of the candidates
+INDEX: Final = 0  # of the asperity among all,
+ARC: Final = 1  # its place on the flank,
+HEIGHT: Final = 2  # its height less the recess of its material,
+KIND: Final = 3  # and where the numbers of its kind are
+SIGN: Final = 4  # 1 if it is joined, -1 if it is free,
+BOUND: Final = 5  # and the distance of detachment or of joining
+JOINED: Final = 6  # positions among the candidates of those that are joined, in the order of places
+REMEMBERED: Final = 7  # asperities that are joined while candidates are chosen anew
+FIELDS: Final = 8
+
+# numbers of a kind: of asperities of one material and radius
+K_TABLE: Final = 0  # where the table of its law begins
+K_SCALE: Final = 1  # roughness over the law's unit of length
+K_LOAD: Final = 2  # units of the law's load and energy
+K_ENERGY: Final = 3
+K_JOIN: Final = 4  # distances of joining and detachment, over the roughness
+K_DETACH: Final = 5
+K_OFFSET: Final = 6  # recess of its material
+KINDS: Final = 7
+
+
+@compiled(inline=True)
+def column(m: Model, k: int, field: int) -> np.uintp:
+    """Place of a column of the k-th history's candidates among the rows."""
+    own = m.scene.population
+    return np.uintp(own.rows_at + (k * FIELDS + field) * own.capacity)
+
+
+@compiled
+def flank_of(m: Model, coast: int, pair: int) -> int:
+    """Number of the pinion's flank that a pair has, among all; 0 for a roller."""
+    if m.scene.pinion_teeth == 0.0:
+        return 0
+    return 2 * int((pair + m.state.turns) % m.scene.pinion_teeth) + coast

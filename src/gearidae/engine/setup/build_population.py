@@ -1,0 +1,131 @@
+"""From a scene's asperities to the tables and rows of a population."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.asperities import AsperityLaw, law_of_tip
+from gearidae.asperities.tip import asperity_of
+from gearidae.contact.kernels.layout import GAP_LOW
+from gearidae.contact.kernels.single import asperity_table
+from gearidae.engine.model.state import Floats, Record
+from gearidae.engine.population.candidates import LEVELS
+from gearidae.engine.population.layout import FIELDS, K_DETACH, K_JOIN, KINDS
+from gearidae.engine.setup.tables import Tables
+from gearidae.errors import SceneError
+from gearidae.population.flanks import FlankAsperities, flanks_digest, flanks_of
+from gearidae.population.materials import materials_at
+from gearidae.scene import MATERIAL_NAMES, Scene
+
+Integers = NDArray[np.int64]
+
+__all__ = ["add_population", "population_rows"]
+
+RELEASED: Final = 1e-10
+"""Distance of detachment before the fold, over the width of the hysteresis: the slope of its load is
+infinite there, and less of its loss is out than this."""
+BEYOND: Final = 0.25
+"""Roughnesses by which a flank comes near before its highest asperity may join, whose guard is to be seen waiting."""
+LEAST_CUTOFF: Final = GAP_LOW + 1.0
+MOST_LAWS: Final = 512
+"""Tables of laws that scale with neither radius nor adhesion, as that of Maugis; each takes a tenth of a second."""
+
+
+def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, arc_scale: float) -> None:
+    """Lay out all asperities, their kinds and laws, and set the gap beyond which nothing touches.
+
+    Parameters
+    ----------
+    s : record
+        ``SCENE``; changed.
+    steepness, arc_scale : float
+        See ``POPULATION``.
+
+    Raises
+    ------
+    SceneError
+        If there are no asperities, or more laws than can be tabulated.
+    """
+    own, sigma, flanks = s.population, scene.surface.roughness, flanks_of(scene)
+    counts = np.array([one.arc.size for one in flanks])
+    if counts.sum() == 0:
+        raise SceneError(
+            "contact.asperities", "(none)", "a population needs an asperity on one of its flanks"
+        )
+    length = float(s.base_pitch) if scene.gears is not None else steepness * sigma
+    arcs = np.concatenate([one.arc for one in flanks]) / length
+    heights = np.concatenate([one.height for one in flanks]) / sigma
+    own.flanks, own.steepness, own.arc_scale = len(flanks), steepness, arc_scale
+    own.highest, own.capacity = float(heights.max()), max(int(counts.max()), 1)
+    own.arcs_at, own.heights_at = tables.add(arcs), tables.add(heights)
+    _add_levels(own, tables, heights, counts)
+    numbers, kinds = _kinds(s, tables, scene, flanks)
+    first = tables.add(numbers.ravel())
+    own.kinds_at = tables.add((first + KINDS * kinds).astype(np.float64))
+    own.join = float(numbers[:, K_JOIN].max())
+    digest = flanks_digest(flanks)
+    own.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
+    own.quiet = int(not scene.run.asperity_events)
+    s.cutoff = s.contact_gap = max(own.highest + float(numbers[:, K_DETACH].max()) + BEYOND, LEAST_CUTOFF)
+
+
+def population_rows(s: Record) -> Floats:
+    """Rows of the candidates of all histories, blank."""
+    return np.zeros(int(s.histories * FIELDS * s.population.capacity))
+
+
+def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Integers) -> None:
+    """List the asperities above each level, flank by flank."""
+    flank = np.repeat(np.arange(counts.size), counts)
+    starts, listed = [np.concatenate([[0], np.cumsum(counts)])], [np.empty(0, np.int64)]
+    gone = 0
+    for level in LEVELS:
+        high = np.flatnonzero(heights > level)
+        ends = np.searchsorted(flank[high], np.arange(counts.size + 1))
+        starts.append(gone + ends)
+        listed.append(high)
+        gone += high.size
+    own.starts_at, own.listed_at = tables.add(np.concatenate(starts)), tables.add(np.concatenate(listed))
+
+
+def _kinds(
+    s: Record, tables: Tables, scene: Scene, flanks: tuple[FlankAsperities, ...]
+) -> tuple[Floats, Integers]:
+    """Numbers of each kind, and the kind of each asperity; a kind is a material with a radius."""
+    radii, of_radius = np.unique(np.concatenate([one.radius for one in flanks]), return_inverse=True)
+    material = np.concatenate([materials_at(scene, one, one.tooth + one.flank) for one in flanks])
+    pairs, kinds = np.unique(len(MATERIAL_NAMES) * of_radius + material, return_inverse=True)
+    sigma, by_name = scene.surface.roughness, {one.name: one for one in scene.materials()}
+    highest = float(s.population.highest) - GAP_LOW
+    tips = []
+    for pair in pairs.tolist():
+        radius, one = radii[pair // len(MATERIAL_NAMES)], by_name[MATERIAL_NAMES[pair % len(MATERIAL_NAMES)]]
+        tip = asperity_of(one.surface.model_copy(update={"asperity_radius": float(radius)}))
+        unit = tip.stretch_limit if tip.stretch_limit > 0.0 else sigma
+        tips.append((law_of_tip(scene.contact.asperity, tip, unit), tip.hertz_factor, unit, one.gap_offset))
+    reach: dict[AsperityLaw, float] = {}
+    for law, _, unit, _ in tips:
+        reach[law] = max(reach.get(law, 0.0), highest * sigma / unit)
+    if len(reach) > MOST_LAWS:
+        raise SceneError(
+            "contact.asperity",
+            scene.contact.asperity,
+            f"has another law for each radius, here {len(reach)}: there may be {MOST_LAWS} at most, or the law jkr",
+        )
+    places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
+    numbers = np.empty((pairs.size, KINDS))
+    for row, (law, factor, unit, offset) in enumerate(tips):
+        load, join, detach = factor * unit**1.5, law.join * unit / sigma, law.detach * unit / sigma
+        numbers[row] = (
+            places[law],
+            sigma / unit,
+            load / float(s.force_unit),
+            load * unit / (float(s.force_unit) * sigma),
+            join,
+            detach - RELEASED * (detach - join),
+            offset / sigma,
+        )
+    return numbers, kinds

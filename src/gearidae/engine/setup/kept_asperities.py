@@ -1,0 +1,110 @@
+"""What a checkpoint keeps of a population: which asperities are joined, and a digest of all.
+
+The block has the digest's four numbers, the number of joined asperities, each by its place among all, and zeros up to a
+multiple of `WORDS`, so that its length changes seldom.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gearidae.engine.events.asperity_events import asperity_guard
+from gearidae.engine.model.state import EMPTY, Floats, Model
+from gearidae.engine.population.layout import FIELDS, INDEX, JOINED
+from gearidae.engine.population.restore import take_joined
+from gearidae.engine.setup.checkpoint_checks import refused, require
+
+__all__ = ["asperity_words", "joined_asperities", "joined_in", "kept_asperities", "restore_asperities"]
+
+WORDS: Final = 64
+FIRST: Final = 5  # words in front of the asperities
+SLACK: Final = 1e-6
+"""Roughnesses, and a hundred relative tolerances, by which an asperity may be beyond its guard."""
+
+
+def joined_asperities(m: Model) -> Floats:
+    """Return the joined asperities of all pairs by their places among all, in rising order."""
+    own = m.scene.population
+    rows = m.rows[own.rows_at : own.rows_at + m.scene.histories * FIELDS * own.capacity]
+    columns = rows.reshape(m.scene.histories, FIELDS, -1)
+    found = [
+        columns[k, INDEX, columns[k, JOINED, : m.work.contact[k].joined].astype(np.int64)]
+        for k in range(m.scene.histories)
+        if m.state.history[k].pair != EMPTY
+    ]
+    return np.sort(np.concatenate([np.empty(0), *found]))
+
+
+def kept_asperities(m: Model) -> Floats:
+    """Return what a checkpoint keeps; nothing of other contact models."""
+    if m.scene.population.flanks == 0:
+        return np.empty(0)
+    joined = joined_asperities(m)
+    block = np.zeros(WORDS * -(-(FIRST + joined.size) // WORDS))
+    block[:4], block[4] = m.scene.population.digest, joined.size
+    block[FIRST : FIRST + joined.size] = joined
+    return block
+
+
+def asperity_words(m: Model, told: float) -> int:
+    """Words of the block in a checkpoint that tells so many; one that cannot be is refused."""
+    if m.scene.population.flanks == 0:
+        return 0
+    most = FIRST + _total(m) + WORDS
+    require(0.0 < told <= most and told % WORDS == 0.0, f"{told:g} words of asperities", "a block of them")
+    return int(told)
+
+
+def joined_in(m: Model, block: Floats) -> Floats:
+    """Return the joined asperities of a block, once they have been checked.
+
+    Raises
+    ------
+    SceneError
+        If they are none that a run of this scene could have left, or it had other asperities.
+    """
+    if m.scene.population.flanks == 0:
+        return np.empty(0)
+    if not np.array_equal(block[:4], m.scene.population.digest):
+        raise refused("asperities_sha256", "not that of the asperities that this scene has here")
+    count = block[4]
+    require(
+        bool(0.0 <= count <= block.size - FIRST and count % 1.0 == 0.0),
+        "joined asperities",
+        "a number of them",
+    )
+    joined, rest = np.split(block[FIRST:], [int(count)])
+    whole = (joined % 1.0 == 0.0) & (joined >= 0.0) & (joined < _total(m))
+    require(
+        bool(whole.all() and (np.diff(joined) > 0.0).all()),
+        "joined asperities",
+        "places of asperities in order",
+    )
+    require(not rest.any(), "joined asperities", "followed by zeros")
+    return joined
+
+
+def restore_asperities(m: Model, y: Floats, joined: Floats) -> None:
+    """Let asperities be joined at the state that has been taken back, and compare each with its overlap.
+
+    Raises
+    ------
+    SceneError
+        If one is of no pair that is near, or no run could have left it joined, or another one free.
+    """
+    if m.scene.population.flanks == 0:
+        return
+    require(take_joined(m, y, joined) == joined.size, "joined asperities", "those of pairs that are near")
+    slack = SLACK + 100.0 * float(m.scene.rtol)
+    require(asperity_guard(m, y) >= -slack, "joined asperities", "those that the overlaps allow")
+    for k in range(m.scene.histories):
+        touches = m.work.contact[k].joined > 0
+        require(
+            touches == (m.state.history[k].in_contact != 0), "in_contact", "1 where an asperity is joined"
+        )
+
+
+def _total(m: Model) -> int:
+    return int(m.tables[m.scene.population.starts_at + m.scene.population.flanks])

@@ -1,0 +1,86 @@
+"""The asperities of a scene as a dataset."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearidae.errors import SceneError
+from gearidae.population.flanks import flanks_digest, flanks_of
+from gearidae.population.materials import covered_sides
+from gearidae.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["population"]
+
+
+def population(scene: Scene) -> xr.Dataset:
+    """Return the asperities of a scene with ``contact.model = "population"``.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``asperity``, flank by flank and in the order of places: ``tooth`` and ``flank`` (0 drive, 1 coast) of the
+        pinion, ``arc`` from the base circle (of a roller ``x`` from its middle), ``height`` and ``radius`` [m],
+        coverage number ``q`` (with independent sides ``q2`` of the gear's), and ``coated`` (``gear_coated``): whether
+        the monolayer covers it. Where the gear's coverage goes by its teeth, ``gear_coated`` is that of the first tooth
+        met. The attribute ``asperities_sha256`` is that of a run.
+
+    Raises
+    ------
+    SceneError
+        If the scene has another contact model.
+
+    Notes
+    -----
+    Heights are Gaussian with the surface's roughness and places uniform, ``asperity_density`` in the mean. Numbers
+    follow from ``contact.seed``, tooth and flank: coverage and torques may be varied on one surface.
+    """
+    import xarray as xr
+
+    if scene.contact.model != "population":
+        raise SceneError(
+            "contact.model", scene.contact.model, "must be population: others have no asperities of their own"
+        )
+    flanks = flanks_of(scene)
+    counts = [one.arc.size for one in flanks]
+    along = "arc" if scene.gears is not None else "x"
+    sides = [covered_sides(scene, one, one.tooth + one.flank) for one in flanks]
+    columns = {
+        "tooth": (np.repeat([one.tooth for one in flanks], counts), "1", "tooth of the pinion"),
+        "flank": (
+            np.repeat([one.flank for one in flanks], counts),
+            "1",
+            "0 for the drive flank, 1 for the coast flank",
+        ),
+        along: (_joined([one.arc for one in flanks]), "m", "place along the flank"),
+        "height": (_joined([one.height for one in flanks]), "m", "height above the mean plane"),
+        "radius": (_joined([one.radius for one in flanks]), "m", "radius of the tip"),
+        "q": (_joined([one.q for one in flanks]), "1", "coverage number"),
+        "coated": (_joined([one[0] for one in sides]), "1", "1 where the monolayer covers it"),
+    }
+    if scene.coating.pairing == "independent":
+        columns["q2"] = (_joined([one.q2 for one in flanks]), "1", "coverage number of the gear's side")
+        columns["gear_coated"] = (
+            _joined([one[1] for one in sides]),
+            "1",
+            "1 where the monolayer covers the gear's side",
+        )
+    return xr.Dataset(
+        {
+            name: ("asperity", values, {"units": units, "long_name": long_name})
+            for name, (values, units, long_name) in columns.items()
+        },
+        attrs={"asperities_sha256": flanks_digest(flanks), "title": f"asperities of {scene.name}"},
+    )
+
+
+def _joined(parts: list[np.ndarray]) -> np.ndarray:
+    return np.concatenate(parts)

@@ -1,0 +1,156 @@
+"""The asperities of every flank of the pinion (the gear's flanks are smooth), or of a roller.
+
+Every flank is drawn from a generator of its own, and always in the same order: number, places, heights, coverage
+numbers of the pinion's side, of the gear's, radii. So coverage and torques may be varied on one surface.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from gearidae.arrays import Floats
+from gearidae.scene import Scene
+from gearidae.scene.asperity_list import FLANKS, ListedAsperity
+from gearidae.scene.strip import flank_strip
+
+__all__ = ["FlankAsperities", "flanks_digest", "flanks_of"]
+
+
+class FlankAsperities(NamedTuple):
+    """The asperities of one flank, in the order of their places.
+
+    Attributes
+    ----------
+    tooth, flank : int
+        Tooth of the pinion, and 0 for its drive flank, 1 for its coast flank; both 0 for a roller.
+    arc : ndarray, shape (n,)
+        Place: arc from the base circle, or distance from the middle of a roller [m].
+    height : ndarray, shape (n,)
+        Above the mean plane [m].
+    radius : ndarray, shape (n,)
+        Of the tips [m].
+    q, q2 : ndarray, shape (n,)
+        Coverage numbers of the pinion's and the gear's side: covered where the fraction is larger. Of patches the
+        second are the first.
+    """
+
+    tooth: int
+    flank: int
+    arc: Floats
+    height: Floats
+    radius: Floats
+    q: Floats
+    q2: Floats
+
+    def sorted(self) -> FlankAsperities:
+        """Return the same in the order of places."""
+        order = np.argsort(self.arc, kind="stable")
+        return self._replace(**{name: getattr(self, name)[order] for name in self._fields[2:]})
+
+
+def flanks_of(scene: Scene) -> tuple[FlankAsperities, ...]:
+    """Return the asperities of all flanks: tooth by tooth, the drive flank first.
+
+    Returns
+    -------
+    tuple of FlankAsperities
+        Two for each tooth of the pinion, or one for a roller; arrays that must not be changed.
+    """
+    teeth = 1 if scene.gears is None else scene.gears.pinion_teeth
+    width = scene.roller.width if scene.roller is not None else 0.0
+    if scene.gears is not None:
+        width = scene.gears.face_width
+    strip = flank_strip(scene)
+    surface, contact = scene.surface, scene.contact
+    if contact.asperities:
+        return _listed(
+            contact.asperities, surface.asperity_radius, contact.seed, teeth, scene.gears is not None
+        )
+    return _drawn(
+        teeth,
+        2 if scene.gears is not None else 1,
+        scene.coating.pairing == "independent",
+        contact.seed,
+        surface.asperity_density * width * (strip[1] - strip[0]),
+        strip,
+        surface.roughness,
+        (surface.asperity_radius, contact.radius_spread),
+    )
+
+
+@lru_cache(maxsize=2)
+def _drawn(
+    teeth: int,
+    sides: int,
+    two_sided: bool,
+    seed: int,
+    mean: float,
+    strip: tuple[float, float],
+    roughness: float,
+    radii: tuple[float, float],
+) -> tuple[FlankAsperities, ...]:
+    """Draw the flanks of all teeth; `mean` asperities each, radii of a mean and a relative deviation."""
+    low, length = strip[0], strip[1] - strip[0]
+    radius, spread = radii
+    flanks = []
+    for tooth in range(teeth):
+        for flank in range(sides):
+            rng = np.random.default_rng([seed, tooth, flank])
+            n = int(rng.poisson(mean))
+            arc = low + length * rng.random(n)
+            height = roughness * rng.standard_normal(n)
+            q = rng.random(n)
+            q2 = rng.random(n) if two_sided else q
+            of_radii = np.full(n, radius)
+            if spread > 0.0:
+                variance = math.log1p(spread**2)
+                of_radii = rng.lognormal(math.log(radius) - 0.5 * variance, math.sqrt(variance), n)
+            flanks.append(FlankAsperities(tooth, flank, arc, height, of_radii, q, q2).sorted())
+    return tuple(flanks)
+
+
+@lru_cache(maxsize=2)
+def _listed(
+    rows: Sequence[ListedAsperity], radius: float, seed: int, teeth: int, gears: bool
+) -> tuple[FlankAsperities, ...]:
+    """Put the rows of a list on the flanks that they name; coverage numbers that they leave out are drawn."""
+    numbers = np.array(
+        [[math.nan if cell is None else float(cell) for cell in row[:-1]] for row in rows], np.float64
+    )
+    named = np.array([-1 if row.flank is None else FLANKS.index(row.flank) for row in rows])
+    flanks = []
+    for tooth in range(teeth):
+        for flank in range(2 if gears else 1):
+            here = (np.isnan(numbers[:, 5]) | (numbers[:, 5] == tooth)) & ((named < 0) | (named == flank))
+            arc, height, own, q, q2, _ = numbers[here].T
+            rng = np.random.default_rng([seed, tooth, flank])
+            q, q2 = (np.where(np.isnan(one), rng.random(one.size), one) for one in (q, q2))
+            own = np.where(np.isnan(own), radius, own)
+            flanks.append(FlankAsperities(tooth, flank, arc, height, own, q, q2).sorted())
+    return tuple(flanks)
+
+
+def flanks_digest(flanks: tuple[FlankAsperities, ...]) -> str:
+    """Return the SHA-256 of all asperities: numpy does not promise to draw the same from a seed for ever.
+
+    Parameters
+    ----------
+    flanks : tuple of FlankAsperities
+
+    Returns
+    -------
+    str
+        Hexadecimal, of the number of asperities and the bits of their columns, flank by flank.
+    """
+    digest = hashlib.sha256()
+    for one in flanks:
+        digest.update(np.array([one.arc.size], "<i8").tobytes())
+        for column in one[2:]:
+            digest.update(np.ascontiguousarray(column, "<f8").tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,55 @@
+"""Which material meets at each asperity: its coverage numbers compared with the fractions at its place."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.mesh.involute import place_of_arc
+from gearidae.population.flanks import FlankAsperities
+from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene.coating_table import fraction_at
+
+__all__ = ["along_path", "covered_sides", "materials_at"]
+
+Bools = NDArray[np.bool_]
+_BARE, _COATED, _MIXED = (MATERIAL_NAMES.index(name) for name in ("bare", "coated", "mixed"))
+MATERIAL_OF_SIDES: Final = np.array([[_BARE, _MIXED], [_MIXED, _COATED]])
+"""Index of the material by whether the pinion's side and the gear's are covered."""
+
+
+def along_path(scene: Scene, one: FlankAsperities) -> NDArray[np.float64]:
+    """Return the places of a flank's asperities as shares of the path of contact; 0 of a roller."""
+    if scene.gears is None:
+        return np.zeros_like(one.arc)
+    geometry = scene.geometry
+    return np.clip(place_of_arc(geometry, one.arc) / geometry.path_length, 0.0, 1.0)
+
+
+def covered_sides(scene: Scene, one: FlankAsperities, gear_tooth: int) -> tuple[Bools, Bools]:
+    """Say at which asperities the monolayer covers the pinion's side, and the gear's.
+
+    Parameters
+    ----------
+    gear_tooth : int
+        Of the gear that it meets.
+
+    Returns
+    -------
+    pinion, gear : ndarray of bool, shape (n,)
+        The same for patches, which cover both sides.
+    """
+    places = along_path(scene, one)
+    pinion, gear = scene.coating.tables
+    first = one.q < fraction_at(pinion, one.tooth, places)
+    if scene.coating.pairing == "patches":
+        return first, first
+    return first, one.q2 < fraction_at(gear, gear_tooth, places)
+
+
+def materials_at(scene: Scene, one: FlankAsperities, gear_tooth: int) -> NDArray[np.int64]:
+    """Return the index of the material at each asperity, among `gearidae.scene.MATERIAL_NAMES`; shape (n,)."""
+    first, second = covered_sides(scene, one, gear_tooth)
+    return MATERIAL_OF_SIDES[first.astype(np.int64), second.astype(np.int64)]

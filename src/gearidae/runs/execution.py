@@ -1,0 +1,289 @@
+"""How the runs of a sweep or a study are computed and kept until its archive is written, so that it can be resumed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+import xarray as xr
+
+from gearidae.archive import open_archive, save
+from gearidae.archive.provenance import provenance
+from gearidae.archive.target import check_target, claims_output
+from gearidae.engine import choose_backend
+from gearidae.errors import Interrupted, SceneError
+from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
+from gearidae.runs.kept_runs import KeptRuns
+
+if TYPE_CHECKING:
+    from gearidae.progress import SweepProgress
+    from gearidae.records import Solution
+    from gearidae.scene import Scene
+
+__all__ = ["Execution", "Store", "interruptible", "origin_of", "run_kept", "solutions"]
+
+
+class Store(Protocol):
+    """Results that are kept beside an archive until it is written."""
+
+    folder: Path
+
+    def count(self) -> int:
+        """Count the results."""
+
+    def remove(self, scenes: Sequence[Scene] | None = None, /) -> None:
+        """Delete those of some scenes, or all."""
+
+
+Kept = TypeVar("Kept", bound=Store)
+
+
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """How runs are computed and kept; each field is an argument of `gearidae.sweep`.
+
+    Raises
+    ------
+    SceneError
+        If a setting is not allowed: before anything is run.
+    """
+
+    executor: Executor | None = None
+    jobs: int | None = None
+    backend: str = "auto"
+    progress: bool | SweepProgress = False
+    archive: str | os.PathLike[str] | None = None
+    overwrite: bool = False
+    resume: bool = False
+    method: str = "auto"
+    """Formulas of the solver, as the scenes have them: not every driver has all."""
+
+    def __post_init__(self) -> None:
+        check_jobs(self.jobs)
+        check_executor(self.executor)
+
+    @property
+    def driver(self) -> str:
+        """Driver of the solver that computes the runs."""
+        return choose_backend(self.backend, self.method)
+
+    def threads(self) -> int:
+        """Return how many threads of this process compute at most; 0 if processes do, or somebody else's executor."""
+        return check_jobs(self.jobs) if self.executor is None and self.driver == "native" else 0
+
+    @contextmanager
+    def computing(self, calls: int) -> Iterator[Executor | None]:
+        """Provide the executor that was given, or one that suits the solver; None to compute here.
+
+        Parameters
+        ----------
+        calls : int
+            At most.
+        """
+        if self.executor is not None:
+            yield self.executor
+            return
+        # processes take seconds to start: only on request
+        workers = self.threads() or (1 if self.jobs is None else self.jobs)
+        with own_executor(workers, calls, releases_gil=self.threads() > 0) as own:
+            yield own
+
+
+def run_kept(
+    how: Execution,
+    make_store: Callable[[Path], Kept],
+    work: Callable[[Kept | None], xr.Dataset],
+    about: Mapping[str, Any],
+    *,
+    read: Callable[[Path], xr.Dataset] = open_archive,
+    scenes: Sequence[Scene] | None = None,
+    so_far: Callable[[], xr.Dataset] = xr.Dataset,
+    prepared: Callable[[xr.Dataset], xr.Dataset] | None = None,
+) -> xr.Dataset:
+    """Compute something of many runs, which are kept until its archive is written.
+
+    Parameters
+    ----------
+    make_store : callable
+        Makes what keeps the results beside an archive.
+    work : callable
+        Computes the dataset, given the store; None without an archive.
+    about : mapping of str to str
+        What the result depends on: attributes of the dataset. An archive that has others is not resumed; an empty text
+        stands for an attribute that is not there.
+    read : callable, optional
+        Reads a file that is there, to be resumed.
+    scenes : sequence of Scene, optional
+        Of the runs; results of others are warned of, and left where they are. By default all are of this study.
+    so_far : callable, optional
+        Makes the dataset of the finished part at Ctrl-C, where `work` raises a plain `KeyboardInterrupt`.
+    prepared : callable, optional
+        Makes the saved form of the dataset, also of the part at Ctrl-C, which otherwise is not saved.
+
+    Returns
+    -------
+    Dataset
+        Of an archive that is whole, its content.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be written, or is of something else.
+    Interrupted
+        On Ctrl-C.
+    """
+    attributes = {name: value for name, value in about.items() if value != ""}
+    if how.archive is None:
+        if how.resume:
+            raise SceneError("resume", True, "needs an archive: finished runs are kept beside it")
+        with interruptible(None, so_far, attributes):
+            return work(None).assign_attrs(attributes)
+    with claims_output(how.archive) as target:
+        store = make_store(target)
+        _begin(how, store, scenes)
+        if how.resume and not store.count() and target.exists():
+            whole = _whole(target, about, how.driver, read)
+            if whole is not None:
+                return whole
+
+        def keep(ds: xr.Dataset) -> xr.Dataset:
+            made = ds if prepared is None else prepared(ds)
+            if made.sizes:
+                save(made, target, overwrite=how.overwrite or how.resume)
+            return ds
+
+        def cut_off(ds: xr.Dataset) -> xr.Dataset:
+            return ds if prepared is None else keep(ds)
+
+        with interruptible(store.folder, so_far, attributes, cut_off):
+            ds = keep(work(store).assign_attrs(attributes))
+        store.remove(scenes)
+    return ds
+
+
+def _begin(how: Execution, store: Store, scenes: Sequence[Scene] | None) -> None:
+    """Refuse what is there already, or make room."""
+    assert how.archive is not None
+    count = store.count()
+    if how.resume:
+        if count and scenes is not None and isinstance(store, KeptRuns):
+            store.note_strangers(scenes)
+    elif count and not how.overwrite:
+        raise SceneError(
+            "archive",
+            how.archive,
+            f"was cut off, {count} of its runs are in {store.folder.name}: "
+            "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)",
+        )
+    elif count:
+        store.remove()
+    else:
+        check_target(how.archive, overwrite=how.overwrite)
+
+
+def _whole(
+    target: Path, about: Mapping[str, Any], driver: str, read: Callable[[Path], xr.Dataset]
+) -> xr.Dataset | None:
+    """Return the archive of this very study, None if runs of it are missing; refuse any other file."""
+    try:
+        ds = read(target)
+    except SceneError as error:
+        raise SceneError("archive", target, f"exists and cannot be resumed: it {error.allowed}") from None
+    differing = [name for name, value in about.items() if ds.attrs.get(name, "") != value]
+    if differing or ds.attrs.get("backend", "") not in ("", driver):
+        ds.close()
+        raise SceneError(
+            "archive",
+            target,
+            "exists and is of another sweep or study, other settings or another version: name another, or allow "
+            "--overwrite (overwrite=True)",
+        )
+    cut_off = ds.attrs.get("ending") == "interrupted" or (
+        "status" in ds and "interrupted" in ds["status"].values
+    )
+    if not cut_off:
+        return ds
+    ds.close()
+    return None
+
+
+@contextmanager
+def interruptible(
+    folder: Path | None = None,
+    so_far: Callable[[], xr.Dataset] = xr.Dataset,
+    about: Mapping[str, Any] | None = None,
+    keep: Callable[[xr.Dataset], xr.Dataset] | None = None,
+) -> Iterator[None]:
+    """Turn Ctrl-C into an `Interrupted` that says where finished runs are.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        Where finished runs are kept; without one nothing can be resumed.
+    so_far : callable, optional
+        Makes the dataset of what has been found, if the interrupt does not carry it.
+    about : mapping, optional
+        Attributes for it.
+    keep : callable, optional
+        Called with the dataset.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C.
+    """
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        found = interrupt.dataset if isinstance(interrupt, Interrupted) else so_far()
+        ds = found.assign_attrs(about or {})
+        if keep is not None:
+            keep(ds)
+        where = "the error's dataset has what was found so far" if ds.sizes else "nothing of it is kept"
+        if folder is not None:
+            where = f"finished runs are kept in {folder}; go on with --resume (resume=True)"
+        raise Interrupted(where, ds) from None
+
+
+def origin_of(scene: Scene) -> dict[str, str]:
+    """Return the attributes that say of which scene a dataset is, and of which version of the program."""
+    found = provenance(scene, "")
+    return {"scene": str(found["scene"]), "source": str(found["source"])}
+
+
+def solutions(
+    kept: KeptRuns | None,
+    executor: Executor | None,
+    function: Callable[..., tuple[Solution, str]],
+    scenes: Sequence[Scene],
+    *arguments: Any,
+) -> Iterator[tuple[Solution, str]]:
+    """Take runs that are kept, compute the others side by side, and keep those that finish.
+
+    Parameters
+    ----------
+    function : callable
+        Runs a scene, given `arguments`: its solution, and what came of it in one word.
+
+    Yields
+    ------
+    Solution, str
+        In the order of the scenes.
+    """
+    taken = [None if kept is None else kept.take(each) for each in scenes]
+    left = [scene for scene, one in zip(scenes, taken, strict=True) if one is None]
+    repeated: list[Iterable[Any]] = [[each] * len(left) for each in arguments]
+    fresh = side_by_side(executor, function, left, *repeated)
+    for scene, one in zip(scenes, taken, strict=True):
+        if one is not None:
+            yield one[0], str(one[1].get("verdict", ""))
+            continue
+        solution, word = next(fresh)
+        if kept is not None and solution.status == "finished":
+            kept.keep(scene, solution, {"verdict": word})
+        yield solution, word

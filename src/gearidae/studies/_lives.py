@@ -1,0 +1,312 @@
+"""Lives of an ensemble: how long coatings last where the scene is known as distributions."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive import dimension_names
+from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
+from gearidae.engine import choose_backend
+from gearidae.errors import SceneError, SolverError
+from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.runs.execution import Execution, origin_of, run_kept
+from gearidae.runs.executors import side_by_side
+from gearidae.runs.kept_runs import circumstances, name_of
+from gearidae.runs.running import prepare
+from gearidae.scene.group import did_you_mean
+from gearidae.studies._life import life
+from gearidae.studies.design import check_design, plain_design
+from gearidae.studies.distributions import Distribution, read_distributions
+from gearidae.studies.law_draws import drawn_laws, parameter_units
+from gearidae.studies.members import member_plan, names_of
+from gearidae.studies.products import open_lives
+from gearidae.wear import LossLaw
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+__all__ = ["lives"]
+
+_SETTINGS: Final = (
+    "passages",
+    "fraction",
+    "resolved",
+    "places",
+    "cycles",
+    "settle",
+    "starts",
+    "tolerance",
+    "bracket",
+)
+"""Arguments of `life` that hold for all members."""
+_LIFE: Final = re.compile(r"[0-9a-f]{64}\.nc(\.runs)?")
+"""Names of files of lives, and of the folders of windows beside them."""
+_COLUMNS: Final = {
+    "passages_to_sticking": ("1", "passages of each tooth of the pinion by which the gear sticks"),
+    "passages_turning": ("1", "passages up to which it turns, as far as it was followed"),
+    "final_coverage": ("1", "mean coverage there"),
+    "windows": ("1", "windows that were simulated"),
+    "sticks": ("1", "whether the gear sticks at the end of its life; NaN if the life is unfinished"),
+}
+
+
+def lives(
+    scene: Scene,
+    law: LossLaw,
+    vary: Mapping[str, Any],
+    size: int,
+    design: str = "sobol",
+    *,
+    seed: int = 0,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    backend: str = "auto",
+    progress: bool | SweepProgress = False,
+    archive: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+    **settings: Any,
+) -> xr.Dataset:
+    """Follow the coatings of gears whose keys are drawn from distributions, each until its gear sticks.
+
+    Parameters
+    ----------
+    scene : Scene
+        What the members have in common.
+    law : LossLaw
+        How coverage is lost, from `gearidae.wear`.
+    vary : mapping of str to object
+        Keys and their distributions, as for `gearidae.studies.ensemble`; ``law.`` and a name are a parameter of the
+        law, ``{"law.energy": "lognormal(0.5 mJ/m^2, 3)"}``.
+    size : int
+        Number of members.
+    design, seed
+        As for `gearidae.studies.ensemble`.
+    executor, jobs, backend, progress, overwrite, resume
+        As for `gearidae.sweep`; members are followed side by side. With `archive`, the lives so far and their finished
+        windows are kept beside it, in ``OUT.nc.lives``, until it is written.
+    archive : path, optional
+        netCDF file to write.
+    **settings
+        ``passages``, ``fraction``, ``resolved``, ``places``, ``cycles``, ``settle``, ``starts``, ``tolerance`` and
+        ``bracket`` of `gearidae.studies.life`.
+
+    Returns
+    -------
+    Dataset
+        Along ``member``: the keys' values as coordinates (SI), ``ending``, ``passages_to_sticking`` (NaN if the life
+        has another ending), ``passages_turning``, ``final_coverage``, ``windows``, ``sticks``, ``status``, ``message``.
+        `gearidae.studies.surviving_share` says how many still turn after some passages.
+
+    Raises
+    ------
+    SceneError
+        If a key, a distribution or a setting is not allowed; nothing has been run then.
+    Interrupted
+        On Ctrl-C; the lives so far are kept beside `archive`.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> scene = gd.preset("teodorescu2009_low_speed")
+    >>> law = gd.wear.loss_law("adhesion_work", energy="10 J/m^2")
+    >>> vary = {"drive.torque": "normal(4.5e-18, 2e-19)"}
+    >>> found = gd.studies.lives(scene, law, vary, 16)  # doctest: +SKIP
+    >>> gd.studies.surviving_share(found)  # doctest: +SKIP
+    """
+    base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
+    check_design(size, design, seed, indices=False)
+    _check_settings(law, settings)
+    distributions = read_distributions(base, vary, parameter_units(law))
+    texts = names_of(distributions)
+    drawn = plain_design(distributions, int(size), design, int(seed)).values
+    values = {each.key: drawn[:, number] for number, each in enumerate(distributions)}
+    laws = drawn_laws(law, values, int(size), texts)
+    members = list(zip(_scenes(base, values, int(size), texts), laws, strict=True))
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
+
+    def work(kept: _KeptLives | None) -> xr.Dataset:
+        common = _Common(settings, backend, None if kept is None else kept.folder)
+        found: list[_Member] = []
+        with (
+            nullcontext() if kept is None else kept,
+            sweep_progress(progress, len(members)) as report,
+            how.computing(len(members)) as computing,
+        ):
+            for each in side_by_side(computing, _follow, members, [common] * len(members)):
+                found.append(each)
+                report(float(len(found)), len(members))
+        return _dataset(base, law, distributions, values, found)
+
+    depends = {"ensemble": json.dumps(about), "settings": json.dumps([law.describe(), settings])}
+    return run_kept(how, _KeptLives, work, {**origin_of(base), **depends}, read=open_lives)
+
+
+class _KeptLives:
+    """The lives of an unfinished ensemble, each in a file of its own beside the archive, in ``OUT.nc.lives``."""
+
+    def __init__(self, archive: Path) -> None:
+        self.folder = archive.with_name(f"{archive.name}.lives")
+
+    def __enter__(self) -> None:
+        self.folder.mkdir(exist_ok=True)
+
+    def __exit__(self, *_: object) -> None:
+        if not any(self.folder.iterdir()):  # refused, or interrupted at once
+            self.folder.rmdir()
+
+    def count(self) -> int:
+        """Count the lives, those that are unfinished included."""
+        return len({path.stem for path in self._files() if path.suffix == ".nc"})
+
+    def remove(self, _scenes: Sequence[Scene] | None = None) -> None:
+        """Delete the lives, and the folder if nothing else is in it."""
+        for path in self._files():
+            if path.is_dir():  # windows of a life that could not be finished
+                shutil.rmtree(path)
+            else:
+                path.unlink()
+        if self.folder.is_dir():
+            self.__exit__()
+
+    def _files(self) -> list[Path]:
+        if not self.folder.is_dir():
+            return []
+        return [path for path in self.folder.iterdir() if _LIFE.fullmatch(path.name)]
+
+
+@dataclass(frozen=True)
+class _Common:
+    """What the members have in common besides the keys that are not drawn."""
+
+    settings: dict[str, Any]
+    backend: str
+    folder: Path | None
+
+    def path(self, scene: Scene, law: LossLaw) -> Path | None:
+        """Where the life of a member is kept: a hash of all that it depends on."""
+        if self.folder is None:
+            return None
+        about = {
+            **circumstances(scene, choose_backend(self.backend, scene.run.method)),
+            "settings": self.settings,
+        }
+        return self.folder / f"{name_of(scene, {**about, 'law': law.describe()})}.nc"
+
+
+@dataclass(frozen=True)
+class _Member:
+    """What has come of a member."""
+
+    ending: str
+    sticks_by: float
+    turning: float
+    coverage: float
+    windows: int
+    status: str = "finished"
+    message: str = ""
+
+
+def _follow(member: tuple[Scene, LossLaw], common: _Common) -> _Member:
+    """Follow the life of a member, or read it where it is kept."""
+    scene, law = member
+    path = common.path(scene, law)
+    try:
+        ds = life(
+            scene,
+            law,
+            **common.settings,
+            frequency=False,
+            jobs=1,
+            backend=common.backend,
+            archive=path,
+            resume=path is not None,
+        )
+    except SolverError as error:
+        return _Member("unfinished", np.nan, np.nan, np.nan, 0, "failed", str(error))
+    return _member(ds)
+
+
+def _member(ds: xr.Dataset) -> _Member:
+    last = ds.isel(passages=-1)
+    turning = 0.0 if str(last["verdict"].values) == "sticks" else float(last["passages"])
+    return _Member(
+        str(ds.attrs["ending"]),
+        float(ds.attrs.get("passages_to_sticking", np.nan)),
+        turning,
+        float(last["coverage"].mean()),
+        int(ds.attrs["windows"]),
+    )
+
+
+def _check_settings(law: LossLaw, settings: Mapping[str, Any]) -> None:
+    if not isinstance(law, LossLaw):
+        raise SceneError("law", type(law).__name__, "must be a loss law, see gearidae.wear.loss_law")
+    for name, value in settings.items():
+        if name not in _SETTINGS:
+            meant = did_you_mean(name, _SETTINGS)
+            allowed = f"must be one of {', '.join(_SETTINGS)}{'; ' if meant else ''}{meant}"
+            raise SceneError(name, value, allowed)
+
+
+def _scenes(base: Scene, values: Mapping[str, Floats], size: int, texts: Mapping[str, str]) -> list[Scene]:
+    """Scenes of the members; all alike if nothing but parameters of the law are drawn."""
+    own = {key: column for key, column in values.items() if not key.startswith("law.")}
+    return list(member_plan(base, own, texts).scenes) if own else [base] * size
+
+
+def _dataset(
+    base: Scene,
+    law: LossLaw,
+    distributions: Sequence[Distribution],
+    values: Mapping[str, Floats],
+    found: Sequence[_Member],
+) -> xr.Dataset:
+    """Put the members along one dimension."""
+    columns = {
+        "passages_to_sticking": [each.sticks_by for each in found],
+        "passages_turning": [each.turning for each in found],
+        "final_coverage": [each.coverage for each in found],
+        "windows": [each.windows for each in found],
+        "sticks": [np.nan if each.status == "failed" else float(each.ending == "sticks") for each in found],
+    }
+    variables: dict[str, Any] = {
+        name: ("member", np.array(columns[name]), {"units": units, "long_name": words})
+        for name, (units, words) in _COLUMNS.items()
+    }
+    for name, words in (("ending", "what ended the life"), ("status", ""), ("message", "")):
+        about = {"units": "1", "long_name": words or f"{name} of the member"}
+        variables[name] = ("member", [getattr(each, name) for each in found], about)
+    names = dimension_names(values)
+    coords: dict[str, Any] = {
+        names[each.key]: ("member", values[each.key], {"units": each.unit, "long_name": each.key})
+        for each in distributions
+    }
+    coords["member"] = ("member", np.arange(len(found)), {"units": "1", "long_name": "number of the member"})
+    about = provenance(base, f"followed {len(found)} lives", swept=tuple(values))
+    return xr.Dataset(
+        variables,
+        coords=coords,
+        attrs={
+            **about,
+            "title": f"{base.name}: lives of {len(found)} coatings",
+            "summary": "Passages until gears stick whose keys were drawn from distributions, by cycle jump.",
+            "swept": json.dumps({key: column.tolist() for key, column in values.items()}, allow_nan=False),
+            "law": json.dumps(law.describe()),
+            "law_source": law.source,
+        },
+    )

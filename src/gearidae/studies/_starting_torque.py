@@ -1,0 +1,336 @@
+"""Starting torque: the smallest drive torque that keeps the gear turning against adhesion."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from gearidae.archive.provenance import provenance
+from gearidae.archive.variables import SAM_FRACTION
+from gearidae.errors import SceneError, SolverError
+from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
+from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import prepare, solve_to_end, unsolved
+from gearidae.studies.products import open_product
+from gearidae.studies.release import holding_forces
+from gearidae.studies.requirements import require_constant, require_gears
+
+if TYPE_CHECKING:
+    from gearidae.records import Solution
+    from gearidae.scene import Scene
+
+__all__ = ["starting_torque", "static_starting_torque"]
+
+_FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
+_LOWEST = 1e-3
+"""Default lower end of the search, as a part of the scene's torque."""
+_HEAVIEST = 1e12
+"""No torque above this many times the lowest is tried."""
+_PATIENCE = 3.0
+"""A gear that has not arrived after this many times the time it would take without adhesion has stuck."""
+_STRIDE = 4.0
+"""Factor by which the simulated search widens its bracket."""
+
+
+def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | None = None) -> float:
+    """Drive torque that pulls the leaving tooth off at every mesh exit, without help from inertia.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+    impacts : int, optional
+        Mesh exits that have to be passed. A worn contact is pressed deeper by each one, and needs more torque the
+        more there are.
+    lowest : float, optional
+        Torque below which nothing is looked for, beyond what the dry resistance takes [N m]; by default a thousandth
+        of the scene's.
+
+    Returns
+    -------
+    float
+        Torque on the pinion [N m]: the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
+        `gearidae.studies.release`. What the dry resistance takes (0 without one) if adhesion does not hold the gear
+        even at the lowest torque; infinite if it does at any.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no gears, or a setting is not allowed.
+    """
+    _require(scene, impacts)
+    dry, lowest = _dry(scene), _lowest(scene, lowest)
+    pinion = scene.geometry.base_radius_pinion
+
+    def surplus(logarithm: float) -> float:
+        adhesion = max(holding_forces(scene, (dry + math.exp(logarithm)) / pinion, impacts)) * pinion
+        return math.exp(logarithm) - adhesion
+
+    low = math.log(lowest)
+    if surplus(low) > 0.0:
+        return dry
+    high = low
+    while surplus(high) <= 0.0:
+        if high > math.log(lowest * _HEAVIEST):
+            return math.inf
+        low, high = high, high + math.log(_STRIDE)
+    return dry + math.exp(float(brentq(surplus, low, high, xtol=1e-3)))
+
+
+def starting_torque(
+    scene: Scene,
+    sam_fraction: ArrayLike | None = None,
+    *,
+    impacts: int = 3,
+    lowest: float | None = None,
+    simulated: bool = True,
+    tolerance: float = 0.1,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    backend: str = "auto",
+    progress: bool | SweepProgress = False,
+    archive: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+) -> xr.Dataset:
+    """Smallest drive torque that takes the gear through the mesh, against SAM fraction.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears. Its constant drive torque is replaced, a schedule of the drive taken away, its initial speed set to
+        zero.
+    sam_fraction : array_like or 'own', optional
+        Fractions of the coating; by default 13 from 1 to 0.4. ``own`` stands for the scene's own coating as it is.
+    impacts : int, optional
+        Pitches to be turned, each with its mesh exit.
+    lowest : float, optional
+        As for `static_starting_torque`.
+    simulated : bool, optional
+        Whether to simulate too.
+    tolerance : float, optional
+        Relative width at which the search among simulated torques ends, 0.001 .. 1.
+    executor, jobs, backend, progress, archive, overwrite, resume
+        As for `sweep`. With `archive`, finished runs are kept beside it until it is written.
+
+    Returns
+    -------
+    Dataset, dims (sam_fraction)
+        ``static_torque``: without inertia, see `static_starting_torque`. ``simulated_torque``: a run from rest turns
+        the gear by `impacts` pitches at this torque and not at ``simulated_stuck``, which is smaller by `tolerance` or
+        less. Both are what the dry resistance takes where adhesion does not hold even at the lowest torque, and NaN
+        without `simulated`. All in N m on the pinion. The scene's own constant torque is the attribute
+        ``drive_torque``.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no gears, its load follows a schedule, or a setting is not allowed.
+    SolverError
+        If a run could not be finished.
+    Interrupted
+        On Ctrl-C.
+
+    Notes
+    -----
+    The two differ: a gear that comes along has momentum, which helps it over the first exits, and its contact has been
+    pressed by the first touch harder than by the torque, which makes the next ones harder.
+    """
+    _require(scene, impacts)
+    if not 0.001 <= tolerance <= 1.0:
+        raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
+    base = prepare(scene, rtol=None, t_end=None, samples=None, backend=backend)
+    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    fractions, scenes = _coatings(base, sam_fraction)
+    least = _lowest(scene, lowest)
+
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        static = [static_starting_torque(each, impacts=impacts, lowest=least) for each in scenes]
+        searches = [
+            _Search(each, impacts, least, torque) for each, torque in zip(scenes, static, strict=True)
+        ]
+        if simulated:
+            _search_all(searches, tolerance, how, kept)
+        found = [each.result if simulated else (math.nan, math.nan) for each in searches]
+        return _dataset(scene, fractions, static, found).assign_attrs(impacts=impacts, tolerance=tolerance)
+
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, base, how.driver),
+        work,
+        {**origin_of(scene), "settings": json.dumps([fractions, impacts, least, simulated, tolerance])},
+        read=lambda path: open_product(path, "starting_torque")[0],
+    )
+
+
+def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[Scene]]:
+    """Fractions of the coating, and the scenes with them."""
+    if isinstance(given, str):
+        if given != "own":
+            raise SceneError("sam_fraction", given, "must be a list of numbers, or 'own'")
+        return [float(np.mean(base.coating.fractions))], [base]
+    fractions = np.atleast_1d(np.asarray(_FRACTIONS if given is None else given, dtype=np.float64)).tolist()
+    return fractions, [base.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
+
+
+def _dataset(
+    scene: Scene, fractions: Sequence[float], static: Sequence[float], found: Sequence[tuple[float, float]]
+) -> xr.Dataset:
+    turns, sticks = zip(*found, strict=True)
+    columns = {
+        "static_torque": (static, "starting torque without inertia"),
+        "simulated_torque": (turns, "smallest simulated torque at which the gear turns from rest"),
+        "simulated_stuck": (sticks, "largest simulated torque at which the gear sticks"),
+    }
+    assert scene.drive is not None
+    return xr.Dataset(
+        {
+            name: ("sam_fraction", np.array(numbers), {"units": "N m", "long_name": text})
+            for name, (numbers, text) in columns.items()
+        },
+        coords={"sam_fraction": ("sam_fraction", np.array(fractions), SAM_FRACTION.attributes)},
+        attrs={
+            **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
+            "title": f"{scene.name}: starting torque",
+            "summary": "Smallest drive torque that keeps the gear turning against adhesion, against SAM fraction.",
+            "drive_torque": scene.drive.torque,
+        },
+    )
+
+
+@dataclass
+class _Search:
+    """Bracket of one fraction's torque on its way to be narrow; torques are beyond the dry resistance."""
+
+    scene: Scene
+    impacts: int
+    lowest: float
+    static: float
+    turns: float = math.inf
+    sticks: float = 0.0
+
+    def next_torque(self, tolerance: float) -> float | None:
+        """Torque to try next; None when the bracket is narrow, or there is nothing in reach."""
+        if math.isinf(self.turns):
+            guess = self.static - _dry(self.scene)
+            first = guess if self.lowest < guess < math.inf else self.lowest
+            torque = first if self.sticks == 0.0 else self.sticks * _STRIDE
+            return torque if torque <= self.lowest * _HEAVIEST else None
+        if self.sticks == 0.0:
+            return max(self.turns / _STRIDE, self.lowest) if self.turns > self.lowest else None
+        return math.sqrt(self.turns * self.sticks) if self.turns > (1.0 + tolerance) * self.sticks else None
+
+    def learn(self, torque: float, turned: bool) -> None:
+        """Take in the outcome of a run."""
+        if turned:
+            self.turns = min(self.turns, torque)
+        else:
+            self.sticks = max(self.sticks, torque)
+
+    @property
+    def result(self) -> tuple[float, float]:
+        """Smallest torque that turns and largest that sticks [N m]; alike if the gear turns at the lowest."""
+        dry = _dry(self.scene)
+        return (dry, dry) if self.sticks == 0.0 else (dry + self.turns, dry + self.sticks)
+
+
+def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, kept: KeptRuns | None) -> None:
+    """Narrow all brackets, the runs of each round side by side."""
+    halvings = math.ceil(math.log2(math.log(_STRIDE) / math.log1p(tolerance)))
+    usual, done = len(searches) * (2 + max(halvings, 0)), 0
+    with sweep_progress(how.progress, usual) as report, how.computing(len(searches)) as executor:
+        while True:
+            wanted = [(each, each.next_torque(tolerance)) for each in searches]
+            todo = [(each, torque) for each, torque in wanted if torque is not None]
+            if not todo:
+                return
+            scenes = [_from_rest(each, torque) for each, torque in todo]
+            found = solutions(kept, executor, _run_from_rest, scenes, _way(todo[0][0]), how.backend)
+            for (each, torque), (_, word) in zip(todo, found, strict=True):
+                each.learn(torque, word == "turns")
+                done += 1
+                report(float(min(done, usual)), usual)
+
+
+def _way(search: _Search) -> float:
+    """Angle through which the gear is to come [rad]."""
+    assert search.scene.gears is not None
+    return search.impacts * 2.0 * math.pi / search.scene.gears.gear_teeth
+
+
+def _from_rest(search: _Search, torque: float) -> Scene:
+    """Return the scene of a run from rest at a torque beyond the dry resistance, with the time that it gets."""
+    scene, geometry, way = search.scene, search.scene.geometry, _way(search)
+    gears, load = scene.gears, scene.load
+    assert gears is not None
+    assert load is not None
+    ratio = geometry.base_radius_gear / geometry.base_radius_pinion
+    inertia = gears.gear_inertia + gears.pinion_inertia * ratio**2
+    duration = math.sqrt(2.0 * way * inertia / (torque * ratio))
+    if load.drag > 0.0:
+        duration += way / math.sqrt(torque * ratio / load.drag)
+    duration += way * load.viscous / (torque * ratio)
+    others = ("schedule", "speed", "speed_gain")
+    drive = {key: value for key, value in scene.to_dict()["drive"].items() if key not in others}
+    return scene.replace(
+        {
+            "drive": {**drive, "torque": _dry(scene) + torque},
+            "initial.gear_speed": 0.0,
+            "run.duration": _PATIENCE * duration,
+            "run.samples": 101,
+        }
+    )
+
+
+def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, str]:
+    """Run a scene; ``turns`` if the gear comes that far, else ``sticks``."""
+    solution = solve_to_end(scene, backend)
+    if solution.status != "finished":
+        assert scene.drive is not None
+        raise SolverError(
+            f"the run at {scene.drive.torque:g} N m could not be finished: {solution.message or solution.status}",
+            time=solution.reached or 0.0,
+            state={},
+            last_event="not kept",
+            advice="try another rtol (run.rtol)",
+        )
+    angle, none = solution.samples["gear_angle"], unsolved("", "")
+    word = "turns" if angle.max() - angle[0] >= way else "sticks"
+    return replace(solution, time=none.time, samples=none.samples, events=none.events), word
+
+
+def _dry(scene: Scene) -> float:
+    """Drive torque that the dry resistance takes [N m]: ``M20 R1/R2``."""
+    assert scene.load is not None
+    geometry = scene.geometry
+    return scene.load.torque * geometry.base_radius_pinion / geometry.base_radius_gear
+
+
+def _lowest(scene: Scene, given: float | None) -> float:
+    assert scene.drive is not None
+    lowest = _LOWEST * abs(scene.drive.torque) if given is None else given
+    if not 0.0 < lowest < math.inf:
+        allowed = (
+            "must be a positive torque; give the lowest to be tried (lowest=, --lowest) where the scene has no "
+            "constant drive torque, as with drive.schedule"
+        )
+        raise SceneError("lowest", given, allowed)
+    return lowest
+
+
+def _require(scene: Scene, impacts: int) -> None:
+    require_gears(scene)
+    require_constant(scene, "a starting torque", "it holds against one load", ("load",))
+    if not isinstance(impacts, int) or isinstance(impacts, bool) or impacts < 1:
+        raise SceneError("impacts", impacts, "must be a whole number, 1 or more")

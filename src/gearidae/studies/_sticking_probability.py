@@ -1,0 +1,127 @@
+"""Probability of sticking from an ensemble, along one of the keys that were drawn, with its statistical band."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.dataset import dimension_names
+from gearidae.errors import SceneError
+
+__all__ = ["drawn_keys", "sticking_probability"]
+
+_PER_BIN: Final = 25
+"""Members that a bin has at least, by default: a probability of one half is then known to 0.1."""
+_MOST_BINS: Final = 20
+
+
+def sticking_probability(
+    ds: xr.Dataset, over: str | None = None, *, bins: int | None = None, confidence: float = 0.95
+) -> xr.Dataset:
+    """Share of an ensemble's members that stick, alone or against one of the keys.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `ensemble`.
+    over : str, optional
+        Key that was drawn; by default all members are taken together.
+    bins : int, optional
+        Number of intervals of the key, with as many members in each; by default as many as have 25 members or more, at
+        most 20.
+    confidence : float, optional
+        Of the band.
+
+    Returns
+    -------
+    Dataset
+        ``probability`` with its confidence interval ``low`` to ``high`` (Wilson 1927, doi:10.2307/2276774), ``members``
+        and ``stuck``; with `over` along a dimension of the key's name, at the members' mean, with the interval's ends
+        ``lowest`` and ``highest``. Members that are unfinished do not count; nor do those that Sobol' indices need
+        besides, which are mixtures of others.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no ensemble, the key was not drawn, or too few members are finished.
+    """
+    if not 0.0 < confidence < 1.0:
+        raise SceneError("confidence", confidence, "must be above 0 and below 1")
+    names = drawn_keys(ds)
+    own = np.isfinite(ds["sticks"].values)
+    if "matrix" in ds.coords:
+        own &= ~np.char.startswith(ds["matrix"].values.astype(str), "AB")
+    members = ds.isel(member=own)
+    if not members.sizes["member"]:
+        raise SceneError("dataset", "no member", "has been finished")
+    if over is None:
+        return xr.Dataset(_band([members["sticks"].values], (), confidence), attrs=ds.attrs)
+    if over not in names:
+        raise SceneError("over", over, f"must be a key that was drawn: {', '.join(names)}")
+    name = names[over]
+    ordered = members.sortby(name)
+    count = _bin_count(ordered.sizes["member"], bins)
+    groups = np.array_split(np.arange(ordered.sizes["member"]), count)
+    values, sticks = ordered[name].values, ordered["sticks"].values
+    about = ds[name].attrs
+    ends = {
+        "lowest": (name, np.array([values[group[0]] for group in groups]), about),
+        "highest": (name, np.array([values[group[-1]] for group in groups]), about),
+    }
+    centre = np.array([values[group].mean() for group in groups])
+    return xr.Dataset(
+        _band([sticks[group] for group in groups], (name,), confidence) | ends,
+        coords={name: (name, centre, about)},
+        attrs=ds.attrs,
+    )
+
+
+def drawn_keys(ds: xr.Dataset) -> dict[str, str]:
+    """Keys that an ensemble's members were drawn in, and the coordinates that hold their values.
+
+    Returns
+    -------
+    dict of str to str
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no ensemble.
+    """
+    if "ensemble" not in ds.attrs or "member" not in ds.dims or "sticks" not in ds:
+        raise SceneError("dataset", type(ds).__name__, "must be an ensemble, from studies.ensemble")
+    return dimension_names(json.loads(ds.attrs["swept"]))
+
+
+def _bin_count(members: int, bins: int | None) -> int:
+    if bins is None:
+        return max(1, min(_MOST_BINS, members // _PER_BIN))
+    if not isinstance(bins, int) or isinstance(bins, bool) or not 1 <= bins <= members:
+        raise SceneError("bins", bins, f"must be a whole number in 1..{members}")
+    return bins
+
+
+def _band(groups: list[np.ndarray[Any, Any]], dims: tuple[str, ...], confidence: float) -> dict[str, Any]:
+    """Probability, interval and counts of each group."""
+    from scipy.stats import binomtest  # which takes half a second to load, and pictures do without
+
+    counts = [(int(each.sum()), each.size) for each in groups]
+    intervals = [
+        binomtest(stuck, size).proportion_ci(confidence_level=confidence, method="wilson")
+        for stuck, size in counts
+    ]
+    percent = f"{100.0 * confidence:g} %"
+    columns = {
+        "probability": ([stuck / size for stuck, size in counts], "share of the members that stick"),
+        "low": ([each.low for each in intervals], f"lower end of the {percent} confidence interval"),
+        "high": ([each.high for each in intervals], f"upper end of the {percent} confidence interval"),
+        "stuck": ([stuck for stuck, _ in counts], "members that stick"),
+        "members": ([size for _, size in counts], "members that are finished"),
+    }
+    return {
+        name: (dims, np.array(values).reshape(() if not dims else -1), {"long_name": words, "units": "1"})
+        for name, (values, words) in columns.items()
+    }

@@ -1,0 +1,373 @@
+"""What a study has found: one sentence that answers its question, and rows of names, values and remarks.
+
+The same words stand on the terminal and in the report.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import xarray as xr
+
+from gearidae.analysis.verdict.codes import Outcome
+from gearidae.archive.select import scene_of
+from gearidae.scene import describe_key
+from gearidae.scene.prefixes import with_prefix
+
+__all__ = ["Answer", "answer"]
+
+Rows: TypeAlias = Iterator[tuple[str, str, str]]
+
+_FIGURES: Final = (
+    "min_gear_speed",
+    "max_gear_speed",
+    "largest_mesh_force",
+    "smallest_mesh_force",
+    "stick_time",
+)
+_SHARES: Final = (0.9, 0.5, 0.1)
+"""Of the gears that still turn, for which the passages are given."""
+_SIGNS: Final = {
+    Outcome.TURNS: ".",
+    Outcome.CROSSES_BACKLASH: "x",
+    Outcome.STICKS: "#",
+    Outcome.UNFINISHED: "?",
+}
+_WIDEST: Final = 80
+"""Values of the second key of an operating map that stand in a line."""
+_MOST_FRACTIONS: Final = 13
+_STEPS_WANTED: Final = 50
+"""Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
+_ENDINGS: Final = {
+    "coverage": "the requested coverage is reached",
+    "passages": "the requested passages are reached",
+    "interrupted": "the study was interrupted",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a study has found.
+
+    Attributes
+    ----------
+    sentence : str
+        The answer.
+    rows : tuple of (str, str, str)
+        Name, value and remark; a row without a value is a heading.
+    """
+
+    sentence: str
+    rows: tuple[tuple[str, str, str], ...]
+
+
+def answer(ds: xr.Dataset, kind: str) -> Answer:
+    """Say what a study has found.
+
+    Parameters
+    ----------
+    kind : str
+        From `gearidae.studies.products.open_product`, other than ``runs``.
+    """
+    sentence, rows = _ANSWERS[kind]
+    return Answer(sentence(ds), tuple(rows(ds)))
+
+
+def _threshold_sentence(ds: xr.Dataset) -> str:
+    key, one = _threshold_key(ds), ds.isel(exits=-1)
+    exits = int(ds["exits"][-1])
+    if np.isnan(one["limit"]):
+        return f"No run has stuck within {exits} mesh exits so far."
+    sticks, passes = _ends(one)
+    return f"Within {exits} mesh exits the gear sticks at {key} = {sticks} and not at {passes}."
+
+
+def _threshold_rows(ds: xr.Dataset) -> Rows:
+    """Limit and bracket for each number of exits."""
+    yield f"Sticking limit of {_threshold_key(ds)}", "", ""
+    for exits in ds["exits"].values:
+        one = ds.sel(exits=exits)
+        waited = f"within {exits} mesh exit{'s' if exits > 1 else ''}"
+        if np.isnan(one["limit"]):
+            yield waited, "-", "no run has stuck so early"
+            continue
+        sticks, passes = _ends(one)
+        yield waited, _number(float(one["limit"]), one), f"sticks at {sticks}, passes at {passes}"
+    yield "runs", str(ds.sizes["run"]), ""
+
+
+def _threshold_key(ds: xr.Dataset) -> str:
+    return str(ds["limit"].attrs["long_name"]).removeprefix("sticking limit of ")
+
+
+def _ends(one: xr.Dataset) -> tuple[str, str]:
+    return _number(float(one["sticks"]), one), _number(float(one["passes"]), one)
+
+
+def _number(value: float, one: xr.Dataset) -> str:
+    """Write a value of a bracket with as many digits as tell its ends apart, four at least."""
+    sticks, passes, unit = float(one["sticks"]), float(one["passes"]), str(one["limit"].attrs["units"])
+    digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
+    return f"{value:.{digits}g}" + ("" if unit == "1" else f" {unit}")
+
+
+def _ensemble_sentence(ds: xr.Dataset) -> str:
+    from gearidae.studies._sticking_probability import sticking_probability
+
+    if not np.isfinite(ds["sticks"]).any():
+        return f"None of {ds.sizes['member']} members has been finished."
+    found = sticking_probability(ds)
+    stuck, members = int(found["stuck"]), int(found["members"])
+    return f"{stuck} of {members} members stick: probability of sticking {_probability(found)}."
+
+
+def _probability(found: xr.Dataset) -> str:
+    low, high = float(found["low"]), float(found["high"])
+    return f"{float(found['probability']):.3g}, 95 % between {low:.3g} and {high:.3g}"
+
+
+def _ensemble_rows(ds: xr.Dataset) -> Rows:
+    """Probability of sticking, indices, verdicts, figures with their spread."""
+    from gearidae.studies._sticking_probability import sticking_probability
+
+    yield str(ds.attrs["title"]), "", ""
+    if np.isfinite(ds["sticks"]).any():
+        value, band = _probability(sticking_probability(ds)).split(", ")
+        yield "probability of sticking", value, band
+    if "total_order" in ds:
+        yield (
+            f"Sobol indices of {ds.attrs['index_of']}",
+            "total",
+            f"first order, {ds.attrs['index_rows']} rows",
+        )
+        for key in ds["parameter"].values:
+            one = ds.sel(parameter=key)
+            yield str(key), _uncertain(one, "total_order"), _uncertain(one, "first_order")
+    yield from _counts(ds["verdict"])
+    for name in _FIGURES:
+        if name in ds and np.isfinite(ds[name]).any():
+            low, middle, high = np.nanquantile(ds[name].values, (0.05, 0.5, 0.95))
+            unit = str(ds[name].attrs["units"])
+            yield name, f"{middle:.4g} {unit}", f"90 % between {low:.4g} and {high:.4g}"
+
+
+def _uncertain(one: xr.Dataset, name: str) -> str:
+    return f"{float(one[name]):.3f} +- {float(one[f'{name}_uncertainty']):.3f}"
+
+
+def _counts(words: xr.DataArray) -> Rows:
+    for word, count in Counter(words.values.tolist()).most_common():
+        yield str(word), str(count), f"{100.0 * count / words.size:.3g} % of the members"
+
+
+def _map_sentence(ds: xr.Dataset) -> str:
+    legend = ", ".join(f"{count} {words}" for _, words, count in _legend(ds))
+    return f"{ds['outcome'].size} runs: {legend}."
+
+
+def _legend(ds: xr.Dataset) -> Iterator[tuple[str, str, int]]:
+    for code, sign in _SIGNS.items():
+        if count := int((ds["outcome"].values == code).sum()):
+            yield sign, code.name.lower().replace("_", " "), count
+
+
+def _map_rows(ds: xr.Dataset) -> Rows:
+    """A line for each value of the first key, a sign for each of the second."""
+    down, across = map(str, ds["outcome"].dims)
+    yield str(ds.attrs["title"]), "", ""
+    ends = [_short(value) for value in ds[across].values[[0, -1]]]
+    yield f"{down}, downwards", f"{across}, from {ends[0]} to {ends[1]}", ""
+    for row in range(ds.sizes[down]):
+        codes = ds["outcome"].values[row, :_WIDEST].tolist()
+        signs = "".join(_SIGNS[Outcome(code)] for code in codes)
+        yield _short(ds[down].values[row]), signs + ("..." if ds.sizes[across] > _WIDEST else ""), ""
+    yield ", ".join(f"{sign} {words}: {count}" for sign, words, count in _legend(ds)), "", ""
+
+
+def _short(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float | int | np.number) else str(value)
+
+
+def _life_sentence(ds: xr.Dataset) -> str:
+    last = float(ds["passages"][-1])
+    ending = str(ds.attrs.get("ending", ""))
+    if ending == "sticks":
+        end = float(ds.attrs.get("passages_to_sticking", math.nan))
+        between = f"between {last:.4g} and {end:.4g} passages of each tooth of the pinion"
+        return f"The gear sticks {between}{_hours(ds, end)}."
+    return (
+        f"After {last:.4g} passages of each tooth of the pinion{_hours(ds, last)} "
+        f"{_ENDINGS.get(ending, 'the life ends')}."
+    )
+
+
+def _hours(ds: xr.Dataset, passages: float) -> str:
+    """Say how long passages take at the speed with which a life begins; nothing if that is not known."""
+    gears, speed = scene_of(ds).get("gears"), float(ds["mean_gear_speed"][0])
+    if not gears or not speed > 0.0 or not math.isfinite(passages):
+        return ""
+    hours = passages * 2.0 * math.pi * gears["pinion_teeth"] / (gears["gear_teeth"] * speed) / 3600.0
+    return f" ({hours:.3g} h at {speed:.4g} rad/s)"
+
+
+def _life_rows(ds: xr.Dataset) -> Rows:
+    """Coverage, speed and frequency at the steps of the life."""
+    yield "Passages of each tooth", "coverage", "mean speed, smallest speed, characteristic frequency"
+    for number in range(ds.sizes["passages"]):
+        one = ds.isel(passages=number)
+        shares = ", ".join(f"{round(100.0 * share, 6):.4g} %" for share in one["coverage"].values)
+        speed = f"{float(one['mean_gear_speed']):.4g} rad/s, {float(one['min_gear_speed']):.4g} rad/s"
+        rings = float(one["characteristic_frequency"]) if "characteristic_frequency" in one else math.nan
+        more = "" if math.isnan(rings) else f", {rings:.4g} Hz"
+        yield f"{float(one['passages']):.4g}", shares, f"{one['verdict'].values!s}, {speed}{more}"
+    counted = {name: ds.attrs.get(f"mesh_cycles_{name}") for name in ("jumped", "simulated")}
+    if None not in counted.values():
+        jumped = f"{float(counted['jumped']):.4g} jumped, {ds.attrs['windows']} windows"  # type: ignore[arg-type]
+        yield "mesh cycles simulated", f"{float(counted['simulated']):.4g}", jumped  # type: ignore[arg-type]
+
+
+def _lives_sentence(ds: xr.Dataset) -> str:
+    members, stuck = ds.sizes["member"], int((ds["sticks"] > 0.0).sum())
+    if not stuck:
+        return f"None of {members} gears sticks as far as they were followed."
+    half = next(value for name, value, _ in _surviving_rows(ds) if " 50 % " in name)
+    return f"{stuck} of {members} gears stick; half still turn after {half} passages of each tooth of the pinion."
+
+
+def _lives_rows(ds: xr.Dataset) -> Rows:
+    """How the lives end, and after how many passages shares of the gears still turn."""
+    yield str(ds.attrs["title"]), "", ""
+    yield from _counts(ds["ending"])
+    if (ds["sticks"] > 0.0).any():
+        yield from _surviving_rows(ds)
+    if np.isfinite(ds["final_coverage"]).any():
+        low, middle, high = np.nanquantile(ds["final_coverage"].values, (0.05, 0.5, 0.95))
+        spread = f"90 % between {100.0 * low:.4g} % and {100.0 * high:.4g} %"
+        yield "coverage at the end", f"{100.0 * middle:.4g} %", spread
+    yield "windows", str(int(np.nansum(ds["windows"].values))), "simulated"
+
+
+def _surviving_rows(ds: xr.Dataset) -> Rows:
+    from gearidae.studies._surviving_share import surviving_share
+
+    found = surviving_share(ds)
+    passages, shares = found["passages"].values, found["share"].values
+    followed = max(passages[-1], np.nanmax(ds["passages_turning"].values))
+    for share in _SHARES:
+        fallen = np.flatnonzero(shares <= share)
+        value = f"{passages[fallen[0]]:.4g}" if fallen.size else f"more than {followed:.4g}"
+        yield f"passages until {100.0 * share:.0f} % still turn", value, "of each tooth of the pinion"
+
+
+def _posterior_sentence(ds: xr.Dataset) -> str:
+    words = []
+    for key in ds["parameter"].values.tolist():
+        low, _, middle, _, high = (
+            _in_unit(value, key) for value in ds["quantiles"].sel(parameter=key).values
+        )
+        words.append(f"{key} is {middle}, 95 % in {low} .. {high}")
+    return f"{'; '.join(words)}."
+
+
+def _posterior_rows(ds: xr.Dataset) -> Rows:
+    """Mean, deviation and quantiles of each key; of draws, how many are independent."""
+    count = len(json.loads(ds.attrs["calibration"])["observations"])
+    yield str(ds.attrs["title"]), "", f"{count} observation{'s' if count > 1 else ''}"
+    for key in ds["parameter"].values.tolist():
+        one = ds.sel(parameter=key)
+        low, inner_low, middle, inner_high, high = (_in_unit(each, key) for each in one["quantiles"].values)
+        spread = f"{_in_unit(float(one['mean']), key)} +- {_in_unit(float(one['standard_deviation']), key)}"
+        yield key, spread, f"median {middle}, 68 % in {inner_low} .. {inner_high}, 95 % in {low} .. {high}"
+    if "autocorrelation_time" in ds.attrs:
+        time, draws = float(ds.attrs["autocorrelation_time"]), ds.sizes["draw"]
+        many = f"{draws / max(time, 1.0):.2g}"
+        if ds.attrs.get("steps_kept", math.inf) < _STEPS_WANTED * time:
+            independent = f"fewer than {many} independent: few --steps"
+        else:
+            independent = f"some {many} of them independent"
+        yield "draws", str(draws), independent
+
+
+def _in_unit(value: float, key: str) -> str:
+    unit = describe_key(key).unit
+    return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
+
+
+def _starting_sentence(ds: xr.Dataset) -> str:
+    if ds.sizes["sam_fraction"] > 1:
+        torques = _simulated(ds).values
+        low, high = (with_prefix(float(f(torques)), "N m", 4) for f in (np.nanmin, np.nanmax))
+        return f"A gear at rest starts at {low} to {high} on the pinion, by its coating."
+    torque, drive = float(_simulated(ds)[0]), float(ds.attrs.get("drive_torque", math.nan))
+    if torque == float(ds["simulated_stuck"][0]):
+        return f"Adhesion does not hold a gear at rest: it starts at {with_prefix(torque, 'N m', 4)} on the pinion."
+    starts = f"A gear at rest starts at {with_prefix(torque, 'N m', 4)} on the pinion"
+    if not drive > 0.0:
+        return f"{starts}."
+    own = "starts it" if drive >= torque else "does not start it"
+    return f"{starts}: the drive's own {with_prefix(drive, 'N m', 4)} {own}."
+
+
+def _simulated(ds: xr.Dataset) -> xr.DataArray:
+    """Simulated torques; static ones if none have been simulated."""
+    simulated = ds["simulated_torque"]
+    return simulated if np.isfinite(simulated).any() else ds["static_torque"]
+
+
+def _starting_rows(ds: xr.Dataset) -> Rows:
+    """Torques at each coverage."""
+    yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
+    for number in range(ds.sizes["sam_fraction"]):
+        one = ds.isel(sam_fraction=number)
+        turns, sticks, static = (
+            with_prefix(float(one[name]), "N m", 4)
+            for name in ("simulated_torque", "simulated_stuck", "static_torque")
+        )
+        yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, f"sticks at {sticks}, static {static}"
+
+
+def _coating_sentence(ds: xr.Dataset) -> str:
+    frequency = ds["characteristic_frequency"].values
+    if not np.isfinite(frequency).any():
+        return "Nothing rings at any coverage."
+    low, high = (with_prefix(float(f(frequency)), "Hz", 4) for f in (np.nanmin, np.nanmax))
+    ends = [f"{100.0 * float(f(ds['sam_fraction'])):.4g} %" for f in (np.max, np.min)]
+    return f"From SAM {ends[0]} to {ends[1]} the teeth ring at {low} to {high}."
+
+
+def _coating_rows(ds: xr.Dataset) -> Rows:
+    """Frequencies at some of the fractions, line by line."""
+    # without the impacts, of which there may be none
+    ds = ds[["characteristic_frequency", "uncertainty", "min_gear_speed"]]
+    further = [dim for dim in ds["characteristic_frequency"].dims if dim != "sam_fraction"]
+    lines = ds.stack(line=further) if further else ds.expand_dims("line")
+    count = ds.sizes["sam_fraction"]
+    picked = np.unique(np.linspace(0, count - 1, min(count, _MOST_FRACTIONS)).round().astype(int))
+    for number in range(lines.sizes["line"]):
+        line = lines.isel(line=number)
+        held = ", ".join(f"{dim} = {line[dim].item():g}" for dim in further)
+        yield held or "Frequency of the first impact response", "", ""
+        for place in picked:
+            one = line.isel(sam_fraction=int(place))
+            value, spread = float(one["characteristic_frequency"]), float(one["uncertainty"])
+            text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
+            stops = "" if float(one["min_gear_speed"]) > 0.0 else "the gear stops within the run"
+            yield f"SAM {100 * float(one['sam_fraction']):g} %", text, stops
+
+
+_ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Dataset], Any]]]] = {
+    "coating_map": (_coating_sentence, _coating_rows),
+    "ensemble": (_ensemble_sentence, _ensemble_rows),
+    "life": (_life_sentence, _life_rows),
+    "lives": (_lives_sentence, _lives_rows),
+    "operating_map": (_map_sentence, _map_rows),
+    "posterior": (_posterior_sentence, _posterior_rows),
+    "starting_torque": (_starting_sentence, _starting_rows),
+    "sticking_threshold": (_threshold_sentence, _threshold_rows),
+}
