@@ -14,7 +14,14 @@ import gearidae as gd
 from gearidae.archive import combine, dimension_names, to_dataset
 from gearidae.archive.select import run_value, runs
 from gearidae.archive.variables import EVENTS, SAMPLES
-from gearidae.records import ELASTIC_COLUMNS, GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Statistics
+from gearidae.records import (
+    ELASTIC_COLUMNS,
+    GEAR_COLUMNS,
+    POPULATION_COLUMNS,
+    ROLLER_COLUMNS,
+    EventKind,
+    Statistics,
+)
 from gearidae.runs.running import unsolved
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
@@ -46,7 +53,7 @@ def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
 
 
 def test_catalogue_knows_every_column_of_the_engine():
-    assert set(SAMPLES) == {*GEAR_COLUMNS, *ROLLER_COLUMNS, *ELASTIC_COLUMNS}
+    assert set(SAMPLES) == {*GEAR_COLUMNS, *ROLLER_COLUMNS, *ELASTIC_COLUMNS, *POPULATION_COLUMNS}
 
 
 def test_gear_run_has_the_promised_layout(make_solution):
@@ -80,7 +87,8 @@ def test_flags_follow_cf(make_solution):
     kind, flank = ds.event_kind.attrs, ds.event_flank.attrs
     assert kind["flag_meanings"].split() == [
         "onset", "separation", "turning_point", "full_stretch", "mesh_entry",
-        "mesh_exit", "stick", "slip", "flank_change", "schedule_knot",
+        "mesh_exit", "stick", "slip", "flank_change", "schedule_knot", "asperity_onset",
+        "asperity_detachment",
     ]  # fmt: skip
     assert kind["flag_values"].tolist() == list(range(10))
     assert flank["flag_meanings"].split() == ["none", "drive", "coast"]

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.analysis.record_columns import Column, find_columns, has_columns
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.library import loaded
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["Reading", "read_signal"]
-
-Floats = NDArray[np.float64]
 
 _SI = {"time": "s", "gear_speed": "rad s-1"}
 _SETTINGS = ("columns", "skip", "delimiter", "decimal", "bridge")

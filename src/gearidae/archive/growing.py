@@ -78,7 +78,7 @@ class GrowingArchive:
         with disk_errors(), LIBRARY:
             self._file: Any = netCDF4.Dataset(path, "r+", keepweakref=True)
             self._file.set_auto_maskandscale(False)
-            self._run = str(self._file.getncattr(_RUN))
+            self._run = str(getattr(self._file, _RUN, ""))
 
     @classmethod
     def create(cls, path: Path, template: xr.Dataset, samples: int, duration: float) -> Self:

@@ -107,13 +107,8 @@ def require(ds: xr.Dataset, kind: str) -> xr.Dataset:
 
     Parameters
     ----------
-    ds : Dataset
     kind : str
         ``coating_map``, ``life``, ``lives``, ``posterior``, ``starting_torque`` or ``sticking_threshold``.
-
-    Returns
-    -------
-    Dataset
 
     Raises
     ------
@@ -177,10 +172,6 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
 
 def kind_of(ds: xr.Dataset) -> str:
     """Say what a dataset is.
-
-    Parameters
-    ----------
-    ds : Dataset
 
     Returns
     -------

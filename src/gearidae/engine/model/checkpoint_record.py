@@ -124,7 +124,7 @@ STATE: Final = record_type(
     ("light", INT),  # 1 once that has been long ago
     ("stop_armed", INT),  # 1 once the gear has moved forward, where the run ends as its speed falls to zero
     ("asperity_onsets", INT),  # asperities of a population that have joined so far [1]
-    ("asperity_detachments", INT),  # those that have let go [1]
+    ("asperity_detachments", INT),  # those that have detached [1]
     ("cycle_events", INT),  # both since the last mesh mark [1]
     ("last_root", REAL),  # time of the last root [tau]
     ("roots", INT),  # how many have come in close succession
