@@ -11,7 +11,8 @@ import xarray as xr
 from scipy import signal as dsp
 
 import gearidae as gd
-from gearidae.analysis.signal import CALIBRATION, Floats
+from gearidae.analysis.signal import CALIBRATION
+from gearidae.arrays import Floats
 
 __all__ = ["CONDITIONS", "FRACTIONS", "RATE", "Condition", "Key", "clean_speeds", "cutoff", "record"]
 

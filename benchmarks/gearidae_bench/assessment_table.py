@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 import gearidae as gd
-from gearidae.analysis.signal import Floats
+from gearidae.arrays import Floats
 from gearidae_bench.assessment_signals import (
     CONDITIONS,
     FRACTIONS,

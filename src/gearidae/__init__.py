@@ -15,92 +15,41 @@ from typing import TYPE_CHECKING, Any
 from gearidae.lazy import lazy_names, when_imported
 
 if TYPE_CHECKING:
-    from gearidae import analysis, contact, plot, report, scene, studies, surfaces, torques, wear
-    from gearidae.analysis.verdict import outcomes
-    from gearidae.archive import open_archive, save
-    from gearidae.archive.concat import concat
-    from gearidae.errors import GearidaeError, Interrupted, SceneError, SolverError
-    from gearidae.population import population
-    from gearidae.report import write_report
-    from gearidae.runs.simulation import simulate
-    from gearidae.runs.sweeping import sweep
-    from gearidae.scene import Scene, describe_key, describe_keys, dump_case, load_case, preset
-    from gearidae.surfaces import surface_from
-    from gearidae.torques import register_torque, torque_names, unregister_torque
+    from gearidae import analysis as analysis
+    from gearidae import contact as contact
+    from gearidae import plot as plot
+    from gearidae import report as report
+    from gearidae import scene as scene
+    from gearidae import studies as studies
+    from gearidae import surfaces as surfaces
+    from gearidae import torques as torques
+    from gearidae import wear as wear
+    from gearidae.analysis.verdict import outcomes as outcomes
+    from gearidae.archive import open_archive as open_archive
+    from gearidae.archive import save as save
+    from gearidae.archive.concat import concat as concat
+    from gearidae.errors import GearidaeError as GearidaeError
+    from gearidae.errors import Interrupted as Interrupted
+    from gearidae.errors import SceneError as SceneError
+    from gearidae.errors import SolverError as SolverError
+    from gearidae.population import population as population
+    from gearidae.report import write_report as write_report
+    from gearidae.runs.simulation import simulate as simulate
+    from gearidae.runs.sweeping import sweep as sweep
+    from gearidae.scene import Scene as Scene
+    from gearidae.scene import describe_key as describe_key
+    from gearidae.scene import describe_keys as describe_keys
+    from gearidae.scene import dump_case as dump_case
+    from gearidae.scene import load_case as load_case
+    from gearidae.scene import preset as preset
+    from gearidae.surfaces import surface_from as surface_from
+    from gearidae.torques import register_torque as register_torque
+    from gearidae.torques import torque_names as torque_names
+    from gearidae.torques import unregister_torque as unregister_torque
 
 __version__ = "0.2.0"
 
-__all__ = [
-    "GearidaeError",
-    "Interrupted",
-    "Scene",
-    "SceneError",
-    "SolverError",
-    "__version__",
-    "analysis",
-    "concat",
-    "contact",
-    "describe_key",
-    "describe_keys",
-    "dump_case",
-    "load_case",
-    "open_archive",
-    "outcomes",
-    "plot",
-    "population",
-    "preset",
-    "register_torque",
-    "report",
-    "save",
-    "scene",
-    "simulate",
-    "studies",
-    "surface_from",
-    "surfaces",
-    "sweep",
-    "torque_names",
-    "torques",
-    "unregister_torque",
-    "wear",
-    "write_report",
-]
-
-# Public name -> the module it lives in; a module that is public itself maps to None.
-_HOME: dict[str, str | None] = {
-    "GearidaeError": "errors",
-    "Interrupted": "errors",
-    "Scene": "scene",
-    "SceneError": "errors",
-    "SolverError": "errors",
-    "analysis": None,
-    "concat": "archive.concat",
-    "contact": None,
-    "describe_key": "scene",
-    "describe_keys": "scene",
-    "dump_case": "scene",
-    "load_case": "scene",
-    "open_archive": "archive",
-    "outcomes": "analysis.verdict",
-    "plot": None,
-    "population": "population",
-    "preset": "scene",
-    "register_torque": "torques",
-    "report": None,
-    "save": "archive",
-    "scene": None,
-    "simulate": "runs.simulation",
-    "studies": None,
-    "surface_from": "surfaces",
-    "surfaces": None,
-    "sweep": "runs.sweeping",
-    "torque_names": "torques",
-    "torques": None,
-    "unregister_torque": "torques",
-    "wear": None,
-    "write_report": "report",
-}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)
 
 
 def _results(ds: Any) -> Any:

@@ -105,7 +105,7 @@ class Interrupted(KeyboardInterrupt):
     Parameters
     ----------
     message : str
-        How far it was, and where what there is is kept.
+        The progress of the run, and the place of its data.
     dataset : xarray.Dataset
         The samples and events recorded so far.
     """

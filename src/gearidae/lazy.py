@@ -1,15 +1,16 @@
-"""Public names that are loaded on first use (PEP 562), so that importing a package costs next to nothing.
+"""Public names that are loaded on first use (PEP 562), so that importing a package takes next to no time.
 
-Likewise what is to be done once another package has been imported, without importing it.
+Likewise a call as soon as another package has been imported, without importing it.
 """
 
 from __future__ import annotations
 
+import ast
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from importlib import import_module
 from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
@@ -17,49 +18,41 @@ from typing import Any
 __all__ = ["lazy_names", "when_imported"]
 
 
-class _Door(ModuleType):
-    """A package in which a function may be called like the module that it lives in: the function is what is public."""
+def lazy_names(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """Make ``__getattr__``, ``__dir__`` and ``__all__`` of a package from its re-exports.
 
-    def __setattr__(self, name: str, value: object) -> None:
-        if isinstance(value, ModuleType) and name in self.__dict__.get("__functions__", ()):
-            return  # Python puts every module that is imported into its package, whoever asked for it
-        super().__setattr__(name, value)
-
-    def __reduce__(self) -> tuple[Callable[[str], ModuleType], tuple[str]]:
-        """Let functions that use the package be sent to other processes, as Dask does; modules are sent by name."""
-        return import_module, (self.__name__,)
-
-
-def lazy_names(
-    namespace: dict[str, Any], home: Mapping[str, str | None]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Make a package's ``__getattr__`` and ``__dir__``.
+    Re-exports, ``from module import name as name``, are the only list of its public names, for type checkers too.
+    Those under ``if TYPE_CHECKING`` are imported on first use. A module must not have the name of a function that
+    its package re-exports, because Python sets a package's attribute when it imports a module.
 
     Parameters
     ----------
-    namespace : dict
-        The package's ``globals()``, in which a name is kept once it has been loaded.
-    home : mapping of str to str or None
-        The module within the package where each public name lives, or its full name if it lives in another room; None
-        for a name that is such a module itself.
+    package : str
+        Its ``__name__``.
     """
-    package = namespace["__name__"]
-    namespace["__functions__"] = frozenset(name for name, place in home.items() if name == place)
-    sys.modules[package].__class__ = _Door
+    here = sys.modules[package]
+    assert here.__spec__ is not None
+    assert isinstance(here.__spec__.loader, SourceFileLoader)
+    home = {
+        each.name: str(node.module)
+        for node in ast.walk(ast.parse(here.__spec__.loader.get_data(str(here.__file__))))
+        if isinstance(node, ast.ImportFrom)
+        for each in node.names
+        if each.name == each.asname
+    }
 
     def load(name: str) -> Any:
         if name not in home:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         place = home[name]
-        inside = name if place is None else place
-        module = import_module(inside if inside.startswith("gearidae.") else f"{package}.{inside}")
-        namespace[name] = module if place is None else getattr(module, name)
-        return namespace[name]
+        value = import_module(f"{place}.{name}") if place == package else getattr(import_module(place), name)
+        setattr(here, name, value)
+        return value
 
     def names() -> list[str]:
-        return sorted({*namespace, *home})
+        return sorted({*vars(here), *home})
 
-    return load, names
+    return load, names, sorted(home)
 
 
 def when_imported(name: str, call: Callable[[], None]) -> None:

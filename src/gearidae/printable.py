@@ -10,10 +10,6 @@ __all__ = ["printable"]
 def printable(text: str) -> str:
     r"""Write characters that act on a terminal, or that no encoding has, as their escapes: ``\x1b``, ``\udcff``.
 
-    Parameters
-    ----------
-    text : str
-
     Returns
     -------
     str

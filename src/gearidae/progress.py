@@ -16,13 +16,13 @@ __all__ = ["RunProgress", "SweepProgress", "in_words", "run_progress", "sweep_pr
 log = logging.getLogger(__name__)
 
 RunProgress = Callable[[float, int], None]
-"""Told the simulated time reached [s] and the number of events so far."""
+"""Called with the simulated time [s] and the number of events so far."""
 _LONG: Final = 600.0
 """Wall time above which a run is announced as long [s]."""
 _REDRAWN: Final = 0.1
 """Least time between two states of a bar in a notebook [s]."""
 SweepProgress = Callable[[float, int], None]
-"""Told how many runs are done (with fractions for those under way) and how many there are."""
+"""Called with the number of finished runs (with fractions for those under way) and the number of all runs."""
 
 
 @contextmanager
@@ -128,7 +128,7 @@ def sweep_progress(wanted: bool | SweepProgress, runs: int) -> Iterator[SweepPro
 
 
 Advance = Callable[[float, str], None]
-"""Told how much is done, in the unit of the whole, and that in words."""
+"""Called with the finished part, in the unit of the whole, and the same in words."""
 
 
 @contextmanager

@@ -38,6 +38,9 @@ GEAR_LAYOUT = {
     "drive_gap": ("time", "m"),
     "coast_gap": ("time", "m"),
     "pairs_in_contact": ("time", "1"),
+    "drive_torque": ("time", "N m"),
+    "load_torque": ("time", "N m"),
+    "pinion_angle": ("time", "rad"),
     "event_time": ("event", "s"),
     "event_kind": ("event", "1"),
     "event_pair": ("event", "1"),
@@ -90,7 +93,7 @@ def test_flags_follow_cf(make_solution):
         "mesh_exit", "stick", "slip", "flank_change", "schedule_knot", "asperity_onset",
         "asperity_detachment",
     ]  # fmt: skip
-    assert kind["flag_values"].tolist() == list(range(10))
+    assert kind["flag_values"].tolist() == list(range(12))
     assert flank["flag_meanings"].split() == ["none", "drive", "coast"]
     assert flank["flag_values"].tolist() == [-1, 0, 1]
     for name in ("event_kind", "event_flank"):  # CF: flag values have the variable's own type

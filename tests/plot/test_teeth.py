@@ -16,7 +16,7 @@ from gearidae.plot.asperities import half_width, joined_asperities, rough_sample
 from gearidae.plot.teeth_view import TeethView
 from gearidae.plot.tooth_shape import contact_points, mesh_picture
 from gearidae.records import Flank
-from gearidae.studies.tooth_contacts import tooth_contacts
+from gearidae.studies._tooth_contacts import tooth_contacts
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5})
 PICTURE = mesh_picture(SCENE)

@@ -11,7 +11,7 @@ import gearidae as gd
 from gearidae.records import Flank
 from gearidae.report import build_report
 from gearidae.report.teeth import FRAME, PAIR, pack_teeth
-from gearidae.studies.tooth_contacts import tooth_contacts
+from gearidae.studies._tooth_contacts import tooth_contacts
 from reference.browser import CHROMIUM, looked_at
 
 SCENE = gd.preset("teodorescu2009_low_speed")

@@ -11,8 +11,8 @@ import gearidae as gd
 from gearidae.errors import Interrupted
 from gearidae.runs.kept_runs import folder_beside
 from gearidae.studies import Observation
+from gearidae.studies._predict import posterior_draws
 from gearidae.studies.posterior import LEVELS
-from gearidae.studies.predict import posterior_draws
 
 LOW = gd.preset("teodorescu2009_low_speed")
 SHORT = LOW.replace({"run.duration": 0.05})

@@ -3,26 +3,7 @@
 import subprocess
 import sys
 
-import pytest
-
 import gearidae as gd
-
-
-@pytest.mark.parametrize(
-    "first",
-    [
-        "pass",
-        "import gearidae.plot",
-        "import gearidae.studies.starting_torque",
-        "import gearidae.studies.tooth_contacts",
-    ],
-)
-def test_every_name_is_the_function_or_class_and_not_the_module_of_that_name(first):
-    script = (
-        f"{first}; import gearidae as gd; "
-        "assert all(type(getattr(gd.studies, name)).__name__ in {'function', 'type'} for name in gd.studies.__all__)"
-    )
-    subprocess.run([sys.executable, "-c", script], check=True)
 
 
 def test_the_older_names_are_the_same_functions():

@@ -15,7 +15,7 @@ from gearidae.archive.select import run_scene
 from gearidae.contact import line_force
 from gearidae.contact.history import joined_height
 from gearidae.records import EventKind, Flank
-from gearidae.studies.tooth_contacts import tooth_contacts
+from gearidae.studies._tooth_contacts import tooth_contacts
 from gearidae.studies.tooth_record import joined_heights
 from gearidae.studies.tooth_states import ContactState
 

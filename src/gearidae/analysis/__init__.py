@@ -10,54 +10,21 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.analysis.assessment import Assessment, assess
-    from gearidae.analysis.impacts import impact_windows
-    from gearidae.analysis.measured import read_signal
-    from gearidae.analysis.online import OnlineAssessment
-    from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies, impact_spectrum
-    from gearidae.analysis.spectra import power_spectrum, spectrogram
-    from gearidae.studies.coating_map import coating_map
-    from gearidae.studies.equilibrium import contact_resonance
-    from gearidae.studies.products import open_map
-    from gearidae.studies.starting_torque import starting_torque, static_starting_torque
-    from gearidae.studies.tooth_contacts import tooth_contacts
+    from gearidae.analysis.assessment import Assessment as Assessment
+    from gearidae.analysis.assessment import assess as assess
+    from gearidae.analysis.impacts import impact_windows as impact_windows
+    from gearidae.analysis.measured import read_signal as read_signal
+    from gearidae.analysis.online import OnlineAssessment as OnlineAssessment
+    from gearidae.analysis.ringing import characteristic_frequency as characteristic_frequency
+    from gearidae.analysis.ringing import impact_frequencies as impact_frequencies
+    from gearidae.analysis.ringing import impact_spectrum as impact_spectrum
+    from gearidae.analysis.spectra import power_spectrum as power_spectrum
+    from gearidae.analysis.spectra import spectrogram as spectrogram
+    from gearidae.studies._coating_map import coating_map as coating_map
+    from gearidae.studies._starting_torque import starting_torque as starting_torque
+    from gearidae.studies._starting_torque import static_starting_torque as static_starting_torque
+    from gearidae.studies._tooth_contacts import tooth_contacts as tooth_contacts
+    from gearidae.studies.equilibrium import contact_resonance as contact_resonance
+    from gearidae.studies.products import open_map as open_map
 
-__all__ = [
-    "Assessment",
-    "OnlineAssessment",
-    "assess",
-    "characteristic_frequency",
-    "coating_map",
-    "contact_resonance",
-    "impact_frequencies",
-    "impact_spectrum",
-    "impact_windows",
-    "open_map",
-    "power_spectrum",
-    "read_signal",
-    "spectrogram",
-    "starting_torque",
-    "static_starting_torque",
-    "tooth_contacts",
-]
-
-_HOME = {
-    "Assessment": "assessment",
-    "OnlineAssessment": "online",
-    "assess": "assessment",
-    "characteristic_frequency": "ringing",
-    "coating_map": "gearidae.studies.coating_map",
-    "contact_resonance": "gearidae.studies.equilibrium",
-    "impact_frequencies": "ringing",
-    "impact_spectrum": "ringing",
-    "impact_windows": "impacts",
-    "open_map": "gearidae.studies.products",
-    "power_spectrum": "spectra",
-    "read_signal": "measured",
-    "spectrogram": "spectra",
-    "starting_torque": "gearidae.studies.starting_torque",
-    "static_starting_torque": "gearidae.studies.starting_torque",
-    "tooth_contacts": "gearidae.studies.tooth_contacts",
-}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -186,12 +186,6 @@ def judge(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
     ----------
     signal : Signal
         Gear speed, with the gear's teeth.
-    model : MapModel
-    sensor : Sensor
-
-    Returns
-    -------
-    Assessment
     """
     speed = signal.forward()
     speed = replace(speed, calibration=sensor.uncertainty(float(np.median(speed.values))))

@@ -18,10 +18,6 @@ __all__ = ["assessment_table"]
 def assessment_table(found: Assessment) -> str:
     """Write an assessment as HTML, without colours of its own, so that it can be read on any background.
 
-    Parameters
-    ----------
-    found : Assessment
-
     Returns
     -------
     str

@@ -9,7 +9,7 @@ import numpy as np
 from gearidae.analysis.fitting import SPEED_RANGE, Fit, RingSet
 from gearidae.analysis.map_model import BEFORE, MapModel
 from gearidae.analysis.ringing import Ring
-from gearidae.analysis.signal import Floats
+from gearidae.arrays import Floats
 
 __all__ = [
     "calibration_words",

@@ -12,7 +12,8 @@ from gearidae.analysis.fitting import Fit, RingSet, at_places
 from gearidae.analysis.impacts import angle_of, windows_of
 from gearidae.analysis.map_model import BEFORE, MapModel
 from gearidae.analysis.ringing import HIGHEST, Ring, piece_of
-from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal
+from gearidae.analysis.signal import FEWEST_SAMPLES, Signal
+from gearidae.arrays import Floats
 
 __all__ = [
     "alias",
@@ -98,7 +99,6 @@ def stop(signal: Signal, model: MapModel) -> str:
     ----------
     signal : Signal
         Gear speed with the gear's teeth.
-    model : MapModel
 
     Returns
     -------
@@ -121,7 +121,6 @@ def slower_than_map(signal: Signal, model: MapModel) -> str:
     ----------
     signal : Signal
         Gear speed, in the median above zero.
-    model : MapModel
 
     Returns
     -------
@@ -182,7 +181,6 @@ def too_coarse(ring: Ring, step: float) -> bool:
 
     Parameters
     ----------
-    ring : Ring
     step : float
         Quantum [rad/s].
 
@@ -200,7 +198,6 @@ def widened(ring: Ring, step: float) -> float:
 
     Parameters
     ----------
-    ring : Ring
     step : float
         Quantum [rad/s].
     """
@@ -251,8 +248,6 @@ def alias(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: float)
 
     Parameters
     ----------
-    model : MapModel
-    rings : RingSet
     fit : Fit
         That explains the record without images.
     rate : float

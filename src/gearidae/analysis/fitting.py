@@ -29,7 +29,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearidae.analysis.map_model import BEFORE, MapModel
-from gearidae.analysis.signal import CALIBRATION, Floats
+from gearidae.analysis.signal import CALIBRATION
+from gearidae.arrays import Floats
 
 __all__ = ["COMMON", "SPEED_RANGE", "WITHIN", "Fit", "RingSet", "at_places", "first_explanation"]
 
@@ -140,8 +141,6 @@ def first_explanation(model: MapModel, rings: RingSet, history: str, *, may_be_s
 
     Parameters
     ----------
-    model : MapModel
-    rings : RingSet
     history : {'auto', 'start', 'unknown'}
     may_be_start : bool, optional
         Whether ``auto`` considers that the record begins with the map's start.
@@ -164,7 +163,7 @@ def first_explanation(model: MapModel, rings: RingSet, history: str, *, may_be_s
 
 
 def _either(start: Fit, unknown: Fit) -> Fit:
-    """Fit by whichever history explains a fraction better, the start being the likelier one beforehand."""
+    """Fit with the history that explains a fraction better; the start has the larger prior probability."""
     later = unknown.chi2 + _LESS_LIKELY < start.chi2
     best = int(np.where(later, unknown.chi2 + _LESS_LIKELY, start.chi2).argmin())
     return Fit(

@@ -1,6 +1,6 @@
 r"""Mesh impacts: when a pair of teeth leaves the mesh and its load falls on the others.
 
-At every mesh exit the leaving pair lets go, held back by whatever adhesion there is, and the contact that stays rings.
+At every mesh exit the leaving pair separates against its adhesion, and the remaining contact rings.
 Exits follow each other at one tooth pitch of the gear, :math:`2\pi/z_2`, so that a record of the speed shows them even
 without events: turned over the angle :math:`\theta = \int\omega\,\mathrm dt`, the bursts of oscillation form a comb of
 that known spacing, of which only the place is sought.
@@ -16,7 +16,8 @@ import xarray as xr
 from scipy import signal as dsp
 from scipy.ndimage import uniform_filter1d
 
-from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal, signals, stack
+from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
 __all__ = ["LEAD", "WIDTH", "angle_of", "impact_windows", "lowest_frequency", "unlike_pitch", "windows_of"]
@@ -24,7 +25,7 @@ __all__ = ["LEAD", "WIDTH", "angle_of", "impact_windows", "lowest_frequency", "u
 LEAD = 0.02
 """A window begins this much before its impact, in pitches."""
 WIDTH = 0.2
-"""A window ends this much after its impact, in pitches, unless asked for otherwise."""
+"""A window ends this much after its impact, in pitches, by default."""
 
 _LOWEST_RING = 20.0
 """Slowest oscillation taken for ringing, in mesh frequencies; slower is the change of speed from tooth to tooth."""

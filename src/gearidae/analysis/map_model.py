@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from gearidae.analysis.impacts import check_width
-from gearidae.analysis.signal import Floats
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
 __all__ = ["AFTER", "BEFORE", "MapModel", "map_model", "require_map"]
@@ -56,7 +56,6 @@ class MapModel:
         Angle from the start to the first impact [rad], roughly: time times median speed; NaN if the map lacks times.
     width : float
         Of the impact windows, in pitches.
-    gear_teeth : int
     """
 
     fractions: Floats
@@ -110,10 +109,6 @@ class MapModel:
 def require_map(chart: object) -> xr.Dataset:
     """Make sure that a dataset is a coating map.
 
-    Parameters
-    ----------
-    chart : object
-
     Returns
     -------
     Dataset
@@ -162,10 +157,6 @@ def map_model(chart: object) -> MapModel:
     ----------
     chart : Dataset
         From `coating_map`: over the fraction, or over the fraction and ``drive.torque``.
-
-    Returns
-    -------
-    MapModel
 
     Raises
     ------

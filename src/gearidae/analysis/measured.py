@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.analysis.record_columns import Column, find_columns, has_columns
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.library import loaded
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["Reading", "read_signal"]
-
-Floats = NDArray[np.float64]
 
 _SI = {"time": "s", "gear_speed": "rad s-1"}
 _SETTINGS = ("columns", "skip", "delimiter", "decimal", "bridge")
@@ -120,7 +119,7 @@ def read_signal(
 
 def _checked(columns: Sequence[str] | None, bridge: int) -> tuple[str, str] | None:
     """Refuse settings that are none."""
-    if isinstance(bridge, bool) or not isinstance(bridge, int) or bridge < 0:
+    if isinstance(bridge, bool) or not isinstance(bridge, Integral) or bridge < 0:
         raise SceneError("bridge", shorten(bridge), "must be a whole number of samples, 0 or more")
     if columns is None:
         return None
@@ -253,6 +252,6 @@ def _decimal(decimal: str | None) -> str | None:
 
 
 def _lines(skip: int | None) -> int | None:
-    if skip is not None and (isinstance(skip, bool) or not isinstance(skip, int) or skip < 0):
+    if skip is not None and (isinstance(skip, bool) or not isinstance(skip, Integral) or skip < 0):
         raise SceneError("skip", shorten(skip), "must be a whole number of lines, 0 or more")
     return skip

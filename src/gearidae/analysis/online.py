@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from gearidae.analysis.assessment import Assessment, judge
 from gearidae.analysis.map_model import map_model
 from gearidae.analysis.sensor import check_sensor
-from gearidae.analysis.signal import CALIBRATION, FEWEST_SAMPLES, Floats, Signal, signals
+from gearidae.analysis.signal import CALIBRATION, FEWEST_SAMPLES, Signal, signals
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
 __all__ = ["OnlineAssessment"]

@@ -24,9 +24,6 @@ class Column(NamedTuple):
     ----------
     meaning : str
         ``time`` or ``gear_speed``.
-    heading : str
-    place : int
-    unit : str
     recognised : bool
         By its unit alone.
     """
@@ -51,7 +48,6 @@ def find_columns(headings: Sequence[str], wanted: tuple[str, str] | None) -> tup
 
     Parameters
     ----------
-    headings : sequence of str
     wanted : pair of str or None
         Headings of both, with their units where the headings of the table have none.
 

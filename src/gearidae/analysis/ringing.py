@@ -22,7 +22,8 @@ import xarray as xr
 from scipy import signal as dsp
 
 from gearidae.analysis.impacts import LEAD, WIDTH, check_width, lowest_frequency, windows_of
-from gearidae.analysis.signal import FEWEST_SAMPLES, Floats, Signal, signals, stack
+from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
+from gearidae.arrays import Floats
 
 __all__ = [
     "HIGHEST",
@@ -348,7 +349,6 @@ def piece_of(signal: Signal, start: float, stop: float) -> Floats:
 
     Parameters
     ----------
-    signal : Signal
     start, stop : float
         Its ends [s]; NaN if it is not whole.
 

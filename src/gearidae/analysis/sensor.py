@@ -57,10 +57,6 @@ def check_sensor(
     history, anti_alias_filter, calibration, offset
         As for `gearidae.analysis.assess`.
 
-    Returns
-    -------
-    Sensor
-
     Raises
     ------
     SceneError

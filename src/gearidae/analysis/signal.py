@@ -10,16 +10,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive.variables import SAMPLES
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene.units import from_text
 
 __all__ = ["CALIBRATION", "FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
-
-Floats = NDArray[np.float64]
 
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""
@@ -118,10 +116,6 @@ def signals(
     gear_teeth : int, optional
         Teeth of the gear, in place of what the scene says.
 
-    Returns
-    -------
-    Batch
-
     Raises
     ------
     SceneError
@@ -180,10 +174,6 @@ def stack(
         Of the new variable.
     attrs : mapping
         Of the new variable.
-
-    Returns
-    -------
-    DataArray
     """
     longest = max((len(row) for row in rows), default=0)
     filled = np.full((len(rows), longest), np.nan)

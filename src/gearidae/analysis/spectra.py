@@ -17,7 +17,8 @@ import numpy as np
 import xarray as xr
 from scipy import signal as dsp
 
-from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, Floats, signals, stack
+from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 
@@ -25,7 +26,7 @@ __all__ = ["power_spectrum", "spectrogram"]
 
 _MOST_PADDING = 64
 _PIECES = 64
-"""A spectrogram's segment is this part of the record unless asked for otherwise."""
+"""A spectrogram's segment is this part of the record by default."""
 
 
 def power_spectrum(
@@ -46,7 +47,7 @@ def power_spectrum(
         Which variable of a Dataset.
     segment : float, optional
         Length of the segments that are averaged, overlapping by half [s]; by default half the record. Lines closer
-        than about two over this length are not told apart.
+        than about two over this length are not resolved.
     window : str or tuple, optional
         Taper, by its scipy name; with its parameter where it has one, ``("tukey", 0.2)``.
     padding : int, optional

@@ -39,10 +39,6 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     parts : sequence of xarray.Dataset
         Single runs, in their order.
 
-    Returns
-    -------
-    xarray.Dataset
-
     Raises
     ------
     SceneError

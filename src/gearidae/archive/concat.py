@@ -251,9 +251,9 @@ def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_
             ds[name] = (dims, values.reshape(shape), ds[name].attrs)
     for name, variable in RUN.items():
         if name not in ds and name in ds.attrs:  # of runs that have not kept theirs the parts know the sum
-            told = [part.attrs[name] for part in parts]
+            entries = [part.attrs[name] for part in parts]
             is_text = variable.dtype is np.str_
-            ds.attrs[name] = ", ".join(sorted({*told} - {""})) if is_text else sum(told)
+            ds.attrs[name] = ", ".join(sorted({*entries} - {""})) if is_text else sum(entries)
     return ds
 
 

@@ -7,15 +7,13 @@ from collections.abc import Hashable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.archive.variables import EXPOSURES, PLACES
+from gearidae.arrays import Floats
 from gearidae.records import ExposureRows, Solution
 from gearidae.scene import MATERIAL_NAMES, Scene
 
 __all__ = ["FLANKS", "exposure_coordinates", "exposure_variables", "flank_areas", "gear_flank_areas"]
-
-Floats = NDArray[np.float64]
 
 FLANKS = ("drive", "coast")
 

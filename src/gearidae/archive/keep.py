@@ -1,4 +1,4 @@
-"""What the runs of a sweep leave behind: everything, or the parts that are asked for by their names."""
+"""Data that a sweep keeps of its runs: everything, or parts by their names."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Keep:
     Attributes
     ----------
     asked : tuple of str
-        What was asked for, sorted; the attribute ``keep`` of the dataset.
+        The requested parts, sorted; the attribute ``keep`` of the dataset.
     names : frozenset of str or None
         The variables that are kept; None for all.
     """
@@ -94,10 +94,6 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     scene : Scene
         What the runs have in common.
 
-    Returns
-    -------
-    Keep
-
     Raises
     ------
     SceneError
@@ -137,7 +133,7 @@ def kept_in(attributes: Any, scene: Scene) -> Keep:
     Raises
     ------
     SceneError
-        If it is not what `read_keep` asked for.
+        If it differs from the parts of `read_keep`.
     """
     text = attributes.get("keep")
     if text is None:

@@ -43,7 +43,7 @@ def uninterrupted() -> Iterator[None]:
     """Hold `LIBRARY`, and put a `KeyboardInterrupt` off until the block is left, or the function that this decorates.
 
     xarray takes its locks of HDF5 in Python code: an interrupt between taking one and entering what it guards leaves it
-    taken, and whoever closes the file then waits for ever. Other threads than the main one are never interrupted.
+    taken, and the next call that closes the file waits for ever. Other threads than the main one are never interrupted.
     """
     usual = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(usual):
@@ -69,7 +69,6 @@ def opened(
 
     Parameters
     ----------
-    path : Path
     mode : {"r", "a", "x"}, optional
         To read, to write into it, or to make it.
     form : str, optional
@@ -101,12 +100,7 @@ def close(file: netCDF4.Dataset, *, written: bool) -> None:
 
 
 def loaded(path: Path) -> xr.Dataset:
-    """Read the whole of any netCDF file into memory; what a damaged one makes the netCDF stack raise may be anything.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """Read any netCDF file into memory; a damaged one may make the netCDF stack raise any exception."""
     with uninterrupted():
         await_lock(path)
         with netCDF4.Dataset(path) as declared:
@@ -122,7 +116,6 @@ def check_size(file: netCDF4.Dataset, path: Path) -> None:
     ----------
     file : netCDF4.Dataset
         As it has been opened.
-    path : Path
 
     Raises
     ------
@@ -153,7 +146,7 @@ def await_lock(path: Path) -> None:
     try:
         descriptor = os.open(path, os.O_RDONLY)
     except OSError:
-        return  # whoever opens it says why
+        return  # opening it raises the error
     try:
         while not _is_free(descriptor) and time.monotonic() < end:
             time.sleep(0.001)
@@ -164,7 +157,7 @@ def await_lock(path: Path) -> None:
 
 
 def _is_free(descriptor: int) -> bool:
-    """Whether nobody holds a writer's lock on an open file, which is then locked as a reader does it."""
+    """Whether no process holds a writer's lock on an open file, which is then locked as a reader does it."""
     if sys.platform != "win32":
         import fcntl
 

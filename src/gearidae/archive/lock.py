@@ -22,7 +22,7 @@ from gearidae.errors import SceneError
 __all__ = ["WriterLock", "claimed", "is_locked"]
 
 _PATIENCE: Final = 0.5
-"""Time [s] for which a writer tries: whoever asks whether there is one holds the lock for some microseconds, and for as
+"""Time [s] for which a writer tries: a process that only looks holds the lock for some microseconds, and for as
 long as the system keeps it waiting meanwhile."""
 _ATTEMPTS: Final = 5
 """Times that the question is asked, since two who ask at once see each other."""
@@ -97,12 +97,7 @@ def claimed(archive: Path, name: str = "archive") -> Iterator[None]:
 
 
 def is_locked(archive: Path) -> bool:
-    """Whether a process is writing an archive; what cannot be asked counts as no.
-
-    Parameters
-    ----------
-    archive : Path
-    """
+    """Whether a process is writing an archive; what cannot be asked counts as no."""
     try:
         descriptor = os.open(_beside(archive), os.O_RDONLY)
     except OSError:

@@ -79,7 +79,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Identical to what was saved. Of a run that is not at its end yet, what there is so far, with the status
+        Identical to the saved dataset. For an unfinished run the data so far, with the status
         ``running`` or ``interrupted``. Archives of more than 128 MB are read piece by piece as they are used, each
         time they are used (the file stays open until ``ds.close()``; ``ds.load()`` reads all), smaller ones at
         once.
@@ -171,7 +171,7 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 
 
 def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
-    """Variables that an archive has at least, of whichever version."""
+    """Variables that an archive of any version has at least."""
     later = {one.name for one in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if one.since}
     sampled = tuple(name for name in columns(is_roller="roller" in scene) if name not in later)
     if "keep" not in ds.attrs:

@@ -52,7 +52,7 @@ def provenance(scene: Scene, action: str, *, swept: tuple[str, ...] = ()) -> dic
         "history": f"{now} gearidae {gearidae.__version__}: {action}",
         "source": _software(),
         "references": _REFERENCES,
-        "license": "The data belong to whoever ran the simulation; gearidae itself is BSD-3-Clause.",
+        "license": "The data belong to the person who ran the simulation; gearidae itself is BSD-3-Clause.",
         "date_created": now,
         "product_version": gearidae.__version__,
         "schema_version": SCHEMA_VERSION,
@@ -67,10 +67,6 @@ def surface_regimes(scene: Scene) -> dict[str, float | str]:
 
     JKR asperities presume a Tabor parameter of about 5 or more; this is a note on how well the scene meets
     that.
-
-    Parameters
-    ----------
-    scene : Scene
 
     Returns
     -------

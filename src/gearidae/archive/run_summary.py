@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 from gearidae.archive.energy import balance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.select import is_roller, scene_of
+from gearidae.arrays import Floats
 from gearidae.records import EventKind, Extremes
 from gearidae.scene import Scene
 
 __all__ = ["Account", "account", "account_of", "counted_over", "with_account"]
 
-Floats = NDArray[np.float64]
 Read = Callable[[str, slice], NDArray[Any]]
 
 PIECE = 2**18
@@ -185,10 +185,6 @@ def account_of(
         The run's energy balance, from `gearidae.archive.energy.balance_of`.
     extremes : Extremes, optional
         The run's extremes, from `gearidae.archive.extremes.extremes_of`.
-
-    Returns
-    -------
-    Account
     """
     start, end = span
     incidents = _Events(scene, start)

@@ -109,10 +109,6 @@ def run_scene(run: xr.Dataset) -> Scene:
     run : xarray.Dataset
         Without swept dimensions.
 
-    Returns
-    -------
-    Scene
-
     Raises
     ------
     SceneError
@@ -145,10 +141,6 @@ def motion_samples(run: xr.Dataset) -> int:
     ----------
     run : xarray.Dataset
         One run of a gear pair.
-
-    Returns
-    -------
-    int
     """
     samples = reached(run["transmission_error"])
     if samples and not np.isfinite(run["transmission_error"].variable[0].values):

@@ -1,7 +1,7 @@
 """Look-up of sample times that stay in the file.
 
 xarray's usual index holds every label in memory, twice while it is made: of a run of 30 million samples, half a
-gigabyte before anything is asked for. Sample times increase, so that a label is found by bisection in the file, from
+gigabyte before any request. Sample times increase, so that a label is found by bisection in the file, from
 some twenty of its chunks. A part that is picked out and small enough gets the usual index again.
 """
 

@@ -132,7 +132,7 @@ POPULATION_EVENTS: Mapping[str, Variable] = {
             "event_asperity",
             ("event",),
             "1",
-            "asperity that has joined or let go, counted along its flank from 0",
+            "asperity that has joined or detached, counted along its flank from 0",
             np.int64,
             comment="-1 where the event is of no single asperity; gearidae.population lists them in this order",
         ),
@@ -195,7 +195,7 @@ _FORCE_EXTREMES = (
 )
 _ASPERITY_COUNTS = (
     Variable("asperity_onsets", (), "1", "asperities that have joined", np.int64),
-    Variable("asperity_detachments", (), "1", "asperities that have let go", np.int64),
+    Variable("asperity_detachments", (), "1", "asperities that have detached", np.int64),
 )
 _GEAR_EXTREMES = (
     Variable("min_gear_speed", (), "rad s-1", "smallest speed of the gear"),

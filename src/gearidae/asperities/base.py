@@ -13,16 +13,15 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import ClassVar, TypeAlias
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from gearidae.arrays import Floats
 from gearidae.asperities.tip import Asperity
 
-__all__ = ["AsperityLaw", "Floats"]
-
-Floats: TypeAlias = NDArray[np.float64]
+__all__ = ["AsperityLaw"]
 
 _X, _W = np.polynomial.legendre.leggauss(48)
 
@@ -154,7 +153,7 @@ class AsperityLaw(ABC):
 
     @property
     def detachment_energy(self) -> float:
-        """Energy that an asperity stores just before it lets go, counted from free surfaces, and loses there.
+        """Energy stored just before detachment, counted from free surfaces, which is lost there.
 
         It is the integral of the load along the unstable branch, from free surfaces to detachment; joining loses so
         much less. By default 0: a law without such a branch.

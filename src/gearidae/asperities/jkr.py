@@ -30,7 +30,8 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.arrays import Floats
+from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity

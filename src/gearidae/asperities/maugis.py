@@ -22,7 +22,7 @@ where it attracts without touching,
     \Delta = \tfrac12 C^2 - \tfrac{8}{3\pi} \lambda C - \tfrac{2}{\pi\lambda},
 
 and the two meet at q = pi/2. An approaching tip joins where the stress begins to act, at the distance
-:math:`h_0 = 2/(\pi\lambda)`; a tip drawn away lets go at the single fold, which lies on the second branch for
+:math:`h_0 = 2/(\pi\lambda)`; a receding tip detaches at the single fold, which lies on the second branch for
 :math:`\lambda < 0.938`.
 
 References
@@ -42,7 +42,8 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearidae.asperities.base import AsperityLaw, Floats
+from gearidae.arrays import Floats
+from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
@@ -116,7 +117,7 @@ def _detachment_energy(zone: float) -> float:
     apart = -HALF_PI * zone * (radius**4 / 4.0 - fold * radius**3 / 3.0)
     end = _landmarks(zone)[0]
     x, w = np.polynomial.legendre.leggauss(64)
-    half = 0.5 * math.log(end / Z_TOUCH)  # 0 where it lets go before it touches
+    half = 0.5 * math.log(end / Z_TOUCH)  # 0 if it detaches before it touches
     z = Z_TOUCH * np.exp(half * (x + 1.0))
     _, load, rate = branch_at(z, zone)
     return float(apart + half * (w * z * load * rate).sum())
@@ -196,7 +197,7 @@ class Maugis(AsperityLaw):
 
     @property
     def touch(self) -> float:
-        """Where a tip that is drawn away ceases to touch, if that is before it lets go."""
+        """Position at which a receding tip ceases to touch, if that is before detachment."""
         return self.length * self._marks[1]
 
     @property

@@ -36,8 +36,6 @@ def calibrate_case(
 
     Parameters
     ----------
-    case : str
-    request : Request
     vary : sequence of str
         Keys and their priors, ``key=normal(mean, standard deviation)``.
     seen : sequence of str

@@ -28,10 +28,6 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
     settings : sequence of str
         ``key=value`` pairs.
 
-    Returns
-    -------
-    Scene
-
     Raises
     ------
     SceneError

@@ -42,10 +42,6 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         The file.
     ds : xarray.Dataset
         What is in it.
-
-    Returns
-    -------
-    dict
     """
     return {
         "file": str(archive),
@@ -71,10 +67,6 @@ def product_facts(path: Path, ds: xr.Dataset, kind: str) -> dict[str, Any]:
         What is in it.
     kind : str
         From `gearidae.studies.products.open_product`.
-
-    Returns
-    -------
-    dict
     """
     found = answer(ds, kind)
     return {

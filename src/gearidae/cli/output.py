@@ -72,7 +72,7 @@ def show(table: RenderableType) -> None:
 
 def complain(message: str) -> None:
     """Print one line to standard error, under the program's name."""
-    with suppress(OSError):  # nobody can be told that nobody can be told
+    with suppress(OSError):  # standard error is closed too
         sys.stderr.write(f"gearidae: {printable(' '.join(message.split()))}\n")
 
 

@@ -26,7 +26,7 @@ _FUNCTIONS_OF_FILES = ("animate_teeth", "write")
 
 
 def picture_names() -> list[str]:
-    """List the pictures that can be asked for by name."""
+    """List the names of the pictures."""
     return [name for name in gd.plot.__all__ if name not in _FUNCTIONS_OF_FILES]
 
 

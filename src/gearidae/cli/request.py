@@ -1,4 +1,4 @@
-"""What every study is asked for with: options that all their commands have."""
+"""Options that the commands of all studies have."""
 
 from __future__ import annotations
 

@@ -20,7 +20,6 @@ def selected(ds: xr.Dataset, pairs: Sequence[str], option: str, dims: Sequence[s
 
     Parameters
     ----------
-    ds : xarray.Dataset
     pairs : sequence of str
         ``dimension=value``.
     option : str

@@ -69,7 +69,7 @@ def session(
     Raises
     ------
     SceneError
-        If both `quiet` and `verbose` are asked for, or the log cannot be written.
+        If both `quiet` and `verbose` are given, or the log cannot be written.
     """
     if quiet and verbose:
         raise SceneError("--quiet", "--verbose", "choose one of the two")

@@ -53,7 +53,6 @@ def conduct(
     ----------
     case : str
         Path of a case file, or name of a preset.
-    request : Request
     kind : str
         What comes of it, as `gearidae.studies.products.open_product` calls it.
     title : str

@@ -59,7 +59,6 @@ def analyse_scan(
     ----------
     scan : Path
         Height map.
-    choices : Choices
     output : Path or None
         Case file to write, or part of one.
     picture : Path or None

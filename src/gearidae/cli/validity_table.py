@@ -22,7 +22,6 @@ def show_validity(rows: Sequence[ValidityRow], *, about: str = "") -> None:
 
     Parameters
     ----------
-    rows : sequence of ValidityRow
     about : str, optional
         Contact that they are computed for, for the caption.
     """

@@ -26,10 +26,6 @@ def spread(arguments: Sequence[str]) -> list[str]:
     ----------
     arguments : sequence of str
         The command line.
-
-    Returns
-    -------
-    list of str
     """
     spread_out: list[str] = []
     option = ""
@@ -56,10 +52,6 @@ def assignments(
     option, example : str, optional
         What errors shall name.
 
-    Returns
-    -------
-    dict
-
     Raises
     ------
     SceneError
@@ -77,10 +69,6 @@ def texts(pairs: Sequence[str], option: str, example: str) -> dict[str, str]:
         ``key=text``.
     option, example : str
         What errors shall name.
-
-    Returns
-    -------
-    dict
 
     Raises
     ------
@@ -130,10 +118,6 @@ def quantity(option: str, text: str, unit: str) -> float:
         A number in SI, or one with a unit.
     unit : str
         The SI unit.
-
-    Returns
-    -------
-    float
 
     Raises
     ------

@@ -185,7 +185,7 @@ def _say_once(message: str, reason: str) -> None:
 def own_cache(sources: tuple[Path, ...], form: str) -> Iterator[None]:
     """Have numba use `CacheLocator` and `CacheFile` while a function is declared in a form, by one thread at a time.
 
-    A numba that cannot be made to ask keeps the code in the same folder, and shares it with nobody.
+    A numba without the hook keeps the code in the same folder, and environments do not share it.
     """
     global _declared
     config: Any = numba.config

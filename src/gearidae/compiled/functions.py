@@ -21,7 +21,7 @@ class Function:
     """A compiled function in two forms: one for compiled callers, and one for Python, each compiled when first called.
 
     Python's form has to take records and arrays out of Python's objects. Almost all functions are called from compiled
-    code alone, and a third of the compilation would go into what nobody uses. Where numba does not take the options for
+    code alone, and a third of the compilation would go into unused wrappers. Where numba does not take the options for
     that, both are the same.
     """
 
@@ -73,7 +73,7 @@ def compiled(
     sources : tuple of Path, optional
         As for `cache_folder`.
     """
-    # nobody calls these functions as C does but through callbacks
+    # only callbacks are called as C functions
     wanted = {"_nrt": makes_arrays, "forceinline": inline, "no_cfunc_wrapper": True}
 
     def declare(function: F) -> F:

@@ -6,8 +6,8 @@ that is as it should be. What is called rarely would be compiled as often for no
 longer and slower.
 
 A caller reads the address from a slot, which it knows by name: an external symbol of its code, so that this can be
-kept on disk. The slot is empty until the function has been made ready in this process, and nobody else
-can set it. A call costs 6 ns and more, where one between functions compiled into each other costs less than one.
+kept on disk. The slot is empty until the function has been made ready in this process, and no file can
+set it. A call costs 6 ns and more, where one between functions compiled into each other costs less than one.
 """
 
 from __future__ import annotations
@@ -90,8 +90,8 @@ class AddressedFunction:
         address = builder.load(slot)
         empty = builder.icmp_unsigned("==", address, ir.Constant(ir.IntType(64), 0))
         with builder.if_then(empty, likely=False):
-            told = f"{self.py_func.__module__}.{self.py_func.__qualname__} has not been made ready"
-            context.call_conv.return_user_exc(builder, RuntimeError, (told,))
+            message = f"{self.py_func.__module__}.{self.py_func.__qualname__} has not been made ready"
+            context.call_conv.return_user_exc(builder, RuntimeError, (message,))
         kinds = [context.get_value_type(one) for one in signature.args]
         kind = ir.FunctionType(context.get_value_type(signature.return_type), kinds)
         return builder.call(builder.inttoptr(address, kind.as_pointer()), values)

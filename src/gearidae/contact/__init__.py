@@ -15,90 +15,29 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.asperities import (
-        AsperityLaw,
-        asperity,
-        asperity_load,
-        law_names,
-        register,
-        unregister,
-    )
-    from gearidae.asperities.jkr import jkr_load, jkr_slope
-    from gearidae.asperities.tip import (
-        Asperity,
-        Surface,
-        asperity_of,
-        contact_modulus,
-        tabor_parameter,
-        tabor_regime,
-    )
-    from gearidae.contact.bulk import bulk_influence
-    from gearidae.contact.elastic import (
-        ElasticCurve,
-        ElasticFoldError,
-        elastic_line_curve,
-        elastic_line_force,
-    )
-    from gearidae.contact.line import line_force
-    from gearidae.contact.rough import (
-        adhesion_loss_per_asperity,
-        maximum_tension,
-        rough_pressure,
-        rough_pressure_slopes,
-    )
+    from gearidae.asperities import AsperityLaw as AsperityLaw
+    from gearidae.asperities import asperity as asperity
+    from gearidae.asperities import asperity_load as asperity_load
+    from gearidae.asperities import law_names as law_names
+    from gearidae.asperities import register as register
+    from gearidae.asperities import unregister as unregister
+    from gearidae.asperities.jkr import jkr_load as jkr_load
+    from gearidae.asperities.jkr import jkr_slope as jkr_slope
+    from gearidae.asperities.tip import Asperity as Asperity
+    from gearidae.asperities.tip import Surface as Surface
+    from gearidae.asperities.tip import asperity_of as asperity_of
+    from gearidae.asperities.tip import contact_modulus as contact_modulus
+    from gearidae.asperities.tip import tabor_parameter as tabor_parameter
+    from gearidae.asperities.tip import tabor_regime as tabor_regime
+    from gearidae.contact.bulk import bulk_influence as bulk_influence
+    from gearidae.contact.elastic import ElasticCurve as ElasticCurve
+    from gearidae.contact.elastic import ElasticFoldError as ElasticFoldError
+    from gearidae.contact.elastic import elastic_line_curve as elastic_line_curve
+    from gearidae.contact.elastic import elastic_line_force as elastic_line_force
+    from gearidae.contact.line import line_force as line_force
+    from gearidae.contact.rough import adhesion_loss_per_asperity as adhesion_loss_per_asperity
+    from gearidae.contact.rough import maximum_tension as maximum_tension
+    from gearidae.contact.rough import rough_pressure as rough_pressure
+    from gearidae.contact.rough import rough_pressure_slopes as rough_pressure_slopes
 
-__all__ = [
-    "Asperity",
-    "AsperityLaw",
-    "ElasticCurve",
-    "ElasticFoldError",
-    "Surface",
-    "adhesion_loss_per_asperity",
-    "asperity",
-    "asperity_load",
-    "asperity_of",
-    "bulk_influence",
-    "contact_modulus",
-    "elastic_line_curve",
-    "elastic_line_force",
-    "jkr_load",
-    "jkr_slope",
-    "law_names",
-    "line_force",
-    "maximum_tension",
-    "register",
-    "rough_pressure",
-    "rough_pressure_slopes",
-    "tabor_parameter",
-    "tabor_regime",
-    "unregister",
-]
-
-_HOME = {
-    "Asperity": "gearidae.asperities.tip",
-    "AsperityLaw": "gearidae.asperities",
-    "ElasticCurve": "elastic",
-    "ElasticFoldError": "elastic",
-    "Surface": "gearidae.asperities.tip",
-    "adhesion_loss_per_asperity": "rough",
-    "asperity": "gearidae.asperities",
-    "asperity_load": "gearidae.asperities",
-    "asperity_of": "gearidae.asperities.tip",
-    "bulk_influence": "bulk",
-    "contact_modulus": "gearidae.asperities.tip",
-    "elastic_line_curve": "elastic",
-    "elastic_line_force": "elastic",
-    "jkr_load": "gearidae.asperities.jkr",
-    "jkr_slope": "gearidae.asperities.jkr",
-    "law_names": "gearidae.asperities",
-    "line_force": "line",
-    "maximum_tension": "rough",
-    "register": "gearidae.asperities",
-    "rough_pressure": "rough",
-    "rough_pressure_slopes": "rough",
-    "tabor_parameter": "gearidae.asperities.tip",
-    "tabor_regime": "gearidae.asperities.tip",
-    "unregister": "gearidae.asperities",
-}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -173,11 +173,11 @@ class LineGrid:
     compliance: Array
 
 
-def line_grid(reach: float, width: float, modulus: float, nodes: int, grading: float = _GRADING) -> LineGrid:
+def line_grid(reach: float, width: float, modulus: float, nodes: int) -> LineGrid:
     """Nodes, weights and deflection coefficients for a smooth symmetric pressure.
 
-    Nodes lie at ``x = reach sinh(c u)/sinh(c)``, u uniform over 0..1, and the pressure between them is the cosine
-    polynomial in u through its values: for a pressure that has died away at the end this converges faster than
+    Nodes lie at ``x = reach sinh(c u)/sinh(c)``, c = 1.2 and u uniform over 0..1, and the pressure between them is the
+    cosine polynomial in u through its values: for a pressure that has died away at the end this converges faster than
     any power of the number of nodes. Its deflection is that of `bulk_influence` on a much finer set of knots.
 
     Parameters
@@ -190,19 +190,13 @@ def line_grid(reach: float, width: float, modulus: float, nodes: int, grading: f
         Contact modulus E* [Pa].
     nodes : int
         Number of nodes n on one side, the middle included; at least 4.
-    grading : float, optional
-        c; spacing at the end over spacing in the middle is ``cosh(c)``.
-
-    Returns
-    -------
-    LineGrid
 
     Raises
     ------
     SceneError
         If a length or the modulus is not positive, or there are fewer than 4 nodes.
     """
-    for key, value in (("reach", reach), ("width", width), ("modulus", modulus), ("grading", grading)):
+    for key, value in (("reach", reach), ("width", width), ("modulus", modulus)):
         if not 0.0 < value < math.inf:
             raise SceneError(key, value, "must be a positive number")
     if nodes < 4:
@@ -210,14 +204,14 @@ def line_grid(reach: float, width: float, modulus: float, nodes: int, grading: f
     order = np.arange(nodes)
     ends = np.where((order == 0) | (order == nodes - 1), 0.5, 1.0)
     fine = np.linspace(0.0, 1.0, _FINE * (nodes - 1) + 1)
-    knots = reach * np.sinh(grading * fine) / math.sinh(grading)
+    knots = reach * np.sinh(_GRADING * fine) / math.sinh(_GRADING)
     x = knots[::_FINE].copy()
     # Cardinal functions of the cosine polynomial, through the discrete cosine transform of type I.
     cosines = np.cos(math.pi * np.outer(order, order) / (nodes - 1))
     cardinals = (
         np.cos(math.pi * np.outer(fine, order)) @ (ends[:, None] * cosines * ends) * (2.0 / (nodes - 1))
     )
-    slope = grading * reach * np.cosh(grading * fine) / math.sinh(grading)
+    slope = _GRADING * reach * np.cosh(_GRADING * fine) / math.sinh(_GRADING)
     simpson = np.full(fine.size, 2.0)
     simpson[1::2] = 4.0
     simpson[[0, -1]] = 1.0

@@ -7,7 +7,7 @@ At every node of a `LineGrid` the mean gap is that of the rigid shapes plus the 
     h_i = \frac{x_i^2}{2R} + g + \sum_k K_{ik}\, p(h_k, S_k), \qquad W = \sum_i w_i\, p(h_i, S_i),
 
 and each node remembers the height zeta above which its asperities are joined, a play operator: S = h - zeta lies
-between the distances at which an asperity joins and lets go.
+between the distances at which an asperity joins and detaches.
 The rigid gap g is moved in small steps. A step counts only if its solution lies where the tangent of the last one
 pointed and is stable (``det(I - K dp/dh) > 0``). Where no step however small does, adhesion has outgrown the
 stiffness of the bodies: the static curve folds back, and a real contact would jump. That is reported, not crossed.
@@ -83,7 +83,7 @@ class ElasticCurve:
     Attributes
     ----------
     gap : ndarray, shape (m,)
-        Rigid gap g [m], as asked for.
+        Rigid gap g [m], as given.
     force : ndarray, shape (m,)
         Force W [N], positive pushes apart.
     x : ndarray, shape (n,)
@@ -219,10 +219,6 @@ def elastic_grid(
     radius, width, surface, asperity, coated_surface, sam_fraction, nodes
         As in `elastic_line_force`.
 
-    Returns
-    -------
-    LineGrid
-
     Raises
     ------
     SceneError
@@ -251,7 +247,7 @@ def _fitted_grid(
         trial = _Contact(line_grid(reach, width, modulus, max(12, nodes // 2)), radius, width, layer)
         try:
             deepest = trial.walk(np.array([lowest_gap])).node_gap[0]
-        except ElasticFoldError:  # whoever walks the path itself will meet it and say so
+        except ElasticFoldError:  # following the path itself raises it again
             break
         beyond = np.flatnonzero(deepest > tail)
         shrunk = max(least, 1.05 * float(trial.grid.x[beyond[0]])) if beyond.size else reach

@@ -66,7 +66,7 @@ class Heights:
         kernel : callable
             K, elementwise; decays like ``exp(-z**2/2)`` to the right.
         gap, stretch : ndarray, one shape
-            H and S in roughnesses, S from where an asperity joins to where it lets go.
+            H and S in roughnesses, S from the joining to the detachment of an asperity.
         decays_left : bool
             Whether K decays the same way to the left (if not: algebraically).
 

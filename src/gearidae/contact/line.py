@@ -47,7 +47,7 @@ def line_force(
         Smallest mean gap g between the rigid shapes [m]; negative in compression.
     stretch : array_like
         Extension S of the most stretched asperity still in contact [m]; broadcasts against `gap`. Less than the
-        distance at which an asperity joins counts as that, more than that at which it lets go as that; "dmt" and
+        distance at which an asperity joins counts as that, more than that of detachment as that; "dmt" and
         "hertz" asperities ignore it.
     radius : float
         Reduced radius R of the two profiles, ``r1 r2/(r1 + r2)`` [m].

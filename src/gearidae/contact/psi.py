@@ -38,22 +38,20 @@ _WEIGHTS = np.full(57, 2.0 * _STEP / math.sqrt(2.0 * math.pi))
 _WEIGHTS[0] *= 0.5
 
 
-def psi(y: ArrayLike, *, scaled: bool = False) -> NDArray[np.float64]:
+def psi(y: ArrayLike) -> NDArray[np.float64]:
     """Kernel of a rough line contact, ``int phi(y + s^2) ds`` over all s.
 
     Parameters
     ----------
     y : array_like
         Gap plus displacement in units of the roughness.
-    scaled : bool, optional
-        Multiply by ``exp(max(y, 0)**2 / 2)``.
 
     Returns
     -------
     ndarray
         The shape of `y`; relative error below 1e-13.
     """
-    return np.asarray(psi_derivatives(y, 0, scaled=scaled)[0])
+    return np.asarray(psi_derivatives(y, 0)[0])
 
 
 def psi_derivatives(y: ArrayLike, order: int, *, scaled: bool = False) -> NDArray[np.float64]:

@@ -64,7 +64,7 @@ def rough_pressure(
         Mean gap h [m].
     stretch : array_like
         Extension S of the most stretched asperity still in contact [m]; broadcasts against `gap`. Less than the
-        distance at which an asperity joins counts as that, more than that at which it lets go as that (so that 0 is the
+        distance at which an asperity joins counts as that, more than that of detachment as that (so that 0 is the
         curve of approach and ``numpy.inf`` that of parting); "dmt" and "hertz" asperities ignore it.
     surface : Surface
         Elastic constants, energy and roughness (SI).
@@ -167,7 +167,7 @@ def maximum_tension(
 
 
 def adhesion_loss_per_asperity(surface: Surface, asperity: str = "jkr") -> float:
-    """Energy lost each time one asperity joins and lets go again.
+    """Energy lost each time one asperity joins and detaches again.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ def choose_backend(backend: str, method: str) -> str:
     Raises
     ------
     SceneError
-        If the native driver is asked for and cannot work here, the name is unknown, or numba has been told to compile
+        If the native driver is requested and cannot work here, the name is unknown, or numba has been told to compile
         nothing.
     """
     if not compiles():
@@ -99,7 +99,6 @@ def run_blocks(
         Number of samples, ends included.
     backend : {"native", "sksundae"}
         From `choose_backend`.
-    statistics : Statistics
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
     """
@@ -140,7 +139,6 @@ def _with_its_model(
     ----------
     problem, current : Problem
         Of the scene, and with the contact model that the checkpoint has.
-    checkpoint : ndarray
     """
     here, beyond = current, current.outgrown(checkpoint)
     if beyond and current.elastic is not None:
@@ -174,16 +172,15 @@ def follow(
 
     Parameters
     ----------
-    scene : Scene
     take : callable
-        Told a block, the solver's counters and the wall time in the solver [s] at its end.
+        Called with a block, the solver's counters and the wall time in the solver [s] at its end.
     backend : {"auto", "native", "sksundae"}, optional
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
     start : Start, optional
         Where the run begins, or is resumed; by default it begins at time 0.
     on_block : callable, optional
-        Told every block of output, after `take`; what returns True ends the run there, with the status ``stopped``.
+        Called with every block of output, after `take`; True ends the run there, with the status ``stopped``.
 
     Returns
     -------
@@ -261,7 +258,6 @@ def solve(
 
     Parameters
     ----------
-    scene : Scene
     rtol, t_end, samples : optional
         In place of ``run.rtol`` [1], ``run.duration`` [s] and ``run.samples``.
     backend : {"auto", "native", "sksundae"}, optional
@@ -301,7 +297,7 @@ def solve(
         statistics=ended.statistics,
         status=ended.status,
         message=ended.message,
-        reached=ended.reached,
+        reached=ended.end_time,
         balance=ended.balance,
         extremes=ended.extremes,
         start=start.time,
@@ -319,7 +315,6 @@ def outlook(
 
     Parameters
     ----------
-    scene : Scene
     backend : {"native", "sksundae"}
     checkpoint : ndarray, optional
         Where the run is to go on.
@@ -351,7 +346,6 @@ def kept_at(
 
     Parameters
     ----------
-    scene : Scene
     checkpoint : ndarray
         From a `Block` of a run of this scene.
     start : Start, optional

@@ -69,14 +69,14 @@ class Expected(NamedTuple):
 
 
 # Seen with SUNDIALS 7.9: errors of 4 and 5 tolerances, 275 steps and order 8; with IDA's own formulas, whose error adds
-# up over the periods, of 326 and 484, and 817 steps. What is not heeded changes one of them by a factor of ten.
+# up over the periods, of 326 and 484, and 817 steps. A part that IDA ignores changes one of them by a factor of ten.
 EXPECTED: Final = {
     "adams": Expected(50.0, (150, 500), 50.0, 5),
     "bdf": Expected(3000.0, (450, 1500), 20.0, 0),
 }
 
 
-class Seen(NamedTuple):
+class TrialResult(NamedTuple):
     """One run of the motion.
 
     Attributes
@@ -203,7 +203,7 @@ def _scene() -> Scene:
     )
 
 
-def _run(way: str, rtol: float) -> Seen:
+def _run(way: str, rtol: float) -> TrialResult:
     """Run the motion, and compare it with the closed form."""
     scene, statistics = _scene(), Statistics()
     problem = make_problem(scene)
@@ -213,9 +213,9 @@ def _run(way: str, rtol: float) -> Seen:
     events = np.concatenate([block.events for block in blocks])
     order = int(problem.model.work.adams.order_used)
     if statistics.ending.status != "finished" or len(rows) != SAMPLES:
-        return Seen(statistics.ending.status, math.inf, math.inf, statistics.steps, order)
+        return TrialResult(statistics.ending.status, math.inf, math.inf, statistics.steps, order)
     error = _error(scene, problem, rows) / rtol
-    return Seen("finished", error, _mark_error(scene, events) / rtol, statistics.steps, order)
+    return TrialResult("finished", error, _mark_error(scene, events) / rtol, statistics.steps, order)
 
 
 def _error(scene: Scene, problem: Problem, rows: NDArray[np.float64]) -> float:

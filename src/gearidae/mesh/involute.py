@@ -14,7 +14,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from gearidae.arrays import Floats
 
 __all__ = [
     "Geometry",
@@ -26,8 +28,6 @@ __all__ = [
     "place_of_arc",
     "separation",
 ]
-
-Floats = NDArray[np.float64]
 
 
 class GeometryError(ValueError):
@@ -109,10 +109,6 @@ def mesh_geometry(base_radius: float, pinion_teeth: int, gear_teeth: int, pressu
     pressure_angle : float
         Pressure angle alpha [rad], 0 < alpha < pi/2.
 
-    Returns
-    -------
-    Geometry
-
     Raises
     ------
     GeometryError
@@ -155,10 +151,6 @@ def mesh_geometry(base_radius: float, pinion_teeth: int, gear_teeth: int, pressu
 def check_geometry(geometry: Geometry) -> None:
     """Refuse a pair that cannot run.
 
-    Parameters
-    ----------
-    geometry : Geometry
-
     Raises
     ------
     GeometryError
@@ -196,7 +188,6 @@ def curvature_radii(geometry: Geometry, xi: ArrayLike) -> tuple[Floats, Floats, 
 
     Parameters
     ----------
-    geometry : Geometry
     xi : array_like, any shape
         Position along the path of contact [m]. Outside the path the contact stays at the tooth's end, and the
         radii keep their values there.
@@ -218,7 +209,6 @@ def flank_arc(geometry: Geometry, xi: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    geometry : Geometry
     xi : array_like, any shape
         Position along the path of contact [m]; outside the path the contact stays at the tooth's end.
 
@@ -235,7 +225,6 @@ def place_of_arc(geometry: Geometry, arc: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    geometry : Geometry
     arc : array_like, any shape
         From the base circle along the involute [m]; less than zero counts as zero.
 
@@ -253,7 +242,6 @@ def separation(geometry: Geometry, xi: ArrayLike, tip_relief_radius: float) -> t
 
     Parameters
     ----------
-    geometry : Geometry
     xi : array_like, any shape
         Position along the path of contact [m].
     tip_relief_radius : float

@@ -8,53 +8,33 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gearidae.lazy import lazy_names
-from gearidae.plot.coating import coating_map, starting_torque
-from gearidae.plot.ensembles import sobol_indices, sticking_probability
-from gearidae.plot.files import write
-from gearidae.plot.gears import gap, gear_speed, transmission_error
-from gearidae.plot.life import coverage_along_flank, life
-from gearidae.plot.lives import lives
-from gearidae.plot.outcome import outcome
-from gearidae.plot.outcome_map import outcome_map
-from gearidae.plot.overview import overview
-from gearidae.plot.posterior import posterior
-from gearidae.plot.roller import roller_force, roller_gap
-from gearidae.plot.spectra import cycle, impact_spectrum, power_spectrum, spectrogram
-from gearidae.plot.surface import surface
-from gearidae.plot.threshold import sticking_threshold
-from gearidae.plot.torque import contact_torque
+from gearidae.plot.coating import coating_map as coating_map
+from gearidae.plot.coating import starting_torque as starting_torque
+from gearidae.plot.ensembles import sobol_indices as sobol_indices
+from gearidae.plot.ensembles import sticking_probability as sticking_probability
+from gearidae.plot.files import write as write
+from gearidae.plot.gears import gap as gap
+from gearidae.plot.gears import gear_speed as gear_speed
+from gearidae.plot.gears import transmission_error as transmission_error
+from gearidae.plot.life import coverage_along_flank as coverage_along_flank
+from gearidae.plot.life import life as life
+from gearidae.plot.lives import lives as lives
+from gearidae.plot.outcome import outcome as outcome
+from gearidae.plot.outcome_map import outcome_map as outcome_map
+from gearidae.plot.overview import overview as overview
+from gearidae.plot.posterior import posterior as posterior
+from gearidae.plot.roller import roller_force as roller_force
+from gearidae.plot.roller import roller_gap as roller_gap
+from gearidae.plot.spectra import cycle as cycle
+from gearidae.plot.spectra import impact_spectrum as impact_spectrum
+from gearidae.plot.spectra import power_spectrum as power_spectrum
+from gearidae.plot.spectra import spectrogram as spectrogram
+from gearidae.plot.surface import surface as surface
+from gearidae.plot.threshold import sticking_threshold as sticking_threshold
+from gearidae.plot.torque import contact_torque as contact_torque
 
 if TYPE_CHECKING:
-    from gearidae.plot.animation import animate_teeth
-    from gearidae.plot.teeth_view import teeth
+    from gearidae.plot.animation import animate_teeth as animate_teeth
+    from gearidae.plot.teeth_view import teeth as teeth
 
-__all__ = [
-    "animate_teeth",
-    "coating_map",
-    "contact_torque",
-    "coverage_along_flank",
-    "cycle",
-    "gap",
-    "gear_speed",
-    "impact_spectrum",
-    "life",
-    "lives",
-    "outcome",
-    "outcome_map",
-    "overview",
-    "posterior",
-    "power_spectrum",
-    "roller_force",
-    "roller_gap",
-    "sobol_indices",
-    "spectrogram",
-    "starting_torque",
-    "sticking_probability",
-    "sticking_threshold",
-    "surface",
-    "teeth",
-    "transmission_error",
-    "write",
-]
-
-__getattr__, __dir__ = lazy_names(globals(), {"animate_teeth": "animation", "teeth": "teeth_view"})
+__getattr__, __dir__, __all__ = lazy_names(__name__)

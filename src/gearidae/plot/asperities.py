@@ -14,13 +14,12 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from gearidae.arrays import Floats
 from gearidae.plot.style import NEGATIVE, POSITIVE
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.studies.tooth_states import ToothContact
 
 __all__ = ["COATING", "FLANKS", "SAMPLES", "close_up", "half_width", "joined_asperities", "rough_sample"]
-
-Floats = NDArray[np.float64]
 
 FLANKS = "#d3e5f3", "#deb968"
 """Colours of pinion and gear, one lighter than the other in grey."""
@@ -44,7 +43,6 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
 
     Parameters
     ----------
-    scene : Scene
     pair : int
         Number of the pair; `SAMPLES` rows take turns.
 
@@ -74,11 +72,6 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
 def joined_asperities(scene: Scene, contact: ToothContact) -> float:
     """Return how many asperities of a pair are joined on average.
 
-    Parameters
-    ----------
-    scene : Scene
-    contact : ToothContact
-
     Returns
     -------
     float
@@ -104,8 +97,6 @@ def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
     ----------
     ax : matplotlib Axes
         Where to draw; micrometres along the flank, nanometres across.
-    scene : Scene
-    contact : ToothContact
 
     Returns
     -------

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gearidae.arrays import Floats
 
 __all__ = ["banded", "crowded_from"]
-
-Floats = NDArray[np.float64]
 
 _PER_OCTAVE = 24
 

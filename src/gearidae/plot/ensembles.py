@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from gearidae.errors import SceneError
 from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, tidy
-from gearidae.studies.sticking_probability import drawn_keys
-from gearidae.studies.sticking_probability import sticking_probability as probability_of
+from gearidae.studies._sticking_probability import drawn_keys
+from gearidae.studies._sticking_probability import sticking_probability as probability_of
 
 __all__ = ["sobol_indices", "sticking_probability"]
 

@@ -73,11 +73,11 @@ def _draw_assessed(ds: xr.Dataset, ax: Axes) -> None:
     """Draw what signals along the life say, where they can tell."""
     passages, shares = ds["passages"].values, 100.0 * ds["assessed_coverage"].values
     below, above = 100.0 * ds["assessed_low"].values, 100.0 * ds["assessed_high"].values
-    told = np.isfinite(shares)
-    spread = [shares[told] - below[told], above[told] - shares[told]]
+    assessed = np.isfinite(shares)
+    spread = [shares[assessed] - below[assessed], above[assessed] - shares[assessed]]
     ax.errorbar(
-        passages[told],
-        shares[told],
+        passages[assessed],
+        shares[assessed],
         yerr=spread,
         label="by the speed signal, 95 %",
         fmt="o",

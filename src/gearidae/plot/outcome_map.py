@@ -7,16 +7,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
 from gearidae.analysis.verdict.codes import Outcome
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.style import new_axes
 
 __all__ = ["outcome_map"]
-
-Floats = NDArray[np.float64]
 
 _LOOKS = {
     Outcome.UNFINISHED: ("0.8", "not finished"),

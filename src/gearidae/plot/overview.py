@@ -41,7 +41,6 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
 
     Parameters
     ----------
-    ds : xarray.Dataset
     kind : str
         From `gearidae.studies.products.open_product`.
 

@@ -39,10 +39,6 @@ def parameter_axis(coordinate: xr.DataArray) -> ParameterAxis:
     ----------
     coordinate : DataArray, shape (n,)
         With its SI unit among its attributes.
-
-    Returns
-    -------
-    ParameterAxis
     """
     values = coordinate.values
     name = str(coordinate.name)

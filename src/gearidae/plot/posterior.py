@@ -10,17 +10,15 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from gearidae.archive.dataset import dimension_names
+from gearidae.arrays import Floats
 from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.picture import PictureAxes, new_picture
 from gearidae.plot.style import POSITIVE, tidy
 from gearidae.studies.products import calibrated_keys
 
 __all__ = ["posterior"]
-
-Floats = NDArray[np.float64]
 
 _BINS: Final = 40
 """Bins of draws, along each key."""

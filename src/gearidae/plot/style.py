@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.plot.picking import pick
 from gearidae.plot.picture import PictureAxes, new_picture
@@ -43,9 +44,7 @@ __all__ = [
     "tidy",
 ]
 
-Floats = NDArray[np.float64]
-
-# Okabe and Ito's palette, dark colours first: told apart by colour-blind readers and, with the line styles,
+# Okabe and Ito's palette, dark colours first: distinguishable for colour-blind readers and, with the line styles,
 # in grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 LINE_STYLES = (
@@ -125,7 +124,7 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     Returns
     -------
     list of Run
-        At most seven, because more cannot be told apart in one picture: the first, the last, and those at which the
+        At most seven, because more cannot be distinguished in one picture: the first, the last, and those at which the
         outcome changes, see `gearidae.plot.picking`.
 
     Raises
@@ -167,10 +166,6 @@ def scale_for(largest: float, unit: str) -> Scale:
         Largest magnitude to be shown [SI].
     unit : str
         Unit without prefix.
-
-    Returns
-    -------
-    Scale
     """
     if not (math.isfinite(largest) and largest > 0.0):
         return Scale(1.0, unit)
@@ -249,11 +244,6 @@ def tidy(ax: Axes) -> None:
 
 def label_time(ax: Axes, runs: Sequence[Run]) -> Scale:
     """Label the time axis for runs to be drawn.
-
-    Parameters
-    ----------
-    ax : Axes
-    runs : sequence of Run
 
     Returns
     -------

@@ -85,7 +85,7 @@ def mesh_states(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
 
     The force law and what is compiled of it are loaded only here: the other pictures do without.
     """
-    from gearidae.studies.tooth_contacts import tooth_contacts
+    from gearidae.studies._tooth_contacts import tooth_contacts
 
     return tooth_contacts(ds, times)
 
@@ -135,12 +135,7 @@ class TeethView:
         self._legend(all(each.told for each in states))
 
     def draw(self, state: MeshState) -> None:
-        """Draw a state in place of the one before.
-
-        Parameters
-        ----------
-        state : MeshState
-        """
+        """Draw a state in place of the one before."""
         shown = nearest_pairs(state, self._places)
         _draw_mesh(self._mesh, self._picture, state, shown, self._largest)
         for place, ax in enumerate(self._close):

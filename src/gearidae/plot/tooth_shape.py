@@ -17,15 +17,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.mesh.involute import Geometry
 from gearidae.records import Flank
 from gearidae.scene import Scene
 
 __all__ = ["GearPicture", "ToothedWheel", "contact_points", "mesh_picture"]
-
-Floats = NDArray[np.float64]
 
 _FLANK_POINTS = 40
 _DEDENDUM = 1.25  # modules
@@ -46,7 +44,6 @@ class ToothedWheel:
     tooth : ndarray, shape (n, 2)
         Outline of tooth 0 from the root of its drive flank to that of its coast flank, clockwise [m], where its drive
         flank crosses the pitch point.
-    teeth : int
     centre : float
         Height of the centre over the pitch point [m].
     base_radius, tip_radius, rim_radius : float
@@ -93,14 +90,7 @@ class ToothedWheel:
 
 @dataclass(frozen=True, slots=True)
 class GearPicture:
-    """Both gears and the line of action of a scene; lengths in m.
-
-    Attributes
-    ----------
-    geometry : Geometry
-    pinion, gear : ToothedWheel
-    half_backlash : float
-    """
+    """Both gears and the line of action of a scene; lengths in m."""
 
     geometry: Geometry
     pinion: ToothedWheel
@@ -131,10 +121,6 @@ def mesh_picture(scene: Scene) -> GearPicture:
     scene : Scene
         With gears.
 
-    Returns
-    -------
-    GearPicture
-
     Raises
     ------
     SceneError
@@ -159,8 +145,6 @@ def contact_points(picture: GearPicture, flank: Flank, place: float, gap: float)
 
     Parameters
     ----------
-    picture : GearPicture
-    flank : Flank
     place : float
         Place xi along the path of contact [m].
     gap : float
@@ -186,8 +170,6 @@ def _wheel(
 
     Parameters
     ----------
-    geometry : Geometry
-    teeth : int
     beyond_pitch : float
         How far beyond the pitch point its tips stay in contact, along the line of action [m].
     thickness : float

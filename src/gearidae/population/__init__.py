@@ -10,11 +10,8 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.population.dataset import population
-    from gearidae.population.flanks import FlankAsperities, flanks_of
+    from gearidae.population.dataset import population as population
+    from gearidae.population.flanks import FlankAsperities as FlankAsperities
+    from gearidae.population.flanks import flanks_of as flanks_of
 
-__all__ = ["FlankAsperities", "flanks_of", "population"]
-
-_HOME = {"FlankAsperities": "flanks", "flanks_of": "flanks", "population": "dataset"}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -13,15 +13,13 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.scene import Scene
 from gearidae.scene.asperity_list import FLANKS, ListedAsperity
 from gearidae.scene.strip import flank_strip
 
 __all__ = ["FlankAsperities", "flanks_digest", "flanks_of"]
-
-Floats = NDArray[np.float64]
 
 
 class FlankAsperities(NamedTuple):
@@ -58,10 +56,6 @@ class FlankAsperities(NamedTuple):
 
 def flanks_of(scene: Scene) -> tuple[FlankAsperities, ...]:
     """Return the asperities of all flanks: tooth by tooth, the drive flank first.
-
-    Parameters
-    ----------
-    scene : Scene
 
     Returns
     -------

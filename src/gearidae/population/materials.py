@@ -33,8 +33,6 @@ def covered_sides(scene: Scene, one: FlankAsperities, gear_tooth: int) -> tuple[
 
     Parameters
     ----------
-    scene : Scene
-    one : FlankAsperities
     gear_tooth : int
         Of the gear that it meets.
 

@@ -57,8 +57,6 @@ class Solution:
         Uniform sample times [s].
     samples : dict of str to ndarray, shape (n,)
         One array per column of `GEAR_COLUMNS` or `ROLLER_COLUMNS`, SI units.
-    events : Events
-    statistics : Statistics
     status : str
         ``finished``, or the named reason why the run ended early.
     message : str

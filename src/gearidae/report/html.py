@@ -44,16 +44,10 @@ def table(
 
     Parameters
     ----------
-    headings : sequence of str
     rows : iterable of sequence
         Cells as they shall read.
-    caption : str, optional
     numeric : sequence of int, optional
         Columns to set to the right.
-
-    Returns
-    -------
-    str
     """
     heads = "".join(
         f'<th scope="col"{_class("number" if place in numeric else "")}>{text(name)}</th>'

@@ -42,7 +42,6 @@ def drawing(figure: Figure, prefix: str, title: str) -> str:
 
     Parameters
     ----------
-    figure : Figure
     prefix : str
         Begins the names of its parts, which must differ from those of other drawings in the page.
     title : str

@@ -10,12 +10,8 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.runs.executors import dask_executor
-    from gearidae.runs.simulation import simulate
-    from gearidae.runs.sweeping import sweep
+    from gearidae.runs.executors import dask_executor as dask_executor
+    from gearidae.runs.simulation import simulate as simulate
+    from gearidae.runs.sweeping import sweep as sweep
 
-__all__ = ["dask_executor", "simulate", "sweep"]
-
-_HOME = {"dask_executor": "executors", "simulate": "simulation", "sweep": "sweeping"}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -14,6 +14,7 @@ import numpy as np
 
 from gearidae.archive.keep import Keep
 from gearidae.archive.sample_table import SampleTable
+from gearidae.archive.stack import stack
 from gearidae.archive.variables import VERDICT
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress
@@ -45,7 +46,7 @@ class Batch:
     backend : str
         As for `gearidae.simulate`.
     report : callable
-        Told how many runs are done and how many there are.
+        Called with the number of finished runs and the number of all runs.
     kept : KeptRuns or None
         Where finished runs are kept until all are.
     keep : Keep
@@ -107,7 +108,15 @@ class Batch:
         none = unsolved("interrupted", "the sweep was interrupted before this run was finished")
         missing = RunResult(none, "unfinished")
         found = [self._done.get(number, missing) for number in range(len(self._scenes))]
-        ds = self._plan.stack([each.solution for each in found], keep=self._keep, samples=self._samples)
+        solutions = [each.solution for each in found]
+        ds = stack(
+            self._plan.base,
+            self._plan.axes,
+            self._plan.scenes,
+            solutions,
+            keep=self._keep,
+            samples=self._samples,
+        )
         if self._keep.names is None:
             return ds
         dims = ds["status"].dims

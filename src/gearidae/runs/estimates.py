@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.scene import Drive, Gears, Load, Scene
@@ -22,8 +22,6 @@ __all__ = [
     "resting_gap",
     "steady_speed",
 ]
-
-Floats = NDArray[np.float64]
 
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
 
@@ -181,7 +179,7 @@ def mean_drive_torque(scene: Scene) -> float:
     -------
     float
         Mean over ``run.duration`` of the size of the constant part plus the schedule [N m]; of a drive that holds a
-        speed, what the load takes at that speed.
+        speed, what the load takes at that speed; of one with a law, at least what the load takes at the initial speed.
 
     Raises
     ------
@@ -190,11 +188,13 @@ def mean_drive_torque(scene: Scene) -> float:
     """
     gears, drive, load = _tables(scene)
     mean = _mean_size(_over_run(scene, drive.torque, drive.schedule))
-    if drive.speed is None:
+    if drive.speed is None and drive.law is None:
         return mean
-    speed = balanced_speed(scene, mean)
+    assert scene.initial is not None
+    speed = abs(scene.initial.gear_speed) if drive.speed is None else balanced_speed(scene, mean)
     resistance = _mean_resistance(scene) + speed * (load.viscous + load.drag * speed)
-    return resistance * gears.pinion_teeth / gears.gear_teeth
+    taken = resistance * gears.pinion_teeth / gears.gear_teeth
+    return taken if drive.law is None else max(mean, taken)
 
 
 def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:

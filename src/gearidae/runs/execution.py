@@ -88,7 +88,7 @@ class Execution:
         if self.executor is not None:
             yield self.executor
             return
-        # processes take seconds to start: only where they are asked for
+        # processes take seconds to start: only on request
         workers = self.threads() or (1 if self.jobs is None else self.jobs)
         with own_executor(workers, calls, releases_gil=self.threads() > 0) as own:
             yield own
@@ -109,7 +109,6 @@ def run_kept(
 
     Parameters
     ----------
-    how : Execution
     make_store : callable
         Makes what keeps the results beside an archive.
     work : callable
@@ -122,9 +121,9 @@ def run_kept(
     scenes : sequence of Scene, optional
         Of the runs; results of others are warned of, and left where they are. By default all are of this study.
     so_far : callable, optional
-        Makes the dataset of what there is at Ctrl-C, where `work` raises a plain `KeyboardInterrupt`.
+        Makes the dataset of the finished part at Ctrl-C, where `work` raises a plain `KeyboardInterrupt`.
     prepared : callable, optional
-        Makes of the dataset what is saved, also of what there is at Ctrl-C, which otherwise is not saved.
+        Makes the saved form of the dataset, also of the part at Ctrl-C, which otherwise is not saved.
 
     Returns
     -------
@@ -231,7 +230,7 @@ def interruptible(
     about : mapping, optional
         Attributes for it.
     keep : callable, optional
-        Told the dataset.
+        Called with the dataset.
 
     Raises
     ------
@@ -268,11 +267,8 @@ def solutions(
 
     Parameters
     ----------
-    kept : KeptRuns or None
-    executor : Executor or None
     function : callable
         Runs a scene, given `arguments`: its solution, and what came of it in one word.
-    scenes : sequence of Scene
 
     Yields
     ------

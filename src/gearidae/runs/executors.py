@@ -28,14 +28,6 @@ _PATIENCE = 10.0
 def check_jobs(jobs: int | None) -> int:
     """Return the number of runs at a time: `jobs`, or the number of usable cores.
 
-    Parameters
-    ----------
-    jobs : int or None
-
-    Returns
-    -------
-    int
-
     Raises
     ------
     SceneError
@@ -186,8 +178,6 @@ def side_by_side(
 
     Parameters
     ----------
-    executor : Executor or None
-    function : callable
     *columns : iterable
         Values of each argument.
 

@@ -73,7 +73,6 @@ def name_of(scene: Scene, about: Mapping[str, Any]) -> str:
 
     Parameters
     ----------
-    scene : Scene
     about : mapping
         Ready for JSON; from `circumstances`, and more.
     """

@@ -23,7 +23,6 @@ def with_validity(ds: xr.Dataset, scene: Scene) -> xr.Dataset:
 
     Parameters
     ----------
-    ds : xarray.Dataset
     scene : Scene
         That was run; of a sweep, the one that its runs were derived from.
 
@@ -44,10 +43,6 @@ def validity_of(ds: xr.Dataset) -> list[ValidityRow]:
     ds : xarray.Dataset
         A run, a sweep (the rows are those of the scene that its runs were derived from), or one run that was picked
         from a sweep (the rows are its own).
-
-    Returns
-    -------
-    list of ValidityRow
 
     Raises
     ------

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
+from gearidae.arrays import Floats
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     from gearidae.scene.surface import Surface
 
 __all__ = ["PairContact", "pair_contact"]
-
-Floats = NDArray[np.float64]
 
 _OUTERMOST, _INNERMOST = 30.0, -900.0
 """Gaps to look at, in roughnesses: beyond 30 the tail of the heights is below 1e-195."""
@@ -163,14 +162,6 @@ class PairContact:
 
 def pair_contact(scene: Scene) -> PairContact:
     """Return the contact that a scene's estimates are made for.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    PairContact
 
     Raises
     ------

@@ -35,12 +35,7 @@ def doubts(scene: Scene) -> list[str]:
 
 
 def log_doubts(scene: Scene) -> None:
-    """Log each of the `doubts` about a scene as a warning.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """Log each of the `doubts` about a scene as a warning."""
     for doubt in doubts(scene):
         log.warning("%s: %s", scene.name, doubt)
 

@@ -42,16 +42,10 @@ def solve_and_leave(
 
     Parameters
     ----------
-    scene : Scene
     backend : str
         As for `gearidae.simulate`.
-    keep : Keep
     on_progress : callable, optional
         As for `gearidae.runs.running.solve`.
-
-    Returns
-    -------
-    RunResult
     """
     return leave(scene, solve(scene, backend, on_progress), keep)
 
@@ -73,10 +67,8 @@ def solve_group(scenes: Sequence[Scene], backend: str, keep: Keep) -> list[RunRe
 
     Parameters
     ----------
-    scenes : sequence of Scene
     backend : str
         As for `gearidae.simulate`.
-    keep : Keep
 
     Returns
     -------

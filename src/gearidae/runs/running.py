@@ -45,10 +45,6 @@ def prepare(
     backend : str, optional
         As for `simulate`.
 
-    Returns
-    -------
-    Scene
-
     Raises
     ------
     SceneError
@@ -76,7 +72,6 @@ def solve(
 
     Parameters
     ----------
-    scene : Scene
     backend : str
         As for `simulate`.
     on_progress : callable, optional
@@ -84,7 +79,7 @@ def solve(
     start : Start, optional
         Where the run begins, if it goes on from another.
     on_block : callable, optional
-        Told every block of output; ends the run by returning True.
+        Called with every block of output; ends the run by returning True.
 
     Returns
     -------
@@ -143,7 +138,7 @@ def early_end(ds: xr.Dataset, time: float, message: str = "", advice: str = _ADV
     Parameters
     ----------
     ds : xarray.Dataset
-        What there is of the run, with a status other than ``finished``.
+        The data of the run so far, with a status other than ``finished``.
     time : float
         Simulated time reached [s].
     message, advice : str, optional

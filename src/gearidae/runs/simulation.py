@@ -52,7 +52,7 @@ def simulate(
         Which driver of the solver to use; ``auto`` takes the fastest that works here, or the one that a run to be
         resumed was begun with.
     progress : bool or callable, optional
-        True for a progress bar on a terminal or in a notebook, or a function that is told the simulated time
+        True for a progress bar on a terminal or in a notebook, or a function of the simulated time
         reached [s] and the number of events so far.
     archive : path-like, optional
         Write to this netCDF4 file while the run goes on. It can be opened at any time, also after a crash.
@@ -68,8 +68,8 @@ def simulate(
         schedules are those of the time that goes on. The scene may differ in ``drive``, ``load``, ``coating``, ``run``
         and ``name``; its ``initial`` says nothing.
     on_block : callable, optional
-        Told each block of output (`gearidae.records.Block`: samples, events, the time reached) as soon as it is there;
-        by returning True it ends the run, which keeps what there is, with the status ``stopped``.
+        Called with each block (`gearidae.records.Block`: samples, events, the time reached) as soon as it is there;
+        by returning True it ends the run, which keeps its data, with the status ``stopped``.
 
     Returns
     -------

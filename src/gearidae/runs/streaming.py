@@ -163,9 +163,9 @@ class _Run:
         except KeyboardInterrupt:
             raise self._interrupted(archive) from None
         except DiskError as error:
-            raise self._not_written(archive, ended.reached, error) from error
+            raise self._not_written(archive, ended.end_time, error) from error
         if ended.status not in ("finished", "stopped"):
-            raise early_end(open_archive(self._target), ended.reached)
+            raise early_end(open_archive(self._target), ended.end_time)
 
     def _interrupted(self, archive: GrowingArchive) -> Interrupted:
         archive.close()
@@ -177,7 +177,7 @@ class _Run:
         template = self._template(ended)
         if self._scene.roller is None:
             end = float(template.attrs["t_end"]) if ended.status == "finished" else 0.0
-            told = account_of(
+            summary = account_of(
                 self._scene,
                 archive.read,
                 archive.samples,
@@ -186,7 +186,7 @@ class _Run:
                 balance_of(template),
                 ended.extremes,
             )
-            template.attrs["account"] = told.as_json()
+            template.attrs["account"] = summary.as_json()
         log_imbalance(template)
         return template
 
@@ -223,7 +223,7 @@ class _Run:
             statistics=ended.statistics,
             status=ended.status,
             message=ended.message,
-            reached=ended.reached,
+            reached=ended.end_time,
             balance=ended.balance,
             extremes=ended.extremes,
             checkpoint=ended.checkpoint,

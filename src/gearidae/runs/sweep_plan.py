@@ -5,20 +5,15 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from gearidae.archive.keep import EVERYTHING, Keep
-from gearidae.archive.sample_table import SampleTable
-from gearidae.archive.stack import Axis, stack, swept_values, zipped_keys
+from gearidae.archive.stack import Axis, swept_values, zipped_keys
 from gearidae.errors import SceneError
-from gearidae.records import Solution
 from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from gearidae.scene import Scene
 
 __all__ = ["SweepPlan", "plan_sweep"]
@@ -57,27 +52,6 @@ class SweepPlan:
         """Keys that are walked together, as the attribute ``zipped`` of the result; empty without any."""
         return zipped_keys(self.axes)
 
-    def stack(
-        self, solutions: Sequence[Solution], *, keep: Keep = EVERYTHING, samples: SampleTable | None = None
-    ) -> xr.Dataset:
-        """Put the runs into one dataset.
-
-        Parameters
-        ----------
-        solutions : sequence of Solution
-            In the order of the scenes.
-        keep : Keep, optional
-            Which variables the dataset has; by default all.
-        samples : SampleTable, optional
-            Holds the samples, if the solutions do not.
-
-        Returns
-        -------
-        xarray.Dataset
-            See `gearidae.sweep`.
-        """
-        return stack(self.base, self.axes, self.scenes, solutions, keep=keep, samples=samples)
-
 
 def plan_sweep(
     base: Scene, over: Mapping[str, Iterable[Any]], *, zipped: bool | Collection[str] = False
@@ -92,10 +66,6 @@ def plan_sweep(
         Values of each swept key.
     zipped : bool or collection of str, optional
         As for `gearidae.sweep`.
-
-    Returns
-    -------
-    SweepPlan
 
     Raises
     ------

@@ -67,7 +67,7 @@ def sweep(
     overwrite : bool, optional
         Whether `archive` may replace a file, and the runs of an unfinished sweep beside it be discarded.
     progress : bool or callable, optional
-        True for a progress bar on a terminal or in a notebook, or a function that is told the number of runs done (with
+        True for a progress bar on a terminal or in a notebook, or a function of the number of finished runs (with
         fractions for those under way, where they can be seen) and the number of runs.
     jobs : int, optional
         Runs at a time; by default the number of usable cores. Ignored if `executor` is given.
@@ -128,8 +128,6 @@ def run_study(
 
     Parameters
     ----------
-    plan : SweepPlan
-    how : Execution
     about : mapping of str to str
         What the result depends on besides the runs, as attributes.
     finish : callable, optional
@@ -176,16 +174,10 @@ def run_plan(plan: SweepPlan, how: Execution, kept: KeptRuns | None, keep: Keep 
 
     Parameters
     ----------
-    plan : SweepPlan
-    how : Execution
     kept : KeptRuns, optional
         Where finished runs are taken from, and kept.
     keep : Keep, optional
         What each run leaves behind.
-
-    Returns
-    -------
-    Dataset
 
     Raises
     ------
@@ -195,7 +187,7 @@ def run_plan(plan: SweepPlan, how: Execution, kept: KeptRuns | None, keep: Keep 
     with sweep_progress(how.progress, len(plan.scenes)) as report:
         batch = Batch(plan, how.backend, report, kept, keep)
         try:
-            if kept is not None:
+            if kept is not None and kept.count():
                 batch.take_kept(kept)
             with how.computing(batch.left) as executor:
                 batch.run(executor, threads=how.threads())

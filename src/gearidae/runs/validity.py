@@ -87,10 +87,6 @@ def validity(scene: Scene) -> pd.DataFrame:
 def validity_attribute(scene: Scene) -> str:
     """Return the rows of `validity` as JSON, for the attributes of an archive.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     str
@@ -100,16 +96,7 @@ def validity_attribute(scene: Scene) -> str:
 
 
 def validity_rows(scene: Scene) -> list[ValidityRow]:
-    """Return the rows of `validity` as plain records.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    list of ValidityRow
-    """
+    """Return the rows of `validity` as plain records."""
     return list(_rows(scene))
 
 

@@ -23,9 +23,10 @@ import math
 from typing import Annotated, Final, Literal, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.coating_table import FractionTable, path_means
 from gearidae.scene.group import Group, shorten
@@ -42,7 +43,6 @@ THICKEST: Final = 3.0
 
 _RECESSES: Final = {"bare": 2.0, "coated": 0.0, "mixed": 1.0}  # thicknesses by which gaps are wider
 
-Floats = NDArray[np.float64]
 Fraction = Annotated[float, Quantity(unit="1", at_least=0, at_most=1)]
 OptionalFraction = Annotated[float | None, Quantity(unit="1", at_least=0, at_most=1)]
 
@@ -171,7 +171,6 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
 
     Parameters
     ----------
-    coating : Coating
     surface : Surface
         The bare surface.
 

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import BeforeValidator
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 from gearidae.scene.quantity import Quantity
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
 __all__ = ["MOST_PLACES", "FractionTable", "check_tables", "fraction_at", "met_teeth", "path_means"]
-
-Floats = NDArray[np.float64]
 
 MOST_PLACES: Final = 64
 """Places along a flank: steps of the solver follow each of them."""

@@ -31,7 +31,7 @@ INSTEAD: Final = {
 
 @dataclass(frozen=True, slots=True)
 class KeyInfo:
-    """What there is to know about one key of a scene.
+    """Description of one key of a scene.
 
     Attributes
     ----------

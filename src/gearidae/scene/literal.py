@@ -17,14 +17,6 @@ _LONG_KEY: Final = re.compile(f"(?:{_PART}){{{_MOST_PARTS}}}")
 def read_toml(text: str) -> dict[str, Any]:
     """Read TOML.
 
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    dict
-
     Raises
     ------
     ValueError
@@ -41,10 +33,6 @@ def read_toml(text: str) -> dict[str, Any]:
 
 def literal(text: str) -> Any:
     """Read a value as TOML would; what TOML does not know is a text, such as a number with a unit.
-
-    Parameters
-    ----------
-    text : str
 
     Returns
     -------

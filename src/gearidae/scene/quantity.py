@@ -125,10 +125,6 @@ class Quantity(_Bounded):
         value : object
             What the user gave.
 
-        Returns
-        -------
-        float
-
         Raises
         ------
         ValueError
@@ -171,10 +167,6 @@ class Count(_Bounded):
         ----------
         value : object
             What the user gave.
-
-        Returns
-        -------
-        int
 
         Raises
         ------

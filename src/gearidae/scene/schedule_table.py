@@ -18,16 +18,14 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
 from gearidae.scene.text_table import column_of, listed, split_unit
 from gearidae.scene.units import from_text
 
 __all__ = ["in_folder", "pack_knots", "read_schedule"]
-
-Floats = NDArray[np.float64]
 
 _KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
 _SOURCES: Final = ("file", "data", "knots", "packed")

@@ -26,10 +26,6 @@ _PREFIXED: Final = ("m", "s", "N", "J", "Pa", "Hz", "W")
 def _line(scene: Scene) -> str:
     """Write what a scene is in one line.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     str
@@ -64,10 +60,6 @@ def _covered(scene: Scene) -> str:
 @as_html.register
 def _table(scene: Scene) -> str:
     """Write a scene as an HTML table of its keys, those that differ from the nearest preset marked.
-
-    Parameters
-    ----------
-    scene : Scene
 
     Returns
     -------
@@ -113,10 +105,6 @@ def _row(key: str, name: str, value: object, found: tuple[object, object] | None
 def nearest_preset(scene: Scene) -> str:
     """Name the preset that a scene differs least from; empty if none is near.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     str
@@ -135,7 +123,6 @@ def differences(scene: Scene, name: str) -> dict[str, tuple[object, object]]:
 
     Parameters
     ----------
-    scene : Scene
     name : str
         Of the preset.
 

@@ -26,10 +26,6 @@ MOST: Final = 5_000_000
 def flank_strip(scene: Scene) -> tuple[float, float]:
     """Return both ends of the strip, which no coverage, torque or seed changes.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     low, high : float

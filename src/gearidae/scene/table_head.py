@@ -45,7 +45,6 @@ def open_table(
 
     Parameters
     ----------
-    path : Path
     largest : int
         Bytes that the file may have.
     names : callable, optional
@@ -59,10 +58,6 @@ def open_table(
         Lines above that of the headings.
     unit_row : bool, optional
         Whether the line below headings without units may hold these.
-
-    Returns
-    -------
-    TextTable
 
     Raises
     ------

@@ -36,7 +36,6 @@ class TextTable:
 
     Attributes
     ----------
-    path : Path
     size : int
         Bytes of the file.
     headings : tuple of str
@@ -45,12 +44,10 @@ class TextTable:
         Remarks above the first row.
     delimiter : str
         Between the cells; empty for blanks.
-    decimal : str
     skipped : int
         Lines above the headings that are no remarks.
     above : int
         Number of lines above the first row.
-    encoding : str
     """
 
     path: Path
@@ -209,7 +206,6 @@ def check_regular(path: Path, largest: int) -> int:
 
     Parameters
     ----------
-    path : Path
     largest : int
         Bytes that it may have.
 
@@ -246,11 +242,6 @@ def split_unit(heading: str) -> tuple[str, str]:
 
 def column_of(headings: Sequence[str], name: str) -> int | None:
     """Find a column by its heading; a name with a unit also finds a heading without one.
-
-    Parameters
-    ----------
-    headings : sequence of str
-    name : str
 
     Returns
     -------

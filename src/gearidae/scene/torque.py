@@ -218,5 +218,5 @@ class Load(Group):
 
     @property
     def is_dry(self) -> bool:
-        """Whether there is a resistance that opposes whichever motion there is, and may hold the gear at rest."""
+        """Whether there is a resistance that opposes motion in both directions, and may hold the gear at rest."""
         return self.torque != 0.0 or bool(self.harmonic) or bool(self.schedule) or self.law is not None

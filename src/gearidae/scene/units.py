@@ -69,10 +69,6 @@ def from_text(text: str, unit: str, *, difference: bool = False) -> float:
         Whether it is the difference of two values, such as a standard deviation: of temperatures, one in degC is one
         in K.
 
-    Returns
-    -------
-    float
-
     Raises
     ------
     ValueError

@@ -73,10 +73,6 @@ def contact_subject(*, roller: bool, swept: Sequence[str] = ()) -> str:
         Whether the scene is that of a roller, else of gears.
     swept : sequence of str, optional
         Keys or dimensions in which the runs of a sweep differ.
-
-    Returns
-    -------
-    str
     """
     if roller:
         contact = "of the roller at its closest approach, with rigid bodies"
@@ -89,10 +85,6 @@ def contact_subject(*, roller: bool, swept: Sequence[str] = ()) -> str:
 
 def mean_note(rows: Iterable[ValidityRow]) -> str:
     """Say in a line what stands beside a verdict where the force of one pair of teeth is not the mean over many.
-
-    Parameters
-    ----------
-    rows : iterable of ValidityRow
 
     Returns
     -------
@@ -107,16 +99,7 @@ def mean_note(rows: Iterable[ValidityRow]) -> str:
 
 
 def rows_to_json(rows: Iterable[ValidityRow]) -> str:
-    """Write rows as JSON, for the attribute of an archive; NaN and infinity become null.
-
-    Parameters
-    ----------
-    rows : iterable of ValidityRow
-
-    Returns
-    -------
-    str
-    """
+    """Write rows as JSON, for the attribute of an archive; NaN and infinity become null."""
     kept = [
         {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row}
         for row in (asdict(each).items() for each in rows)
@@ -131,10 +114,6 @@ def rows_from_json(text: str) -> list[ValidityRow]:
     ----------
     text : str
         What `rows_to_json` wrote.
-
-    Returns
-    -------
-    list of ValidityRow
 
     Raises
     ------
@@ -151,16 +130,7 @@ def rows_from_json(text: str) -> list[ValidityRow]:
 
 
 def holds_rows(text: object) -> bool:
-    """Whether an attribute read from a file is what `rows_to_json` writes.
-
-    Parameters
-    ----------
-    text : object
-
-    Returns
-    -------
-    bool
-    """
+    """Whether an attribute read from a file is what `rows_to_json` writes."""
     if not isinstance(text, str) or len(text) > _LONGEST:
         return False
     try:

@@ -12,91 +12,34 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
-    from gearidae.runs.plausibility import doubts
-    from gearidae.runs.run_time import run_time
-    from gearidae.runs.validity import validity
-    from gearidae.studies.calibrate import calibrate
-    from gearidae.studies.coating_map import coating_map
-    from gearidae.studies.ensemble import ensemble
-    from gearidae.studies.equilibrium import contact_resonance, natural_frequency
-    from gearidae.studies.life import life
-    from gearidae.studies.life_signals import assess_life
-    from gearidae.studies.lives import lives
-    from gearidae.studies.observation_files import read_observations
-    from gearidae.studies.observations import Observation
-    from gearidae.studies.operating_map import operating_map
-    from gearidae.studies.predict import predict
-    from gearidae.studies.products import open_life, open_lives, open_map, open_posterior
-    from gearidae.studies.sensitivity import sensitivity
-    from gearidae.studies.starting_torque import starting_torque, static_starting_torque
-    from gearidae.studies.sticking_probability import sticking_probability
-    from gearidae.studies.sticking_threshold import sticking_threshold
-    from gearidae.studies.surviving_share import surviving_share
-    from gearidae.studies.tooth_contacts import tooth_contacts
+    from gearidae.runs.estimates import effective_mass as effective_mass
+    from gearidae.runs.estimates import resting_gap as resting_gap
+    from gearidae.runs.estimates import steady_speed as steady_speed
+    from gearidae.runs.plausibility import doubts as doubts
+    from gearidae.runs.run_time import run_time as run_time
+    from gearidae.runs.validity import validity as validity
+    from gearidae.studies._calibrate import calibrate as calibrate
+    from gearidae.studies._coating_map import coating_map as coating_map
+    from gearidae.studies._ensemble import ensemble as ensemble
+    from gearidae.studies._life import life as life
+    from gearidae.studies._lives import lives as lives
+    from gearidae.studies._operating_map import operating_map as operating_map
+    from gearidae.studies._predict import predict as predict
+    from gearidae.studies._sensitivity import sensitivity as sensitivity
+    from gearidae.studies._starting_torque import starting_torque as starting_torque
+    from gearidae.studies._starting_torque import static_starting_torque as static_starting_torque
+    from gearidae.studies._sticking_probability import sticking_probability as sticking_probability
+    from gearidae.studies._sticking_threshold import sticking_threshold as sticking_threshold
+    from gearidae.studies._surviving_share import surviving_share as surviving_share
+    from gearidae.studies._tooth_contacts import tooth_contacts as tooth_contacts
+    from gearidae.studies.equilibrium import contact_resonance as contact_resonance
+    from gearidae.studies.equilibrium import natural_frequency as natural_frequency
+    from gearidae.studies.life_signals import assess_life as assess_life
+    from gearidae.studies.observation_files import read_observations as read_observations
+    from gearidae.studies.observations import Observation as Observation
+    from gearidae.studies.products import open_life as open_life
+    from gearidae.studies.products import open_lives as open_lives
+    from gearidae.studies.products import open_map as open_map
+    from gearidae.studies.products import open_posterior as open_posterior
 
-__all__ = [
-    "Observation",
-    "assess_life",
-    "calibrate",
-    "coating_map",
-    "contact_resonance",
-    "doubts",
-    "effective_mass",
-    "ensemble",
-    "life",
-    "lives",
-    "natural_frequency",
-    "open_life",
-    "open_lives",
-    "open_map",
-    "open_posterior",
-    "operating_map",
-    "predict",
-    "read_observations",
-    "resting_gap",
-    "run_time",
-    "sensitivity",
-    "starting_torque",
-    "static_starting_torque",
-    "steady_speed",
-    "sticking_probability",
-    "sticking_threshold",
-    "surviving_share",
-    "tooth_contacts",
-    "validity",
-]
-
-_HOME = {
-    "Observation": "observations",
-    "assess_life": "life_signals",
-    "calibrate": "calibrate",
-    "coating_map": "coating_map",
-    "contact_resonance": "equilibrium",
-    "doubts": "gearidae.runs.plausibility",
-    "effective_mass": "gearidae.runs.estimates",
-    "life": "life",
-    "lives": "lives",
-    "ensemble": "ensemble",
-    "natural_frequency": "equilibrium",
-    "open_life": "products",
-    "open_lives": "products",
-    "open_map": "products",
-    "open_posterior": "products",
-    "operating_map": "operating_map",
-    "predict": "predict",
-    "read_observations": "observation_files",
-    "resting_gap": "gearidae.runs.estimates",
-    "run_time": "gearidae.runs.run_time",
-    "sensitivity": "sensitivity",
-    "starting_torque": "starting_torque",
-    "static_starting_torque": "starting_torque",
-    "steady_speed": "gearidae.runs.estimates",
-    "sticking_probability": "sticking_probability",
-    "sticking_threshold": "sticking_threshold",
-    "surviving_share": "surviving_share",
-    "tooth_contacts": "tooth_contacts",
-    "validity": "gearidae.runs.validity",
-}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -32,7 +32,7 @@ _FIGURES: Final = (
     "stick_time",
 )
 _SHARES: Final = (0.9, 0.5, 0.1)
-"""Of the gears that still turn, for which the passages are told."""
+"""Of the gears that still turn, for which the passages are given."""
 _SIGNS: Final = {
     Outcome.TURNS: ".",
     Outcome.CROSSES_BACKLASH: "x",
@@ -45,8 +45,8 @@ _MOST_FRACTIONS: Final = 13
 _STEPS_WANTED: Final = 50
 """Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
 _ENDINGS: Final = {
-    "coverage": "the coverage asked for is reached",
-    "passages": "the passages asked for are reached",
+    "coverage": "the requested coverage is reached",
+    "passages": "the requested passages are reached",
     "interrupted": "the study was interrupted",
 }
 
@@ -72,13 +72,8 @@ def answer(ds: xr.Dataset, kind: str) -> Answer:
 
     Parameters
     ----------
-    ds : Dataset
     kind : str
         From `gearidae.studies.products.open_product`, other than ``runs``.
-
-    Returns
-    -------
-    Answer
     """
     sentence, rows = _ANSWERS[kind]
     return Answer(sentence(ds), tuple(rows(ds)))
@@ -123,7 +118,7 @@ def _number(value: float, one: xr.Dataset) -> str:
 
 
 def _ensemble_sentence(ds: xr.Dataset) -> str:
-    from gearidae.studies.sticking_probability import sticking_probability
+    from gearidae.studies._sticking_probability import sticking_probability
 
     if not np.isfinite(ds["sticks"]).any():
         return f"None of {ds.sizes['member']} members has been finished."
@@ -139,7 +134,7 @@ def _probability(found: xr.Dataset) -> str:
 
 def _ensemble_rows(ds: xr.Dataset) -> Rows:
     """Probability of sticking, indices, verdicts, figures with their spread."""
-    from gearidae.studies.sticking_probability import sticking_probability
+    from gearidae.studies._sticking_probability import sticking_probability
 
     yield str(ds.attrs["title"]), "", ""
     if np.isfinite(ds["sticks"]).any():
@@ -259,7 +254,7 @@ def _lives_rows(ds: xr.Dataset) -> Rows:
 
 
 def _surviving_rows(ds: xr.Dataset) -> Rows:
-    from gearidae.studies.surviving_share import surviving_share
+    from gearidae.studies._surviving_share import surviving_share
 
     found = surviving_share(ds)
     passages, shares = found["passages"].values, found["share"].values

@@ -11,14 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Final, Protocol, TypeAlias
+from typing import Final, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gearidae.arrays import Floats
 
 __all__ = ["Direct", "GearStuck", "Life", "jump"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _FIRST: Final = 0.01
 """Change of the state in the first step."""
@@ -113,10 +112,6 @@ def jump(
     life : Life, optional
         Continued with each step; what it holds is there also where an exception ends the integration. By default a new
         one.
-
-    Returns
-    -------
-    Life
     """
     life, known = Life() if life is None else life, dict[bytes, Floats]()
     life.add(0.0, start)

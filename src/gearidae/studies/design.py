@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import MOST_RUNS
 from gearidae.studies.distributions import Distribution
 
 __all__ = ["DESIGNS", "Design", "check_design", "pick_freeze_design", "plain_design"]
-
-Floats = NDArray[np.float64]
 
 DESIGNS = ("sobol", "random")
 _MOST_DIMENSIONS = 21_201
@@ -58,8 +57,6 @@ def check_design(size: int, design: str, seed: int, *, indices: bool) -> None:
     ----------
     size : int
         Number of rows.
-    design : str
-    seed : int
     indices : bool
         Whether Sobol' indices are wanted.
 
@@ -82,16 +79,10 @@ def plain_design(distributions: Sequence[Distribution], size: int, design: str, 
 
     Parameters
     ----------
-    distributions : sequence of Distribution
     size : int
         Number of members.
     design : {"sobol", "random"}
         Scrambled Sobol' points (doi:10.1016/0041-5553(67)90144-9), or pseudo-random ones.
-    seed : int
-
-    Returns
-    -------
-    Design
     """
     points = _points(len(distributions), size, design, seed)
     return Design(_values(distributions, points), np.full(size, ""), np.arange(size, dtype=np.int64))
@@ -102,7 +93,6 @@ def pick_freeze_design(distributions: Sequence[Distribution], size: int, design:
 
     Parameters
     ----------
-    distributions : sequence of Distribution
     size : int
         Rows N of each matrix, a power of 2.
     design, seed

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.keys import find_key
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["KINDS", "Distribution", "read_distributions"]
-
-Floats = NDArray[np.float64]
 
 _CALL: Final = re.compile(r"\s*(\w+)\s*\((.*)\)\s*", re.DOTALL)
 _FIXED: Final = ("run.duration", "run.samples")
@@ -134,14 +132,6 @@ class Distribution:
     def log_density(self, values: Floats) -> Floats:
         """Logarithm of the density [1/SI]; -inf outside its support.
 
-        Parameters
-        ----------
-        values : ndarray
-
-        Returns
-        -------
-        ndarray
-
         Raises
         ------
         SceneError
@@ -165,7 +155,7 @@ def read_distributions(
         Dotted key to a frozen distribution of scipy.stats in SI units (anything with a method ``ppf``), or a text, see
         `KINDS`.
     others : callable, optional
-        Told a key and what is given for it: the unit of what is no key of the scene, None of what may be one.
+        Called with a key and its value: the unit of a name that is no key of the scene, None for a possible key.
 
     Returns
     -------

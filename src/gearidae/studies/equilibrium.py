@@ -129,7 +129,7 @@ def contact_resonance(scene: Scene, joined: float | None = None) -> float:
     pressed = gap if joined is None else min(gap, joined)
     step = _STEP * scene.surface.roughness
     here = law(gap, pressed, radius)
-    # a pair that swings stays on the branch on which nothing joins or lets go: the stiffer way of the two
+    # a pair that swings stays on the branch on which nothing joins or detaches: the stiffer way of the two
     opening = here - law(gap + step, pressed, radius)
     closing = law(gap - step, pressed, radius, gap) - here
     stiffness = max(opening, closing) / step
@@ -195,10 +195,6 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
 def leaving_radii(scene: Scene) -> tuple[float, list[float]]:
     """Reduced radii of the pair at the end of its path of contact, and of those behind it [m].
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     leaving : float
@@ -215,7 +211,6 @@ def settled_gap(scene: Scene, balance: Callable[[float], float]) -> float:
 
     Parameters
     ----------
-    scene : Scene
     balance : callable
         Force less load [N] of a gap [m].
 
@@ -237,7 +232,6 @@ def nearest_gap(scene: Scene, balance: Callable[[float], float], gap: float) -> 
 
     Parameters
     ----------
-    scene : Scene
     balance : callable
         Force less load [N] of a gap [m].
     gap : float

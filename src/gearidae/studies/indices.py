@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import sobol_indices
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
 __all__ = ["Indices", "indices_of"]
-
-Floats = NDArray[np.float64]
 
 RESAMPLES: Final = 200
 """Bootstrap samples of rows: the standard deviation of so many is known to 5 %."""
@@ -40,7 +38,7 @@ class Indices(NamedTuple):
     rows: int
 
 
-def indices_of(figures: Floats, keys: int, *, seed: int = 0, resamples: int = RESAMPLES) -> Indices:
+def indices_of(figures: Floats, keys: int, *, seed: int = 0) -> Indices:
     """Estimate the indices of one figure.
 
     Parameters
@@ -51,8 +49,6 @@ def indices_of(figures: Floats, keys: int, *, seed: int = 0, resamples: int = RE
         Number of keys.
     seed : int, optional
         Of the bootstrap.
-    resamples : int, optional
-        Bootstrap samples.
 
     Returns
     -------
@@ -82,7 +78,7 @@ def indices_of(figures: Floats, keys: int, *, seed: int = 0, resamples: int = RE
     if np.ptp(used[:2]) == 0.0:
         return Indices(nothing, nothing, nothing, nothing, rows)
     generator = np.random.default_rng(seed)
-    drawn = [_estimate(used[:, generator.integers(0, rows, rows)]) for _ in range(resamples)]
+    drawn = [_estimate(used[:, generator.integers(0, rows, rows)]) for _ in range(RESAMPLES)]
     first, total = _estimate(used)
     spread_first, spread_total = np.std(drawn, axis=0, ddof=1)
     return Indices(first, total, spread_first, spread_total, rows)

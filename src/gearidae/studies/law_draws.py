@@ -34,10 +34,6 @@ def law_of_medians(name: str, parameters: Mapping[str, Any], vary: Mapping[str, 
         Keys and their distributions. A parameter that has one, as ``law.`` and its name, and none in `parameters` is
         its median.
 
-    Returns
-    -------
-    LossLaw
-
     Raises
     ------
     SceneError
@@ -63,7 +59,7 @@ def parameter_units(law: LossLaw) -> Callable[[str, Any], str | None]:
     Returns
     -------
     callable
-        Told a key and what is given for it: the unit of a parameter, None of what does not begin with ``law.``; raises
+        Called with a key and its value: the unit of a parameter, None of what does not begin with ``law.``; raises
         `SceneError` of what is none of its parameters.
     """
     units = _units(law)
@@ -97,10 +93,6 @@ def drawn_laws(
         Number of members.
     drawn_from : mapping of str to str
         The keys' distributions, for messages.
-
-    Returns
-    -------
-    list of LossLaw
 
     Raises
     ------

@@ -13,12 +13,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.archive.exposures import exposure_coordinates, exposure_variables, gear_flank_areas
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.wear import Exposure
 
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Coating, Scene
 
 __all__ = ["RESOLUTIONS", "Coverage", "coverage_of"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 RESOLUTIONS = ("uniform", "place", "tooth")
 
@@ -68,7 +66,7 @@ class Coverage:
 
     @property
     def teeth(self) -> int:
-        """Teeth of the pinion that are told apart."""
+        """Number of teeth of the pinion with coverages of their own."""
         return self.shapes[0][0]
 
     def split(self, numbers: Floats) -> list[Floats]:
@@ -105,7 +103,6 @@ class Coverage:
             With the exposures of its cycles.
         cycles : int
             How many.
-        state : ndarray
         """
         found = exposure_variables(scene, [scene], [solution])
         names = [each.name for each in scene.materials()]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
 from gearidae.studies.cycle_jump import Life
 from gearidae.studies.life_coverage import Coverage
 from gearidae.studies.life_signals import signal_of
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from gearidae.studies.life_rates import StateResult
 
 __all__ = ["life_dataset"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _EXPOSURES = {
     "contacts": ("m-2", "asperity contacts made on coated flank in a passage, per area of it"),
@@ -41,16 +39,10 @@ def life_dataset(
     ----------
     scene : Scene
         That it began with.
-    coverage : Coverage
-    found : Life
     seen : sequence
         What each state has shown.
     frequency : bool
         Whether to find the characteristic frequency of each state.
-
-    Returns
-    -------
-    Dataset
     """
     states = np.array(found.states)
     tables = np.array([coverage.table(state) for state in states])

@@ -10,12 +10,12 @@ import math
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae import engine
+from gearidae.arrays import Floats
 from gearidae.errors import SolverError
 from gearidae.runs.execution import solutions
 from gearidae.runs.kept_runs import KeptRuns
@@ -40,10 +40,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MOST_STATES", "DirectCycles", "StateResult", "Windows"]
 
-Floats: TypeAlias = NDArray[np.float64]
-
 MOST_STATES: Final = 1000
-"""States whose rate may be asked for."""
+"""Largest number of states whose rate is computed."""
 _EVALUATIONS: Final = 3
 """Rates that a step of the integration asks for."""
 _PATIENCE: Final = 20.0

@@ -10,12 +10,12 @@ import math
 from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae import engine
+from gearidae.arrays import Floats
 from gearidae.errors import SolverError
 from gearidae.records import ExposureRows
 from gearidae.runs.estimates import steady_speed
@@ -39,8 +39,6 @@ __all__ = [
     "window_scene",
     "with_exposures",
 ]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _PATIENCE: Final = 4.0
 """Time that each part of a window gets, over that of its cycles at the steady speed."""
@@ -120,7 +118,6 @@ def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, st
     ----------
     scene : Scene
         From `window_scene`.
-    cycles : Cycles
     backend : str
         As for `simulate`.
 
@@ -165,10 +162,6 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
     ----------
     scene, cycles, backend
         As for `run_window`.
-
-    Returns
-    -------
-    Window
 
     Raises
     ------

@@ -67,15 +67,11 @@ def drawn_members(
     Parameters
     ----------
     make : callable
-        Told the value of each key.
+        Called with the value of each key.
     values : mapping of str to ndarray, shape (members,)
         Of each key, in SI units.
     drawn_from : mapping of str to str
         The keys' distributions, for messages.
-
-    Returns
-    -------
-    list
 
     Raises
     ------
@@ -113,7 +109,6 @@ def along_members(ds: xr.Dataset, keys: Sequence[str]) -> xr.Dataset:
     ----------
     ds : Dataset
         Of a plan by `member_plan`.
-    keys : sequence of str
 
     Returns
     -------

@@ -73,10 +73,6 @@ def observation_of(given: Mapping[str, Any]) -> Observation:
         ``of``, ``value``, ``uncertainty``, ``misjudged``, ``conditions`` (a table of keys, nested or dotted), or dotted
         keys of the scene, which are conditions, too.
 
-    Returns
-    -------
-    Observation
-
     Raises
     ------
     SceneError

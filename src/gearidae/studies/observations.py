@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.units import from_text
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["RING", "STICKS", "Observation"]
 
-Floats = NDArray[np.float64]
 Model = Callable[["Scene"], float]
 
 STICKS: Final = "sticks"

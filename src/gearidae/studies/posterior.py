@@ -8,19 +8,18 @@ from typing import Any, Final
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.studies.distributions import Distribution
 
 __all__ = ["LEVELS", "grid_posterior", "sampled_posterior", "summary"]
 
-Floats = NDArray[np.float64]
 LogLikelihood = Callable[[Floats], Floats]
 """Of points, shape (n, keys); shape (n,)."""
 
 LEVELS: Final = (0.025, 0.16, 0.5, 0.84, 0.975)
-"""Quantiles that are told of each key."""
+"""Quantiles that are given for each key."""
 _TAIL: Final = 2e-4
 """Share of the prior that a grid leaves out at each end."""
 _WALKERS: Final = 16
@@ -100,11 +99,10 @@ def sampled_posterior(
         Variables.
     steps : int
         Steps of each walker; the first quarter is not kept.
-    seed : int
     log_likelihood : callable
         -inf where a value is not allowed.
     report : callable
-        Told the steps done and their number.
+        Called with the number of finished steps and of all steps.
 
     Returns
     -------
@@ -170,7 +168,6 @@ def summary(
     nodes : ndarray, shape (n, keys)
     weight : ndarray, shape (n,)
         Adds up to 1.
-    keys : sequence of str
     widths : sequence of float, optional
         Of the cells whose centres the nodes are, over which the weight is spread evenly.
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.analysis.ringing import characteristic_frequency
 from gearidae.analysis.verdict.codes import sticking, verdict_codes
 from gearidae.archive.keep import read_keep
 from gearidae.archive.select import runs
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution
 from gearidae.runs.kept_runs import KeptRuns
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Predictor"]
 
-Floats = NDArray[np.float64]
-
 _SAMPLED: Final = ("extremes", "gear_speed", "events")
 _ONE_TIME_AXIS: Final = ("run.duration", "run.samples")
 _AT_A_TIME: Final = 64
@@ -47,7 +45,7 @@ class Predictor:
     base : Scene
         What the runs have in common.
     keys : tuple of str
-        Whose values are asked for.
+        Whose values are computed.
     observations : tuple of Observation
     how : Execution
         Where the runs are computed; with an archive, they are kept beside it.

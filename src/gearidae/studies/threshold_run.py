@@ -70,7 +70,6 @@ def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
     scene : Scene
         With the time that a gear without adhesion would take, and some more. A gear that neither sticks in it nor
         passes the exits gets more time.
-    exits : int
     backend : str
         As for `simulate`.
     """

@@ -19,6 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from gearidae.arrays import Floats
 from gearidae.contact.history import joined_height
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import separation
@@ -27,7 +28,6 @@ from gearidae.scene import Scene
 
 __all__ = ["ToothRecord", "joined_heights"]
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
@@ -52,8 +52,8 @@ class ToothRecord:
     """
 
     def __init__(self, run: xr.Dataset, scene: Scene, samples: slice, events: slice) -> None:
-        def read(name: str, cut: slice = samples) -> NDArray[np.float64]:
-            values: NDArray[np.float64] = run[name].variable[cut].values
+        def read(name: str, cut: slice = samples) -> Floats:
+            values: Floats = run[name].variable[cut].values
             if cut is samples and not (present := np.isfinite(values)).all():
                 number = samples.start + int(present.argmin())
                 raise SceneError(
@@ -100,8 +100,6 @@ class ToothRecord:
 
         Parameters
         ----------
-        flank : Flank
-        pair : int
         last : int
             The sample to end with.
         reach : float
@@ -187,7 +185,7 @@ def joined_heights(gaps: Floats, wanted: Integers, limit: float) -> Floats:
     gaps : ndarray, shape (n,)
         Gaps one after the other, turning points among them [m].
     wanted : ndarray of int, shape (m,)
-        Where the joined height is asked for.
+        Gap at which the joined height is computed.
     limit : float
         Stretch limit of an asperity [m].
 

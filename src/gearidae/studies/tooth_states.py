@@ -83,7 +83,7 @@ class MeshState:
     mismatch : float
         By how much the forces found for the pairs miss the recorded one [N].
     told : bool
-        Whether that is little enough for forces and states to be told.
+        Whether that is small enough, so that forces and states are given.
     contacts : tuple of ToothContact
         Pairs on the path of contact of either flank, and those beside it that are near enough for a force.
     """

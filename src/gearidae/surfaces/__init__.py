@@ -10,20 +10,11 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.surfaces.files import read_scan
-    from gearidae.surfaces.measured import MeasuredSurface, surface_from
-    from gearidae.surfaces.moments import Asperities, from_moments
-    from gearidae.surfaces.synthetic import gaussian_map
+    from gearidae.surfaces.files import read_scan as read_scan
+    from gearidae.surfaces.measured import MeasuredSurface as MeasuredSurface
+    from gearidae.surfaces.measured import surface_from as surface_from
+    from gearidae.surfaces.moments import Asperities as Asperities
+    from gearidae.surfaces.moments import from_moments as from_moments
+    from gearidae.surfaces.synthetic import gaussian_map as gaussian_map
 
-__all__ = ["Asperities", "MeasuredSurface", "from_moments", "gaussian_map", "read_scan", "surface_from"]
-
-_HOME = {
-    "Asperities": "moments",
-    "MeasuredSurface": "measured",
-    "from_moments": "moments",
-    "gaussian_map": "synthetic",
-    "read_scan": "files",
-    "surface_from": "measured",
-}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)

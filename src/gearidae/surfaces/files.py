@@ -89,10 +89,6 @@ def read_lines(path: Path, unit: str | None = None) -> Scan:
     ----------
     path, unit
         As for `read_scan`.
-
-    Returns
-    -------
-    Scan
     """
     scan = read_scan(path, unit)
     if path.suffix.lower() in (".npy", *_TEXTS):

@@ -12,12 +12,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
-__all__ = ["POINTS_PER_WAVE", "Field", "band_limited", "cosine_sum", "grid_points"]
+from gearidae.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["POINTS_PER_WAVE", "Field", "band_limited", "cosine_sum", "grid_points"]
 
 POINTS_PER_WAVE = 8
 """Points of the grid along one cut-off wavelength."""
@@ -67,10 +66,6 @@ def band_limited(amplitudes: Floats, size: tuple[float, float], cutoff: float) -
         Extent of the map [m].
     cutoff : float
         Shortest wavelength that is kept [m].
-
-    Returns
-    -------
-    Field
     """
     shape = grid_points(size, cutoff)
     kept = tuple(slice(min(one, other)) for one, other in zip(amplitudes.shape, shape, strict=True))

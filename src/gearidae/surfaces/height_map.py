@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse import linalg
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.surfaces.lines import aligned_rows, line_noise
 
 __all__ = ["FEWEST_POINTS", "HeightMap", "height_map"]
 
-Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 FEWEST_POINTS = 64

@@ -7,11 +7,10 @@ summits that the surface has not.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gearidae.arrays import Floats
 
 __all__ = ["aligned_rows", "line_noise"]
-
-Floats = NDArray[np.float64]
 
 _STRONGER = 2.5
 """Line noise makes the medians' variance so many times that in the other direction: of isotropic maps 0.4 to 1.5."""

@@ -64,7 +64,6 @@ def statistics(surface: HeightMap, cutoffs: NDArray[np.float64]) -> xr.Dataset:
 
     Parameters
     ----------
-    surface : HeightMap
     cutoffs : ndarray, shape (n,)
         Shortest wavelengths that are kept [m].
 

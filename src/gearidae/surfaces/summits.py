@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from gearidae.arrays import Floats
 from gearidae.surfaces.filtering import Field
 
 __all__ = ["Summits", "find_summits"]
-
-Floats = NDArray[np.float64]
 
 _NEIGHBOURS = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], dtype=bool)
 

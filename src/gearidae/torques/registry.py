@@ -203,14 +203,6 @@ def torque_names() -> tuple[str, ...]:
 def torque_law(name: str) -> TorqueLaw:
     """Look a law up.
 
-    Parameters
-    ----------
-    name : str
-
-    Returns
-    -------
-    TorqueLaw
-
     Raises
     ------
     SceneError

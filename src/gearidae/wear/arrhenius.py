@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.wear.base import Exposure, Floats, LossLaw, parameter
+from gearidae.wear.base import Exposure, LossLaw, parameter
 
 __all__ = ["Arrhenius"]
 

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.quantity import Quantity
 
 __all__ = ["Exposure", "LossLaw", "parameter"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gearidae.wear.base import Exposure, Floats, LossLaw, parameter
+from gearidae.arrays import Floats
+from gearidae.wear.base import Exposure, LossLaw, parameter
 from gearidae.wear.registry import register_loss
 
 __all__ = ["Contacts"]

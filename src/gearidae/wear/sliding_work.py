@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from gearidae.wear.base import Exposure, Floats, LossLaw, parameter
+from gearidae.arrays import Floats
+from gearidae.wear.base import Exposure, LossLaw, parameter
 from gearidae.wear.registry import register_loss
 
 __all__ = ["SlidingWork"]

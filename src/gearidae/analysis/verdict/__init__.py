@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.analysis.verdict.judge import IRREGULAR_ABOVE
-    from gearidae.analysis.verdict.outcome import START_UP, GearOutcome, RollerOutcome, outcomes
+    from gearidae.analysis.verdict.judge import IRREGULAR_ABOVE as IRREGULAR_ABOVE
+    from gearidae.analysis.verdict.outcome import START_UP as START_UP
+    from gearidae.analysis.verdict.outcome import GearOutcome as GearOutcome
+    from gearidae.analysis.verdict.outcome import RollerOutcome as RollerOutcome
+    from gearidae.analysis.verdict.outcome import outcomes as outcomes
 
-__all__ = ["IRREGULAR_ABOVE", "START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
-
-_HOME = {name: "judge" if name == "IRREGULAR_ABOVE" else "outcome" for name in __all__}
-
-__getattr__, __dir__ = lazy_names(globals(), _HOME)
+__getattr__, __dir__, __all__ = lazy_names(__name__)

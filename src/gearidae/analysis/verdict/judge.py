@@ -33,7 +33,6 @@ def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int, int]:
 
     Parameters
     ----------
-    scene : Scene
     solution : Solution
         Of a run that has its extremes; one without them is unfinished.
 

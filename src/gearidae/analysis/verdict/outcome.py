@@ -46,7 +46,7 @@ class GearOutcome(Shown):
           to, by more than `IRREGULAR_ABOVE` of its mean.
         - ``running up`` or ``running down``: it did only one of both, and goes on to.
         - ``runs`` or ``stops``: where a torque or the held speed follows a schedule, changing speed and coming to rest
-          are what was asked for; judged is then only whether the gear turns during the last twentieth of the run.
+          are the input; the verdict is then only whether the gear turns during the last twentieth of the run.
         - ``unfinished``: the solver ended early and the gear had not come to stand until then.
     min_speed, max_speed : float
         Extremes of the gear's speed [rad/s].

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.division import place_above
 from gearidae.contact.kernels.evaluate import coefficients, power8, value_and_slope
@@ -26,7 +27,6 @@ from gearidae.contact.kernels.layout import (
     H_STRETCH,
     KNOTS_PER_SIGMA,
     MODE_TABLE,
-    Floats,
 )
 
 __all__ = ["B_JOINED", "B_PIECES", "branch_length", "branch_value", "set_branch"]

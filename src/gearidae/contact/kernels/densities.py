@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.layout import GAP_LOW, STRETCH_HIGH, Floats, Kernel
+from gearidae.contact.kernels.layout import GAP_LOW, STRETCH_HIGH, Kernel
 from gearidae.contact.psi import psi_derivatives
 
 __all__ = ["kernel_at", "kernel_at_knots"]

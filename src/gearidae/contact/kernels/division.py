@@ -10,9 +10,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Self
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.layout import H_ABOVE, H_BEFORE, H_BELOW, H_KINK, H_PIECES, Floats
+from gearidae.contact.kernels.layout import H_ABOVE, H_BEFORE, H_BELOW, H_KINK, H_PIECES
 
 __all__ = ["Division", "place_above", "place_of"]
 

@@ -1,7 +1,7 @@
 r"""What a rough contact stores: the potential of its force law, compiled, tabulated alike.
 
 An asperity holds the energy :math:`E(\Delta) = \int_{-D}^{\Delta} \hat p\,d\Delta'`, counted from the instant at which
-it lets go. With G, Z, S and D as in `law`, a contact whose asperities above Z are joined stores
+it detaches. With G, Z, S and D as in `law`, a contact whose asperities above Z are joined stores
 
 .. math::
 
@@ -20,7 +20,7 @@ with :math:`\partial U / \partial G = -q` while Z stays. At full stretch e is a 
     e(Z, S) = V(Z) + \int_S^D t(Z, S')\,dS'.
 
 An asperity that joins drops from nothing to :math:`E(0)` (for JKR :math:`-0.93550\, P_c d_c`), and nothing more is lost
-when it lets go. A surface without stretch has no such drop: E is counted from touching, e = 0.
+at detachment. A surface without stretch has no such drop: E is counted from touching, e = 0.
 
 Asperities that join before they touch drop to :math:`E(-d_\mathrm{on})`. With Z and S as in `law` the same holds, where
 :math:`\Psi(Z)` counts the asperities above the height that Z stands for, :math:`Z - d_\mathrm{on}`.
@@ -38,6 +38,7 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
 from gearidae.contact.gauss import gauss_rule
@@ -61,7 +62,6 @@ from gearidae.contact.kernels.layout import (
     MODE_INTEGRATED,
     MODE_TABLE,
     N_LOADING,
-    Floats,
     Kernel,
 )
 from gearidae.contact.kernels.pieces import hermite_matrix, hermite_pieces

@@ -7,6 +7,7 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.division import place_of
 from gearidae.contact.kernels.lanes import eight_powers
@@ -27,7 +28,6 @@ from gearidae.contact.kernels.layout import (
     KNOTS_PER_SIGMA,
     MODE_TABLE,
     N_LOADING,
-    Floats,
 )
 
 __all__ = [

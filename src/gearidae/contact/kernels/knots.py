@@ -16,10 +16,11 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.contact.gauss import gauss_rule
 from gearidae.contact.kernels.densities import kernel_at
-from gearidae.contact.kernels.layout import KNOTS_PER_SIGMA, Floats, Kernel
+from gearidae.contact.kernels.layout import KNOTS_PER_SIGMA, Kernel
 
 __all__ = ["loading_derivatives", "stretched_derivatives"]
 

@@ -8,7 +8,7 @@ pressure scale taken out, the force of Teodorescu et al. 2009 (Eqs. 12-15) on a 
     q(G, S) = \int_{-S}^{\infty} \hat p(\Delta)\, \psi(G + \Delta)\, d\Delta, \qquad
     W = L \sqrt{2 R \sigma}\; N\, \tfrac43 E^* \sqrt\beta\, \sigma^{3/2}\; q,
 
-with :math:`\hat p` one asperity's load, whichever its law (`gearidae.asperities`), in the units in which
+with :math:`\hat p` the load of one asperity by any law (`gearidae.asperities`), in the units in which
 Hertz's is :math:`\Delta^{3/2}`. The law has three branches that join continuously: loading (S = 0), partly stretched
 (0 < S < D) and fully stretched (S = D).
 
@@ -28,7 +28,7 @@ and
 Each branch is stored as :math:`e^{\max(x, 0)^2/2}` times itself, which is smooth into the far tail, by septic Hermite
 pieces (three continuous derivatives) in gap or joined height and by Chebyshev pieces in :math:`v = \sqrt{1 - S/D}`, in
 which the square-root end of the stretch at the fold is regular. A stretch limit of more than one roughness would take
-too many of these: there the branch is integrated when asked for, from one asperity's load in pieces of that kind. With
+too many of these: there the branch is integrated on demand, from one asperity's load in pieces of that kind. With
 the normal density in place of psi the same tables hold the pressure between two planes, of which the elastic contact is
 made. The tests hold both to a relative error of 1e-9 for -8 <= gap <= 8; the measured one is nearer 1e-11. Of a load
 with a kink (Maugis' below lambda = 0.94) a piece ends there, and the error stays below 1e-8.
@@ -42,6 +42,7 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.branches import B_JOINED, B_PIECES, branch_length, branch_value, set_branch
@@ -64,7 +65,6 @@ from gearidae.contact.kernels.layout import (
     MODE_INTEGRATED,
     MODE_TABLE,
     N_LOADING,
-    Floats,
     Kernel,
 )
 from gearidae.contact.kernels.pieces import asperity_pieces, hermite_pieces, kernel_table, partial_pieces
@@ -94,7 +94,7 @@ __all__ = [
 NEGLIGIBLE_STRETCH: Final = (
     4e-5  # D^2.5 below 1e-11: stretching changes no force by more than the table's error
 )
-TABULATED_STRETCH: Final = 1.0  # above this the partly stretched branch is integrated when asked for
+TABULATED_STRETCH: Final = 1.0  # above this the partly stretched branch is integrated on demand
 PIECE_STRETCH: Final = 0.04  # a Chebyshev piece in v covers no more than about twice this stretch
 
 
@@ -185,7 +185,7 @@ def largest_forces(law: AsperityLaw, kernel: Kernel = "line") -> tuple[Floats, F
     Returns
     -------
     gaps, forces : ndarray, shape (n,)
-        In roughnesses, and sizes of q; fully joined or fully stretched, whichever is larger.
+        In roughnesses, and sizes of q; the larger of fully joined and fully stretched.
     """
     # a copy: numba compiles everything a second time for arrays that are read-only
     table = law_table(law, kernel).copy()

@@ -1,16 +1,13 @@
 """Layout of a force law's table: a flat array that compiled code can carry about.
 
 A header of `HEADER` numbers, then the loading branch, and for laws with hysteresis the fully stretched branch and
-either the partly stretched one (`MODE_TABLE`) or what it is integrated from when asked for (`MODE_INTEGRATED`): the
+either the partly stretched one (`MODE_TABLE`) or the data to integrate it on demand (`MODE_INTEGRATED`): the
 density of heights and the load of one asperity. Lengths are in roughnesses.
 """
 
 from __future__ import annotations
 
 from typing import Final, Literal, TypeAlias
-
-import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.asperities.ranges import GAP_HIGH, GAP_LOW, STRETCH_HIGH
 
@@ -37,11 +34,9 @@ __all__ = [
     "MODE_TABLE",
     "N_LOADING",
     "STRETCH_HIGH",
-    "Floats",
     "Kernel",
 ]
 
-Floats: TypeAlias = NDArray[np.float64]
 Kernel: TypeAlias = Literal["line", "plane"]
 """Force on a parabolic gap, or pressure between planes: loads are integrated against psi or the normal density."""
 

@@ -7,19 +7,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.contact.kernels.densities import kernel_at_knots
 from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.knots import stretched_derivatives
-from gearidae.contact.kernels.layout import (
-    DEGREE,
-    GAP_HIGH,
-    GAP_LOW,
-    KNOTS_PER_SIGMA,
-    STRETCH_HIGH,
-    Floats,
-    Kernel,
-)
+from gearidae.contact.kernels.layout import DEGREE, GAP_HIGH, GAP_LOW, KNOTS_PER_SIGMA, STRETCH_HIGH, Kernel
 
 __all__ = ["asperity_pieces", "hermite_matrix", "hermite_pieces", "kernel_table", "partial_pieces"]
 
@@ -98,7 +91,7 @@ def partial_pieces(
 
 @lru_cache(maxsize=2)
 def kernel_table(kernel: Kernel) -> Floats:
-    """Pieces of the kernel itself, for the branch that is integrated when asked for; the first knot in front."""
+    """Pieces of the kernel itself, for the branch that is integrated on demand; the first knot in front."""
     low = GAP_LOW - STRETCH_HIGH - 1.0
     knots = low + np.arange(round((GAP_HIGH - low) * KNOTS_PER_SIGMA) + 1) / KNOTS_PER_SIGMA
     return np.concatenate([[low], hermite_pieces(knots, kernel_at_knots(kernel, knots)).ravel()])
@@ -107,7 +100,7 @@ def kernel_table(kernel: Kernel) -> Floats:
 def asperity_pieces(law: AsperityLaw, division: Division) -> Floats:
     """Pieces of one asperity's load while it is stretched, and of the work that stretching it has taken.
 
-    Both are smooth in ``e = sqrt((Delta + detach) / D)``, from the fold e = 0, where an asperity lets go, to e = 1,
+    Both are smooth in ``e = sqrt((Delta + detach) / D)``, from the fold e = 0, where an asperity detaches, to e = 1,
     where it joins.
 
     Returns

@@ -14,10 +14,11 @@ from typing import Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import coefficients, power8, value_and_slope
-from gearidae.contact.kernels.layout import DEGREE, Floats
+from gearidae.contact.kernels.layout import DEGREE
 
 __all__ = ["asperity_energy", "asperity_table", "asperity_value"]
 
@@ -94,7 +95,6 @@ def asperity_value(table: Floats, at: int, displacement: float) -> tuple[float, 
 
     Parameters
     ----------
-    table : ndarray
     at : int
         Where the law's table begins in it, from `asperity_table`.
     displacement : float

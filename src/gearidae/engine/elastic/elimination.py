@@ -96,7 +96,6 @@ def settle_pair(
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     known : bool

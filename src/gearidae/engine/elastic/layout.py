@@ -13,8 +13,8 @@ from functools import lru_cache
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of, contact_modulus
 from gearidae.compiled import compiled
@@ -33,8 +33,6 @@ __all__ = [
     "node_grid",
     "rigid_limit",
 ]
-
-Floats = NDArray[np.float64]
 
 NODES = 12
 """Nodes on one side of a contact, the middle included.
@@ -126,8 +124,6 @@ def node_grid(
 
     Parameters
     ----------
-    scene : Scene
-    bounds : ContactBounds
     force_unit : float
         Reference load [N].
     deepest : float

@@ -72,7 +72,6 @@ def newton_step(m: Model, k: int, y: Floats) -> bool:
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     y : ndarray

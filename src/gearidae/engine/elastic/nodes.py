@@ -126,7 +126,6 @@ def force_of_nodes(
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     known : bool
@@ -232,7 +231,6 @@ def stiffness_matrix(m: Model, k: int, out: Floats) -> None:
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     out : ndarray, shape (n, n)
@@ -252,7 +250,6 @@ def weighed_stiffness(m: Model, k: int, out: Floats, width: int) -> None:
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     out : ndarray, shape (n * width,)
@@ -294,7 +291,6 @@ def influence(m: Model, length: float, out: Floats) -> None:
 
     Parameters
     ----------
-    m : Model
     length : float
         Contact length.
     out : ndarray, shape (n, n)

@@ -87,7 +87,6 @@ def radius_force(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray

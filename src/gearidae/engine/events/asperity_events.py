@@ -1,4 +1,4 @@
-"""Events of a population: asperities join and let go, each at a root of its own.
+"""Events of a population: asperities join and detach, each at a root of its own.
 
 A free asperity waits with the guard ``-(overlap + join)``, a joined one with ``overlap + detach``; the least of all is
 watched. Once it has flipped its guard is the width of its hysteresis, so that nothing chatters. The guard is looked at
@@ -91,7 +91,7 @@ def _guard(m: Model, k: int, j: int, now: Pair, arc: float, bend: float) -> floa
 
 @compiled_once(POPULATION)
 def flip_asperities(m: Model, y: Floats) -> bool:
-    """Let all asperities join and let go whose guards have fallen, for `record_flips` to record; whether any has.
+    """Join or detach all asperities whose guards have fallen, for `record_flips` to record; whether any has.
 
     The integration must then begin anew: loads jump, and the rest of the step has been made without them.
 
@@ -130,7 +130,7 @@ def flip_asperities(m: Model, y: Floats) -> bool:
 
 @compiled
 def _flip(m: Model, k: int, j: int, guard: float) -> None:
-    """Let a candidate join or let go, and book the energy that it loses."""
+    """Join or detach a candidate, and book the energy that it loses."""
     sign, bound, kind = column(m, k, SIGN) + j, column(m, k, BOUND) + j, int(m.rows[column(m, k, KIND) + j])
     energy = candidate_energy(m, kind, m.rows[sign] * guard - m.rows[bound])
     if m.rows[sign] < 0.0:
@@ -156,10 +156,8 @@ def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, b
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
-    events : ndarray
     count : int
         See `gearidae.engine.events.record`.
 
@@ -196,7 +194,7 @@ def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, b
 
 @compiled_once(POPULATION)
 def join_at_start(m: Model, y: Floats) -> None:
-    """Let asperities be joined where they overlap at a start, and let go what a new material does not hold."""
+    """Join asperities that overlap at a start, and detach those that a new material does not hold."""
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -236,7 +234,6 @@ def first_dip(m: Model, y: Floats, h: float) -> float:
 
     Parameters
     ----------
-    m : Model
     y : ndarray, shape (n,)
         State at the end of the step, where `asperity_guard` has been asked.
     h : float

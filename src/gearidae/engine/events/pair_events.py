@@ -88,12 +88,10 @@ def take_event(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, 
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray, shape (n,)
         State there.
-    found : PairEvent
     events : ndarray, shape (n, EVENT_NUMBERS)
     count : int
         See `gearidae.engine.events.record`.

@@ -23,7 +23,6 @@ def record(
 
     Parameters
     ----------
-    m : Model
     events : ndarray, shape (n, EVENT_NUMBERS)
         Time [s], kind, pair, flank, gap rate [m/s], asperity or -1. Where it is full nothing is written;
         drivers keep `EVENTS_AT_ONCE` free before they look for events.

@@ -124,7 +124,6 @@ def step(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y, yp : ndarray, shape (n,)
@@ -182,7 +181,6 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray, shape (n,)

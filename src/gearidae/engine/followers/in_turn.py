@@ -39,7 +39,6 @@ def step(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y, yp : ndarray, shape (n,)
@@ -74,7 +73,6 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray, shape (n,)

@@ -1,4 +1,4 @@
-"""The compiled functions that are called from Python at every step, told where the model lies and not the model.
+"""Compiled functions that Python calls at every step, with the address of the model in place of the model.
 
 Numba needs some 50 us to look at the three records of a model that is handed over from Python, and a fifth of one for
 a number. Between compiled functions a model costs nothing.

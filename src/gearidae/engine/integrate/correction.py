@@ -19,7 +19,6 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
 
     Parameters
     ----------
-    m : Model
     t, cj : float
         Time over tau, and what the rates change by with the state.
     y, yp, delta : ndarray, shape (4,) or (2,)

@@ -41,7 +41,7 @@ BLOCK_EVENTS = 16_384
 BLOCK_STEPS = 50_000
 """Steps after which a driver comes back to Python in any case."""
 BLOCK_SECONDS = 0.2
-"""Wall time after which it should: progress is shown and Ctrl-C is heeded between blocks."""
+"""Wall time after which it should: progress and Ctrl-C are handled between blocks."""
 CHECKPOINT_STEPS = 200_000
 """Steps between checkpoints. Every run restarts IDA there, so that a resumed run is equal to an uninterrupted one."""
 
@@ -103,11 +103,10 @@ class Output(NamedTuple):
         checkpoint: Floats | None = None,
         kept: tuple[EnergyBalance | None, Extremes | None] = (None, None),
     ) -> Block:
-        """Hand out what there is, and begin anew.
+        """Return the data so far as a block, and begin a new one.
 
         Parameters
         ----------
-        m : Model
         time : float
             Reached, over tau.
         checkpoint

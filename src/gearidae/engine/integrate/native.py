@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from gearidae.arrays import Ints
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.elimination import begin_deflections
 from gearidae.engine.events.schedule_knots import next_stop
@@ -42,17 +43,7 @@ from gearidae.engine.motion.residual import is_eliminated, set_deflections
 from gearidae.engine.motion.static_solve import fold_gap
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.sundials import names as sun
-from gearidae.engine.sundials.ida_memory import (
-    DKY,
-    HANDLES,
-    IDA,
-    YP,
-    Ints,
-    Places,
-    Y,
-    close_solver,
-    open_solver,
-)
+from gearidae.engine.sundials.ida_memory import DKY, HANDLES, IDA, YP, Places, Y, close_solver, open_solver
 from gearidae.records import Statistics
 
 FIRST_STEPS = 1_000
@@ -146,7 +137,6 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     ----------
     place : int
         Where the model lies, from `Located`; its ``work.driver`` says where the run stands.
-    arrays : Arrays
     out : Output
         Rows and events of this block.
     budget : int
@@ -234,10 +224,6 @@ def run(
     as_ida : bool
         Whether formulas, iteration and the state at a step's end are IDA's own: slower, less accurate, and equal to the
         portable driver to the last bit.
-
-    Yields
-    ------
-    Block
     """
     m = problem.prepare(rtol, total)
     s = make_arrays(problem, m, as_ida)

@@ -76,8 +76,6 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
     ----------
     n : int
         Unknowns.
-    m : Model
-    attempt : Attempt
 
     Returns
     -------

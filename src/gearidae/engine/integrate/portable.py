@@ -84,7 +84,7 @@ def run(
     handed_out, yp = time.monotonic(), np.zeros_like(y)
     while driver.done == 0 and driver.error == 0:
         flag, *reached = solver.step(y)
-        if driver.error != 0:  # what there is belongs to the last accepted time
+        if driver.error != 0:  # the data belong to the last accepted time
             break
         y, yp = reached
         yield from _samples(solver, out, y)

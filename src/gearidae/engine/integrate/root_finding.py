@@ -58,7 +58,6 @@ class Stepper(NamedTuple):
     ----------
     handles : ndarray of int64
         Of SUNDIALS' objects, see `gearidae.engine.sundials.ida_memory`.
-    m : Model
     y, yp, dky, spare : ndarray, shape (n,)
         State and rates at the time reached, and work space.
     clock : ndarray, shape (1,)
@@ -113,7 +112,7 @@ def state_at(s: Stepper, t: float, roughly: bool) -> None:
 
 @compiled(inline=True)
 def next_time(s: Stepper) -> int:
-    """Go on to the end of the next step, a stop or a root, whichever comes first.
+    """Advance to the first of the end of the next step, a stop and a root.
 
     Returns
     -------

@@ -42,7 +42,6 @@ def first_step(m: Model, t: float, y: Floats, yp: Floats, longest: float) -> flo
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y, yp : ndarray, shape (n,)

@@ -7,7 +7,7 @@ by e_k, which is the error of the latter (Shampine and Gordon, Computer Solution
 finds the next step longer by :math:`(2 E)^{-1/(k+1)}` where it does not.
 
 The order follows the least e_k: one less if that does better, one more if that would, and after a rejected step,
-where the force may have had a kink, whichever of the lower orders does best.
+where the force may have had a kink, the best of the lower orders.
 
 Orders six and seven amplify a vibration, by some millionths a step, and orders four and five damp it by as little. The
 error of a large vibration is the same either way; a small one that grows would never come to rest, so it is given to
@@ -184,7 +184,6 @@ def change_wanted(m: Model, y: Floats, yp: Floats) -> bool:
 
     Parameters
     ----------
-    m : Model
     y, yp : ndarray, shape (n,)
         State and rates at an accepted time.
     """

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, Final, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearidae.scene.coating import MATERIAL_NAMES
 from gearidae.scene.limits import MOST_PAIRS
@@ -26,7 +25,6 @@ __all__ = [
     "SCHEDULES",
     "SLOTS_HIGH",
     "SPEED",
-    "Floats",
     "Record",
     "U",
     "V",
@@ -34,7 +32,6 @@ __all__ = [
     "record_type",
 ]
 
-Floats: TypeAlias = NDArray[np.float64]
 Record: TypeAlias = Any
 """A numpy record; compiled code checks its names."""
 

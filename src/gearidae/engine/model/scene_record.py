@@ -34,7 +34,6 @@ MATERIAL: Final = record_type(
     ("table_at", INT),  # force law among the tables [index]
     ("energy_at", INT),  # stored energy among the tables [index]
     ("number_at", INT),  # number of asperities above a height, among the tables [index]
-    ("table_count", INT),  # numbers in each of the first two [1]
 )
 
 COVERAGE: Final = record_type(  # of one side's flanks

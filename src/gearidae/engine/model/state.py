@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.compiled import name_type
 from gearidae.engine.model.checkpoint_record import ENERGY, EXTREMES, HISTORY, PROGRESS, STATE, STOPS
 from gearidae.engine.model.record_types import (
@@ -30,7 +31,6 @@ from gearidae.engine.model.record_types import (
     SCHEDULES,
     SLOTS_HIGH,
     SPEED,
-    Floats,
     Record,
     U,
     V,

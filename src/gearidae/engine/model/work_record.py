@@ -215,7 +215,7 @@ CONTACT: Final = record_type(  # of a population: the candidates of a pair
     ("high", REAL),  # place up to which they hold [pb]
     ("count", INT),  # [1]
     ("joined", INT),  # those that are joined [1]
-    ("flips", INT),  # those that have joined or let go at the present root [1]
+    ("flips", INT),  # asperities that have joined or detached at the present root [1]
     ("started", INT),  # 1 where the pair was there when the step began
     ("start_moves", INT),  # 1 where it was on the path of contact then
     ("start_gap", REAL),  # its gap then [sigma]
@@ -235,7 +235,7 @@ WORK: Final = record_type(
         "shares",
         REAL,
         (2 * SLOTS_HIGH, MATERIALS),
-    ),  # by tooth and place, of elastic contacts as last asked for [1]
+    ),  # by tooth and place, of elastic contacts as last computed [1]
     ("settling", SETTLING, (2 * SLOTS_HIGH,)),  # of elastic contacts
     ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),  # of the integrator

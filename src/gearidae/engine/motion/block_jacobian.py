@@ -66,7 +66,6 @@ def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
 
     Parameters
     ----------
-    m : Model
     t, cj : float
         Time over tau, and IDA's leading coefficient.
     y : ndarray

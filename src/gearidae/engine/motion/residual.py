@@ -79,7 +79,6 @@ def mesh_forces(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray
@@ -283,7 +282,6 @@ def residual(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y, yp, out : ndarray, shape (4,) or (2,), and the nodes
@@ -304,7 +302,6 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
 
     Parameters
     ----------
-    m : Model
     t, cj : float
         Time over tau, and IDA's leading coefficient.
     y : ndarray

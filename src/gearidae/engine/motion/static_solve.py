@@ -48,7 +48,6 @@ def settle_nodes(m: Model, t: float, y: Floats) -> bool:
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     y : ndarray
@@ -78,7 +77,6 @@ def fold_gap(m: Model, t: float) -> float:
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
 

@@ -70,7 +70,6 @@ def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Share
 
     Parameters
     ----------
-    m : Model
     coast, pair : int
         Flank and number of the pair, counted without the turns taken out of the phase.
     inside : float

@@ -15,7 +15,6 @@ def angle_of_shaft(m: Model, shaft: int, u: float, phase: float) -> float:
 
     Parameters
     ----------
-    m : Model
     shaft : int
         DRIVE for the pinion, LOAD for the gear.
     u, phase : float

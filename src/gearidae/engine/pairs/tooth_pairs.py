@@ -86,7 +86,7 @@ NO_PAIRS: Final = Reach(0, 0, 0, 0)
 
 @compiled(inline=True)
 def _reach(m: Model, phase: float, drive: bool, coast: bool) -> Reach:
-    """Pairs within reach of the flanks asked for."""
+    """Pairs within reach of the given flanks."""
     s = m.scene
     if s.kind == ROLLER:
         count = 1 if drive else 0
@@ -264,7 +264,7 @@ def set_joined(m: Model, k: int, material: int, joined: float) -> None:
 def set_branches(m: Model, k: int, material: int) -> None:
     """Work out the branch of a history's joined height.
 
-    A law that is integrated when asked for keeps no branches, nor does an elastic contact. That of the stored energy
+    A law that is integrated on demand keeps no branches, nor does an elastic contact. That of the stored energy
     waits until the energy balance asks for it.
     """
     own = m.scene.material[material]

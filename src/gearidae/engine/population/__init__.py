@@ -1,1 +1,1 @@
-"""Real asperities of tooth pairs: which may join or let go soon, their forces and energy, and what is joined."""
+"""Real asperities of tooth pairs: those that may join or detach soon, forces and energy, joined asperities."""

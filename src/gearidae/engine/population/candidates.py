@@ -57,7 +57,6 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     coast, pair : int
@@ -78,7 +77,7 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
 
 @compiled
 def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high: float) -> None:
-    """Do the same where the joined asperities are in the column `REMEMBERED`."""
+    """Candidates where the joined asperities are in the column `REMEMBERED`."""
     own, scene, kept = m.work.contact[k], m.scene.population, column(m, k, REMEMBERED)
     own.known, own.count, own.gap = 1, 0, gap - GAP_MARGIN
     own.low, own.high = low - PLACE_MARGIN, high + PLACE_MARGIN

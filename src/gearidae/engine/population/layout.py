@@ -1,7 +1,7 @@
 """Where a population lies among a model's tables and rows.
 
 Tables hold all asperities of all flanks, one flank after the other and each in the order of places; an asperity is
-known by its place among them. Rows hold for each pair's history its candidates, those that may join or let go soon:
+known by its place among them. Rows hold for each pair's history its candidates, those that may join or detach soon:
 `FIELDS` columns of as many numbers as a flank has asperities at most.
 """
 
@@ -42,7 +42,7 @@ ARC: Final = 1  # its place on the flank,
 HEIGHT: Final = 2  # its height less the recess of its material,
 KIND: Final = 3  # and where the numbers of its kind are
 SIGN: Final = 4  # 1 if it is joined, -1 if it is free,
-BOUND: Final = 5  # and the distance at which it lets go, or joins
+BOUND: Final = 5  # and the distance of detachment or of joining
 JOINED: Final = 6  # positions among the candidates of those that are joined, in the order of places
 REMEMBERED: Final = 7  # asperities that are joined while candidates are chosen anew
 FIELDS: Final = 8
@@ -52,7 +52,7 @@ K_TABLE: Final = 0  # where the table of its law begins
 K_SCALE: Final = 1  # roughness over the law's unit of length
 K_LOAD: Final = 2  # units of the law's load and energy
 K_ENERGY: Final = 3
-K_JOIN: Final = 4  # distances at which it joins and lets go, over the roughness
+K_JOIN: Final = 4  # distances of joining and detachment, over the roughness
 K_DETACH: Final = 5
 K_OFFSET: Final = 6  # recess of its material
 KINDS: Final = 7

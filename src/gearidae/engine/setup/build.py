@@ -63,7 +63,6 @@ def make_problem(
 
     Parameters
     ----------
-    scene : Scene
     nodes : Nodes, optional
         Layout of an elastic contact's nodes, in place of the one that is estimated.
     digest : tuple of four floats, optional

@@ -84,8 +84,6 @@ def add_contact(
     ----------
     s : record
         ``SCENE``; changed.
-    tables : Tables
-    scene : Scene
     width, unit_length : float
         Face width, and ``sqrt(2 R sigma)`` of a contact of unit length [m].
     widest : float
@@ -107,7 +105,7 @@ def add_contact(
         force = share * scale * unit_length / float(s.force_unit)
         own.force_scale, own.stretch_limit = force, table[H_STRETCH]
         own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
-        own.table_at, own.energy_at, own.table_count = tables.add(table), tables.add(energy), table.size
+        own.table_at, own.energy_at = tables.add(table), tables.add(energy)
         own.number_at = tables.add(number_table(kernel, law.join))
         longest = max(longest, branch_length(table))
         if share > 0.0:

@@ -25,7 +25,7 @@ Integers = NDArray[np.int64]
 __all__ = ["add_population", "population_rows"]
 
 RELEASED: Final = 1e-10
-"""How much sooner than at the fold an asperity lets go, over the width of its hysteresis: the slope of its load is
+"""Distance of detachment before the fold, over the width of the hysteresis: the slope of its load is
 infinite there, and less of its loss is out than this."""
 BEYOND: Final = 0.25
 """Roughnesses by which a flank comes near before its highest asperity may join, whose guard is to be seen waiting."""
@@ -41,8 +41,6 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     ----------
     s : record
         ``SCENE``; changed.
-    tables : Tables
-    scene : Scene
     steepness, arc_scale : float
         See ``POPULATION``.
 

@@ -54,7 +54,6 @@ def pack(m: Model, digest: tuple[float, ...], depth: int, y: Floats) -> Floats:
 
     Parameters
     ----------
-    m : Model
     digest : tuple of four floats
         See `scene_digest`.
     depth : int

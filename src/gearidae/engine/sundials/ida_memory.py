@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearidae.arrays import Ints
 from gearidae.compiled import compiled
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats, Model
@@ -15,8 +15,6 @@ from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 
 __all__ = ["HANDLES", "IDA", "YP", "Functions", "Places", "Y", "close_solver", "open_solver"]
-
-Ints = NDArray[np.int64]
 
 # Handles: addresses of what SUNDIALS has made.
 CONTEXT, IDA, Y, YP, DKY, MATRIX, LINEAR, NEWTON, HANDLES = range(9)
@@ -68,8 +66,6 @@ def open_solver(
         Filled in.
     place : int
         Of the model, from `Located`, which must outlive the solver, as the vectors must.
-    functions : Functions
-    places : Places
     vectors : tuple of three ndarrays, shape (n,)
         State, rates and work space.
     most_failures : int

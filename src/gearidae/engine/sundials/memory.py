@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-import numpy as np
 from llvmlite import ir
 from numba import carray, types  # type: ignore[attr-defined]
 from numba.core import cgutils
 from numba.extending import intrinsic
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats, Ints
 from gearidae.compiled import compiled
 
 __all__ = [
@@ -22,8 +21,6 @@ __all__ = [
     "system",
     "words",
 ]
-
-Ints = NDArray[np.int64]
 
 
 def _to_integers(typing: Any, address: Any) -> Any:
@@ -91,7 +88,7 @@ def words(address: int, count: int) -> Ints:
 
 
 @compiled(makes_arrays=True, inline=True)
-def numbers(vector: int, n: int) -> NDArray[np.float64]:
+def numbers(vector: int, n: int) -> Floats:
     """Look at the n numbers of a serial vector, given by its address, without a call."""
     return carray(_reals_at(words(words(vector, 1)[0], 2)[1]), (n,))
 

@@ -68,7 +68,6 @@ def largest_torque(name: str, parameters: Sequence[float], speed: float, duratio
     ----------
     name : str
         Of a registered law.
-    parameters : sequence of float
     speed : float
         [rad/s].
     duration : float

@@ -39,7 +39,6 @@ def way_to_edge(m: Model, k: int, inside: float, turn: float) -> float:
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history, whose pressure has been looked at there.
     inside : float

@@ -17,7 +17,6 @@ def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, 
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     k : int

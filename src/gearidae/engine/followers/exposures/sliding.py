@@ -74,7 +74,6 @@ def add_sliding(
 
     Parameters
     ----------
-    m : Model
     t : float
         Time over tau.
     k : int
@@ -121,7 +120,6 @@ def _add_pushing(m: Model, k: int, h: float, inside: float, there: tuple[float, 
 
     Parameters
     ----------
-    m : Model
     k : int
         Index of the pair's history.
     h : float
@@ -269,7 +267,6 @@ def next_interval(m: Model, to_zero: float, speed: float) -> None:
 
     Parameters
     ----------
-    m : Model
     to_zero : float
         Time until the first force is expected to pass zero.
     speed : float
@@ -290,7 +287,6 @@ def next_look(m: Model, way: float, speed: float) -> None:
 
     Parameters
     ----------
-    m : Model
     way : float
         To the nearest edge of a place, in places.
     speed : float

@@ -2,7 +2,7 @@
 
 Most extremes of the force lie where a pair turns round, which is an event and hence an accepted time. What is left are
 maxima of adhesion, passed within a few steps. A parabola through three accepted forces tells whether one was passed
-that may be a record. Only then the contact law is asked for the force between these times.
+that may be a record. Only then the contact law is evaluated between these times.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ __all__ = ["first_force", "follow_force", "force_of_motion", "note_corner"]
 NEAR_RECORD: Final = 0.1
 """Share of a record by which the parabola may miss it: it has been seen to be out by 3 % at loose tolerances."""
 EVALUATIONS: Final = 3
-"""Forces that are asked for between accepted times, at a maximum of adhesion that may be a record."""
+"""Number of forces evaluated between accepted times, at a maximum of adhesion that may be a record."""
 _CLOSE: Final = 1e-3
 """Share of the span over which two evaluations are alike: the force changes by a millionth of its own."""
 
@@ -79,7 +79,6 @@ def follow_force(m: Model, before: Record, last: Record, now: Record, spare: Flo
 
     Parameters
     ----------
-    m : Model
     before, last, now : record
         ``POINT`` of these times.
     spare : ndarray, shape (n,)

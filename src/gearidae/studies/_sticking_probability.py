@@ -82,10 +82,6 @@ def sticking_probability(
 def drawn_keys(ds: xr.Dataset) -> dict[str, str]:
     """Keys that an ensemble's members were drawn in, and the coordinates that hold their values.
 
-    Parameters
-    ----------
-    ds : Dataset
-
     Returns
     -------
     dict of str to str

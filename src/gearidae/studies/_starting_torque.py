@@ -34,7 +34,7 @@ __all__ = ["starting_torque", "static_starting_torque"]
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
 _LOWEST = 1e-3
-"""Torques below this part of the scene's are not looked at unless asked for."""
+"""Default lower end of the search, as a part of the scene's torque."""
 _HEAVIEST = 1e12
 """No torque above this many times the lowest is tried."""
 _PATIENCE = 3.0

@@ -11,14 +11,14 @@ from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
 from gearidae.engine import choose_backend
 from gearidae.errors import SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -27,10 +27,10 @@ from gearidae.runs.executors import side_by_side
 from gearidae.runs.kept_runs import circumstances, name_of
 from gearidae.runs.running import prepare
 from gearidae.scene.group import did_you_mean
+from gearidae.studies._life import life
 from gearidae.studies.design import check_design, plain_design
 from gearidae.studies.distributions import Distribution, read_distributions
 from gearidae.studies.law_draws import drawn_laws, parameter_units
-from gearidae.studies.life import life
 from gearidae.studies.members import member_plan, names_of
 from gearidae.studies.products import open_lives
 from gearidae.wear import LossLaw
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["lives"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _SETTINGS: Final = (
     "passages",

@@ -13,12 +13,11 @@ import json
 import math
 import os
 from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
-import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.execution import Execution, origin_of, run_kept
@@ -37,8 +36,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["life"]
-
-Floats: TypeAlias = NDArray[np.float64]
 
 _PLACES: Final = 8
 

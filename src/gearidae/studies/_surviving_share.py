@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from statistics import NormalDist
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from gearidae.arrays import Floats, Ints
 from gearidae.errors import SceneError
 
 __all__ = ["surviving_share"]
-
-Floats: TypeAlias = NDArray[np.float64]
-Ints: TypeAlias = NDArray[np.int64]
 
 
 def surviving_share(ds: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:

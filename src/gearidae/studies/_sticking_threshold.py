@@ -198,8 +198,8 @@ def _check_ends(pool: _Pool, ends: tuple[float, float]) -> None:
     first, second = (next(run for run in pool.runs if run.value == end) for end in ends)
     if (first.passed < pool.exits) == (second.passed < pool.exits):
         what = "sticks" if first.passed < pool.exits else "passes them"
-        told = f"{first.passed} and {second.passed} mesh exits"
-        allowed = f"must have one end at which the gear sticks within {pool.exits} exits: at both it {what} ({told})"
+        passed = f"{first.passed} and {second.passed} mesh exits"
+        allowed = f"must have one end at which the gear sticks within {pool.exits} exits: at both it {what} ({passed})"
         raise SceneError("between", list(ends), allowed)
 
 

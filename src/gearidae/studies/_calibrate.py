@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import Execution, run_kept
 from gearidae.runs.running import prepare
 from gearidae.scene import describe_key
+from gearidae.studies._ensemble import figure_names
 from gearidae.studies.distributions import read_distributions
-from gearidae.studies.ensemble import figure_names
 from gearidae.studies.observations import Observation
 from gearidae.studies.posterior import grid_posterior, sampled_posterior
 from gearidae.studies.predicting import Predictor
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 __all__ = ["calibrate"]
-
-Floats = NDArray[np.float64]
 
 METHODS: Final = ("auto", "grid", "emcee")
 
@@ -200,10 +198,10 @@ def _attributes(
         }
         for each in seen
     ]
-    told = {"priors": {each.key: each.text for each in priors}, "observations": listed, **settings}
+    settings_used = {"priors": {each.key: each.text for each in priors}, "observations": listed, **settings}
     return {
         **provenance(scene, "calibrated", swept=tuple(each.key for each in priors)),
         "title": f"{scene.name}: calibration of {', '.join(each.key for each in priors)}",
         "summary": f"Posterior of {', '.join(each.key for each in priors)}, given {len(seen)} observations.",
-        "calibration": json.dumps(told),
+        "calibration": json.dumps(settings_used),
     }

@@ -3,7 +3,7 @@
 The gap of every pair follows from the recorded motion, the history of its asperities from the gaps it went through, and
 from both the force of every pair and whether its asperities stretch. What is not recorded is how far the bodies gave
 way. Where they did (the elastic model), or where samples lie too far apart, the forces of the pairs do not add up to
-the recorded one; then only gaps are told, and neither forces nor states.
+the recorded one; then only gaps are given, and neither forces nor states.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearidae.archive.pieces import pieces
 from gearidae.archive.select import is_roller, motion_samples, run_scene, runs, swept_dims
+from gearidae.arrays import Floats
 from gearidae.contact.kernels.law import H_STRETCH, law_value
 from gearidae.engine.setup.build import make_problem
 from gearidae.errors import SceneError
@@ -32,11 +33,10 @@ from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
 __all__ = ["tooth_contacts"]
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 AGREEMENT = 0.1
-"""Forces and states of the pairs are told if the sum of the forces misses the recorded one by no more than this part of
+"""Forces and states of pairs are given if the sum of the forces misses the recorded one by no more than this part of
 their magnitudes, or of the load that the scene is about."""
 _LONGEST_STRETCH = 400_000
 """Samples looked at together, or looked back upon, at most; forces of pairs that came near earlier will not add up."""

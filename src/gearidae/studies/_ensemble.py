@@ -116,10 +116,6 @@ def ensemble(
 def figure_names(scene: Scene) -> tuple[str, ...]:
     """List the figures of a run that indices can be asked of.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     tuple of str

@@ -93,7 +93,6 @@ def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str
         From `calibrate`.
     size : int
         Number of draws.
-    seed : int, optional
 
     Returns
     -------
