@@ -132,6 +132,6 @@ STATE: Final = record_type(
     ("extremes", EXTREMES),  # extremes of the run
     ("history", HISTORY, (2 * SLOTS_HIGH,)),  # of the tooth pairs
     ("asperity_onsets", INT),  # asperities of a population that have joined so far [1]
-    ("asperity_detachments", INT),  # those that have let go [1]
+    ("asperity_detachments", INT),  # those that have detached [1]
     ("cycle_events", INT),  # both since the last mesh mark [1]
 )
