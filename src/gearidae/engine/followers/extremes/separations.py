@@ -7,8 +7,6 @@ from gearidae.contact.history import extreme_gap
 from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.motion.separation import rigid_separation, separation
 
-__all__ = ["follow_separation", "note_separation"]
-
 
 @compiled(inline=True)
 def follow_separation(m: Model, last: Record, now: Record, y: Floats) -> None:
