@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["GearidaeError", "Interrupted", "SceneError", "SolverError"]
-
 
 class GearidaeError(Exception):
     """Base of every error that gearidae raises on purpose."""

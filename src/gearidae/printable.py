@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import unicodedata
 
-__all__ = ["printable"]
-
 
 def printable(text: str) -> str:
     r"""Write characters that act on a terminal, or that no encoding has, as their escapes: ``\x1b``, ``\udcff``.

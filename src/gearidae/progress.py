@@ -11,8 +11,6 @@ from contextlib import contextmanager, nullcontext
 from time import monotonic
 from typing import Any, Final
 
-__all__ = ["RunProgress", "SweepProgress", "in_words", "run_progress", "sweep_progress"]
-
 log = logging.getLogger(__name__)
 
 RunProgress = Callable[[float, int], None]

@@ -12,8 +12,6 @@ from typing import Generic, TypeVar
 
 from gearidae.errors import SceneError
 
-__all__ = ["Registry"]
-
 Law = TypeVar("Law")
 
 

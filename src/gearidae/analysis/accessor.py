@@ -20,8 +20,6 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Results"]
-
 
 class Results:
     """A dataset of `gearidae.simulate`, `gearidae.sweep` or `gearidae.open_archive`, read as what it is.

@@ -39,8 +39,6 @@ from gearidae.errors import SceneError
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Assessment", "assess", "judge"]
-
 _PLAIN = 0.1
 """Intervals wider than this say nothing about the coating."""
 _GAP = 0.02

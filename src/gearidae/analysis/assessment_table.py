@@ -12,8 +12,6 @@ from gearidae.scene.prefixes import with_prefix
 if TYPE_CHECKING:
     from gearidae.analysis.assessment import Assessment
 
-__all__ = ["assessment_table"]
-
 
 def assessment_table(found: Assessment) -> str:
     """Write an assessment as HTML, without colours of its own, so that it can be read on any background.

@@ -11,18 +11,6 @@ from gearidae.analysis.map_model import BEFORE, MapModel
 from gearidae.analysis.ringing import Ring
 from gearidae.arrays import Floats
 
-__all__ = [
-    "calibration_words",
-    "listed",
-    "misfit",
-    "other_speed",
-    "silence",
-    "stop_words",
-    "tone_words",
-    "torque_words",
-    "what_would_tell",
-]
-
 
 def silence(rings: list[Ring]) -> str:
     """Why a record without ringing says nothing."""

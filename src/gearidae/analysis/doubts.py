@@ -15,17 +15,6 @@ from gearidae.analysis.ringing import HIGHEST, Ring, piece_of
 from gearidae.analysis.signal import FEWEST_SAMPLES, Signal
 from gearidae.arrays import Floats
 
-__all__ = [
-    "alias",
-    "persistent",
-    "quantum",
-    "slower_than_map",
-    "stop",
-    "too_coarse",
-    "unsteadiness",
-    "widened",
-]
-
 _SMOOTH = 0.02
 """The speed is averaged over this part of a pitch before it is compared with the map's smallest."""
 _MARGIN = 0.02

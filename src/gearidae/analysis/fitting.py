@@ -32,8 +32,6 @@ from gearidae.analysis.map_model import BEFORE, MapModel
 from gearidae.analysis.signal import CALIBRATION
 from gearidae.arrays import Floats
 
-__all__ = ["COMMON", "SPEED_RANGE", "WITHIN", "Fit", "RingSet", "at_places", "first_explanation"]
-
 COMMON = 0.012
 """Relative uncertainty that all impacts share: windows a little early or late, and a speed off by half a per cent. It
 grows with that of the speed."""

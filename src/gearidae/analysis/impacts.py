@@ -20,8 +20,6 @@ from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
-__all__ = ["LEAD", "WIDTH", "angle_of", "impact_windows", "lowest_frequency", "unlike_pitch", "windows_of"]
-
 LEAD = 0.02
 """A window begins this much before its impact, in pitches."""
 WIDTH = 0.2

@@ -14,8 +14,6 @@ from gearidae.analysis.impacts import check_width
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
-__all__ = ["AFTER", "BEFORE", "MapModel", "map_model", "require_map"]
-
 BEFORE, AFTER = 1, 6
 """Impacts by which the map's sequences are continued at both ends."""
 _GRID = 1001

@@ -23,8 +23,6 @@ from gearidae.scene.text_table import check_regular
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Reading", "read_signal"]
-
 _SI = {"time": "s", "gear_speed": "rad s-1"}
 _SETTINGS = ("columns", "skip", "delimiter", "decimal", "bridge")
 _DELIMITERS = {

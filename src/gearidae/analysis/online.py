@@ -15,8 +15,6 @@ from gearidae.analysis.signal import CALIBRATION, FEWEST_SAMPLES, Signal, signal
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
-__all__ = ["OnlineAssessment"]
-
 _NOTHING = Assessment(math.nan, math.nan, math.nan, "no impacts", "no record yet", (), "unknown")
 
 

@@ -8,8 +8,6 @@ from typing import Final, NamedTuple
 from gearidae.scene.text_table import column_of, listed, split_unit
 from gearidae.scene.units import from_text
 
-__all__ = ["Column", "find_columns", "has_columns"]
-
 _NAMES: Final = {"time": ("time", "t"), "gear_speed": ("gear_speed", "speed")}
 _UNITS: Final = {"time": "s", "gear_speed": "rad/s"}
 _TURNS: Final = ("u/min", "upm", "rev/min", "r/min", "tr/min")

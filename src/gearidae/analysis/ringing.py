@@ -25,16 +25,6 @@ from gearidae.analysis.impacts import LEAD, WIDTH, check_width, lowest_frequency
 from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
 from gearidae.arrays import Floats
 
-__all__ = [
-    "HIGHEST",
-    "Ring",
-    "characteristic_frequency",
-    "impact_frequencies",
-    "impact_spectrum",
-    "piece_of",
-    "rings_of",
-]
-
 HIGHEST = 0.42
 """Ringing above this part of the sampling rate is left out: it could be the image of something still faster."""
 

@@ -11,8 +11,6 @@ from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 from gearidae.scene.quantity import Quantity
 
-__all__ = ["Sensor", "check_sensor"]
-
 _HISTORIES: Final = ("auto", "start", "unknown")
 _CALIBRATION: Final = Quantity(unit="1", at_least=0.0, at_most=0.1)
 _OFFSET: Final = Quantity(unit="rad/s", at_least=0.0)

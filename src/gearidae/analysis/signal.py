@@ -17,8 +17,6 @@ from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene.units import from_text
 
-__all__ = ["CALIBRATION", "FEWEST_SAMPLES", "Batch", "Signal", "signals", "stack", "to_si"]
-
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""
 CALIBRATION = 0.015

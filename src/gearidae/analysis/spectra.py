@@ -22,8 +22,6 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 
-__all__ = ["power_spectrum", "spectrogram"]
-
 _MOST_PADDING = 64
 _PIECES = 64
 """A spectrogram's segment is this part of the record by default."""

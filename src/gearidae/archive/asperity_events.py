@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from gearidae.records import Flank
 
-__all__ = ["teeth_in", "tooth_of"]
-
 
 def tooth_of(teeth: int, pair: NDArray[Any], flank: NDArray[Any]) -> NDArray[np.int64]:
     """Tooth of events by their pairs and flanks.

@@ -12,8 +12,6 @@ from gearidae.archive.variables import RUN
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
-__all__ = ["complete_scene", "readable_scene", "wrong_attribute"]
-
 _TEXTS = ("title", "history", "source", "status", "message", "backend")
 _MORE_TEXTS = ("method", "summary", "references", "license", "date_created", "product_version", "zipped")
 _NUMBERS = ("rtol", "t_end", "wall_time", *(n for n, variable in RUN.items() if variable.dtype is np.int64))

@@ -19,8 +19,6 @@ from gearidae.archive.variables import RUN
 from gearidae.errors import SceneError
 from gearidae.scene.differences import MAY_CHANGE, first_difference
 
-__all__ = ["chained"]
-
 _CONTINUOUS = ("gear_speed", "pinion_speed", "gear_angle", "transmission_error", "height", "speed")
 """What cannot jump where one run goes on from another."""
 _SEAM = 1e3

@@ -12,8 +12,6 @@ import numpy as np
 from gearidae.archive.store import Store
 from gearidae.records import Extremes, Statistics, Words
 
-__all__ = ["COUNTERS", "Checkpoint", "drop_checkpoints"]
-
 COUNTERS: Final = tuple(field.name for field in fields(Statistics) if field.type == "int")
 _EXTREMES: Final = tuple(field.name for field in fields(Extremes) if field.name != "exposures")
 _PREFIX: Final = "checkpoint_"

@@ -26,8 +26,6 @@ from gearidae.scene import Scene, describe_keys
 from gearidae.scene.differences import first_difference
 from gearidae.scene.keys import scene_value
 
-__all__ = ["concat"]
-
 
 def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
     """Join runs and sweeps into one dataset.

@@ -37,8 +37,6 @@ from gearidae.population.flanks import flanks_digest, flanks_of
 from gearidae.records import Solution
 from gearidae.scene import Scene, describe_key
 
-__all__ = ["combine", "dimension_names", "key_labels", "reached", "to_dataset"]
-
 _COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
 _RESERVED = {*by_name(), "event", "scene", "coordinates"}
 

@@ -16,8 +16,6 @@ import xarray as xr
 
 from gearidae.archive.library import Form, opened, uninterrupted
 
-__all__ = ["CHUNK", "chunked", "define"]
-
 _COMPRESSED_ABOVE = 2**16
 """Variables larger than this [bytes] are compressed if that pays, and of a sweep have chunks for each run."""
 CHUNK = 2**20

@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["DiskError", "disk_errors", "part_beside", "sync"]
-
 
 class DiskError(Exception):
     """The disk is full, or does not take or give the data for another reason."""

@@ -18,8 +18,6 @@ import xarray as xr
 from gearidae.errors import SceneError
 from gearidae.records import Words
 
-__all__ = ["end_state_attributes", "end_state_of", "fingerprint", "packed_state"]
-
 _LARGEST: Final = 2**26
 """Bytes of a state; those of elastic contacts take up to a megabyte."""
 

@@ -12,16 +12,6 @@ from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.records import Solution
 from gearidae.scene import Scene
 
-__all__ = [
-    "balance_attribute",
-    "balance_in_attributes",
-    "balance_numbers",
-    "balance_of",
-    "doubt",
-    "imbalance",
-    "imbalance_of",
-]
-
 
 def balance_numbers(scene: Scene, solution: Solution) -> dict[str, float]:
     """Return a run's balance by the names of `ENERGY_BALANCE` [J]; empty if it has none that is sound."""

@@ -13,8 +13,6 @@ from gearidae.arrays import Floats
 from gearidae.records import ExposureRows, Solution
 from gearidae.scene import MATERIAL_NAMES, Scene
 
-__all__ = ["FLANKS", "exposure_coordinates", "exposure_variables", "flank_areas", "gear_flank_areas"]
-
 FLANKS = ("drive", "coast")
 
 

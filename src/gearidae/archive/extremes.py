@@ -14,8 +14,6 @@ from gearidae.archive.variables import EXTREMES, extreme_names
 from gearidae.records import Extremes
 from gearidae.scene import Scene
 
-__all__ = ["extreme_variables", "extremes_of"]
-
 
 def extreme_variables(
     scene: Scene, runs: Sequence[Extremes | None], dims: tuple[str, ...] = (), shape: tuple[int, ...] = ()

@@ -32,8 +32,6 @@ from gearidae.archive.variables import EVENTS
 from gearidae.records import Block, Statistics, sample_times
 from gearidae.scene import Scene
 
-__all__ = ["GrowingArchive", "is_growing", "trimmed"]
-
 COPIED = 2**20
 """Rows copied at a time."""
 EVENT_ROOM = 65_536

@@ -14,8 +14,6 @@ from xarray.core.indexing import ExplicitIndexer, LazilyIndexedArray
 
 from gearidae.errors import SceneError
 
-__all__ = ["CheckedStore"]
-
 
 class CheckedStore(xr.backends.NetCDF4DataStore):
     """A netCDF4 file whose variables, whenever they are read, say which of them cannot be."""

@@ -9,8 +9,6 @@ import xarray as xr
 
 import gearidae
 
-__all__ = ["history_of", "part_name", "software_of"]
-
 _MOST_LINES = 100
 """Lines of history taken over from the parts."""
 

@@ -26,8 +26,6 @@ from gearidae.scene.group import did_you_mean, shorten
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["EVERYTHING", "GROUPS", "Keep", "kept_in", "read_keep"]
-
 GROUPS = ("verdict", "extremes", "statistics", "energy_balance", "scene", "exposures", "samples", "events")
 """Names that stand for several variables, or for one, from the smallest to the largest."""
 _ALWAYS = ("status", "message", "wall_time", *VERDICT)

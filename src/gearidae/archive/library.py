@@ -17,8 +17,6 @@ from typing import Any, Final, Literal, TypeAlias
 import netCDF4
 import xarray as xr
 
-__all__ = ["LIBRARY", "Form", "await_lock", "check_size", "close", "loaded", "opened", "uninterrupted"]
-
 _PATIENCE: Final = 5.0
 """Time [s] for which a file's lock is waited for."""
 

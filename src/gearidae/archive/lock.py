@@ -19,8 +19,6 @@ from filelock import FileLock, Timeout, lock_descriptor
 
 from gearidae.errors import SceneError
 
-__all__ = ["WriterLock", "claimed", "is_locked"]
-
 _PATIENCE: Final = 0.5
 """Time [s] for which a writer tries: a process that only looks holds the lock for some microseconds, and for as
 long as the system keeps it waiting meanwhile."""

@@ -26,8 +26,6 @@ from gearidae.errors import SceneError
 from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES
 from gearidae.scene import Scene
 
-__all__ = ["open_archive", "save"]
-
 _SIGNATURES = (b"\x89HDF\r\n\x1a\n", b"CDF\x05")
 """How archives begin: finished ones, and those of runs under way."""
 _JUDGED = ("verdict", "impacts")

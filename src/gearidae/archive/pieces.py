@@ -11,8 +11,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-__all__ = ["PIECE", "Spread", "count", "pieces", "reached", "spread"]
-
 PIECE = 2**18
 """Values looked at together."""
 

@@ -14,8 +14,6 @@ from gearidae.asperities.tip import tabor_parameter, tabor_regime
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["SCHEMA_VERSION", "provenance", "surface_regimes"]
-
 SCHEMA_VERSION = 1
 """Version of the layout; raised whenever an older reader could misread a newer file."""
 

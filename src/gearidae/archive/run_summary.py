@@ -25,8 +25,6 @@ from gearidae.arrays import Floats
 from gearidae.records import EventKind, Extremes
 from gearidae.scene import Scene
 
-__all__ = ["Account", "account", "account_of", "counted_over", "with_account"]
-
 Read = Callable[[str, slice], NDArray[Any]]
 
 PIECE = 2**18

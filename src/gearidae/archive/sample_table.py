@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from gearidae.records import Solution
 
-__all__ = ["SampleTable"]
-
 _NO_TIMES = np.empty(0)
 """Shared by all runs."""
 

@@ -17,17 +17,6 @@ from gearidae.archive.variables import EXTREMES, PLACES, columns
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
-__all__ = [
-    "is_roller",
-    "motion_samples",
-    "own_events",
-    "run_scene",
-    "run_value",
-    "runs",
-    "scene_of",
-    "swept_dims",
-]
-
 
 def scene_of(ds: xr.Dataset) -> dict[str, Any]:
     """Return the scene that a dataset carries, as plain data in SI units.

@@ -12,8 +12,6 @@ from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.select import own_events, run_scene, swept_dims
 from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN, PLACES, RUN
 
-__all__ = ["single_run"]
-
 
 def single_run(ds: xr.Dataset) -> xr.Dataset:
     """Make the dataset of a single run of one that was picked from a sweep.

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["Axis", "stack", "swept_values", "zipped_keys"]
-
 Axis = dict[str, list[Any]]
 """Values of the keys that are walked together along one dimension; the first key labels it."""
 

@@ -18,8 +18,6 @@ from numpy.typing import NDArray
 
 from gearidae.archive.disk import part_beside, sync
 
-__all__ = ["Store"]
-
 _ENTRY: Final = re.compile(r"([0-9a-z_]+)\.npz")
 _UNFINISHED: Final = re.compile(r"\.[0-9a-z_]+\.npz\.[0-9]+-[0-9a-f]{8}\.part")
 _HEADER: Final = "header"

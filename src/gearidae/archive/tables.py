@@ -15,8 +15,6 @@ from gearidae.archive.variables import EVENTS, POPULATION_EVENTS
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 
-__all__ = ["LARGEST_TABLE", "event_table", "run_labels", "time_series"]
-
 LARGEST_TABLE = 2**31
 """Size of a table [bytes] above which it is refused unless more is allowed."""
 

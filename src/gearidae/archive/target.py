@@ -14,8 +14,6 @@ from gearidae.archive.disk import DiskError, part_beside, sync
 from gearidae.archive.lock import claimed
 from gearidae.errors import SceneError
 
-__all__ = ["as_path", "check_target", "claims_output", "claims_target", "whole_file"]
-
 _USUAL_LONGEST: Final = 255
 """Bytes of a file's name, where the system does not say."""
 

@@ -17,8 +17,6 @@ import xarray as xr
 from xarray.core.indexing import IndexSelResult
 from xarray.indexes import PandasIndex
 
-__all__ = ["LARGEST_IN_MEMORY", "TimeIndex", "in_memory", "with_times"]
-
 LARGEST_IN_MEMORY = 2**20
 """Labels that an index may hold in memory."""
 

@@ -25,27 +25,6 @@ from gearidae.records import (
     sampled_columns,
 )
 
-__all__ = [
-    "ASPERITY_COUNTS",
-    "ENERGY_BALANCE",
-    "EVENTS",
-    "EXPOSURES",
-    "EXTREMES",
-    "OF_SWEPT_RUN",
-    "PLACES",
-    "POPULATION_EVENTS",
-    "ROLLER_EXTREMES",
-    "RUN",
-    "SAMPLES",
-    "SAM_FRACTION",
-    "TIME",
-    "VERDICT",
-    "Variable",
-    "by_name",
-    "columns",
-    "extreme_names",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Variable:

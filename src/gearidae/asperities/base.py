@@ -21,8 +21,6 @@ from numpy.typing import ArrayLike
 from gearidae.arrays import Floats
 from gearidae.asperities.tip import Asperity
 
-__all__ = ["AsperityLaw"]
-
 _X, _W = np.polynomial.legendre.leggauss(48)
 
 

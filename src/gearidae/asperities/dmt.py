@@ -20,8 +20,6 @@ from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
 
-__all__ = ["Dmt"]
-
 
 @register
 @dataclass(frozen=True)

@@ -18,8 +18,6 @@ from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
 
-__all__ = ["Hertz"]
-
 
 @register
 @dataclass(frozen=True)

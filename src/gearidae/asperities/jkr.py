@@ -36,18 +36,6 @@ from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
 
-__all__ = [
-    "JOINING",
-    "S_FOLD",
-    "S_TOUCH",
-    "Jkr",
-    "displacement",
-    "jkr_load",
-    "jkr_root",
-    "jkr_slope",
-    "load",
-]
-
 S_FOLD = (1.0 / 18.0) ** (1.0 / 6.0)
 """s at the fold, displacement -1: the end of the stable branch."""
 S_TOUCH = (8.0 / 9.0) ** (1.0 / 6.0)

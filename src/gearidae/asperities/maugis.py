@@ -48,8 +48,6 @@ from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
 
-__all__ = ["Maugis", "branch_at"]
-
 HALF_PI: Final = 0.5 * math.pi
 Z_TOUCH: Final = HALF_PI**-0.75
 """z where the tip begins to touch. In ``z = q**(-3/4)`` displacement and load grow like powers, as in JKR's s."""

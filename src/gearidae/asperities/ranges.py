@@ -10,8 +10,6 @@ from typing import Final
 from gearidae.asperities import AsperityLaw
 from gearidae.errors import SceneError
 
-__all__ = ["GAP_HIGH", "GAP_LOW", "JOIN_HIGH", "STRETCH_HIGH", "check_reach"]
-
 GAP_LOW: Final = -40.0
 """Deepest tabulated gap, in roughnesses; the last piece is continued below it."""
 GAP_HIGH: Final = 13.0

@@ -21,8 +21,6 @@ from gearidae.asperities.tip import Asperity, Surface, asperity_of, make_tip
 from gearidae.errors import SceneError
 from gearidae.registry import Registry
 
-__all__ = ["asperity", "asperity_load", "law_names", "law_of", "law_of_tip", "register", "unregister"]
-
 Law = TypeVar("Law", bound=type[AsperityLaw])
 
 _LAWS: Final = Registry[type[AsperityLaw]]("gearidae.asperities", "contact.asperity", "asperity law")

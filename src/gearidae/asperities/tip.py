@@ -12,16 +12,6 @@ import math
 from dataclasses import dataclass
 from typing import Final, Literal, Protocol
 
-__all__ = [
-    "Asperity",
-    "Surface",
-    "asperity_of",
-    "contact_modulus",
-    "make_tip",
-    "tabor_parameter",
-    "tabor_regime",
-]
-
 INTERACTION_RANGE: Final = 0.165e-9
 """Range of adhesive forces between silicon surfaces [m], for a surface without an ``interaction_range``."""
 

@@ -11,8 +11,6 @@ import gearidae
 from gearidae.cli import completing
 from gearidae.cli.output import Terminal
 
-__all__ = ["app"]
-
 app = App(
     name="gearidae",
     help="Simulate the dynamics of rough, adhesive MEMS gears with a protective monolayer.",

@@ -19,8 +19,6 @@ from gearidae.studies.products import calibrated_keys
 if TYPE_CHECKING:
     from gearidae.studies import Observation
 
-__all__ = ["calibrate_case", "predict_case"]
-
 _EXAMPLE: Final = "'sticks=true; drive.torque=4.2e-18' or 'ring_frequency=5.2 kHz +- 0.1 kHz'"
 
 

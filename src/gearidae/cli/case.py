@@ -12,8 +12,6 @@ from gearidae.errors import SceneError
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["SHIPPED", "check_dask", "read_scene"]
-
 SHIPPED: Final = {"low_speed": "teodorescu2009_low_speed", "high_speed": "teodorescu2009"}
 """Shipped cases that are presets under another name."""
 

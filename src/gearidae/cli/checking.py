@@ -23,8 +23,6 @@ from gearidae.scene.validity_row import contact_subject, mean_note
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["check_case"]
-
 Rows = Iterator[tuple[str, str, str]]
 
 

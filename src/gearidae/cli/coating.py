@@ -17,8 +17,6 @@ from gearidae.cli.values import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["assess_signal"]
-
 
 def assess_signal(
     signal: Path,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "UNFINISHED"]
-
 DONE = 0
 BAD_INPUT = 2
 """The command line, a case file or an archive is wrong; nothing was written."""

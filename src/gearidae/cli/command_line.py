@@ -19,8 +19,6 @@ from gearidae.cli.streams import stop_output
 from gearidae.cli.values import spread
 from gearidae.errors import GearidaeError, SceneError
 
-__all__ = ["run_command_line"]
-
 
 def run_command_line(arguments: Sequence[str] | None) -> int:
     """Run a command; arguments and exit code are those of `gearidae.cli.main`."""

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from cyclopts.completion import CompletionContext
 
-__all__ = ["cases", "keys", "pictures", "presets"]
-
 
 def presets(context: CompletionContext) -> Iterable[str]:
     """Offer the presets."""

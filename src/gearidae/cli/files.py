@@ -23,8 +23,6 @@ from gearidae.scene.validity_row import ATTRIBUTE, contact_subject
 from gearidae.studies.answers import answer
 from gearidae.studies.products import open_product
 
-__all__ = ["describe", "write_case"]
-
 
 def write_case(name: str, preset: str) -> int:
     """Write a preset as a commented case file.

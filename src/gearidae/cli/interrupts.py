@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from sys import UnraisableHookArgs
     from types import FrameType
 
-__all__ = ["interrupts_kept"]
-
 _MOMENT: Final = 0.02
 """Seconds."""
 _CLOSING: Final = 3.0

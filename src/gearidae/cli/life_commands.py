@@ -9,8 +9,6 @@ from cyclopts import Parameter
 from gearidae.cli.app import Case, app
 from gearidae.cli.study_commands import USUAL, Design, Seed, Usual, Vary
 
-__all__ = ["life", "lives"]
-
 Law = Annotated[str, Parameter(help="Loss law: contacts, adhesion_work or sliding_work.")]
 _PARAMETER = Parameter(
     name="--parameter",

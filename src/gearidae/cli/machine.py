@@ -20,8 +20,6 @@ from gearidae.studies.answers import answer
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["archive_facts", "product_facts", "say_json"]
-
 _ATTRIBUTES = (
     "title", "history", "source", "product_version", "status", "message", "t_end", "rtol", "steps",
     "residual_evaluations", "jacobian_evaluations", "restarts", "wall_time", "backend", "method",

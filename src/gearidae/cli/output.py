@@ -13,8 +13,6 @@ from rich.segment import Segment
 from gearidae.cli.streams import stop_output
 from gearidae.printable import printable
 
-__all__ = ["Terminal", "complain", "hushed", "is_quiet", "say", "show"]
-
 _WIDTH_OF_FILES = 120
 """Columns to lay tables out for when the output is not a terminal."""
 

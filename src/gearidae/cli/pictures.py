@@ -20,8 +20,6 @@ from gearidae.plot.picture import usual_style
 from gearidae.scene.group import did_you_mean
 from gearidae.studies.products import open_product
 
-__all__ = ["draw", "picture_names"]
-
 _FUNCTIONS_OF_FILES = ("animate_teeth", "write")
 
 

@@ -9,8 +9,6 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.values import default_output
 
-__all__ = ["report_archive"]
-
 
 def report_archive(archive: Path, output: Path | None, *, overwrite: bool) -> int:
     """Write the report of an archive.

@@ -14,8 +14,6 @@ from gearidae.cli.app import Dask, Output, Overwrite, Settings
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-__all__ = ["Request"]
-
 _WORTH_PROCESSES: Final = 64
 """Members from which on it is worth while to start processes, which takes some seconds."""
 

@@ -10,8 +10,6 @@ from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 
-__all__ = ["write_schema"]
-
 
 def write_schema(output: Path | None, *, overwrite: bool) -> int:
     """Print the JSON Schema of case files, or write it to a file.

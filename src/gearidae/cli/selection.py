@@ -10,8 +10,6 @@ import xarray as xr
 from gearidae.cli.values import assignments
 from gearidae.errors import SceneError
 
-__all__ = ["selected"]
-
 _MOST_SHOWN = 20
 
 

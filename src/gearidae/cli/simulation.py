@@ -15,8 +15,6 @@ from gearidae.cli.values import default_output, sweep_values
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
 
-__all__ = ["run_case", "sweep_case"]
-
 
 def run_case(
     case: str,

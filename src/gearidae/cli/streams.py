@@ -7,8 +7,6 @@ import os
 import sys
 from pathlib import Path
 
-__all__ = ["mend_streams", "stop_output"]
-
 
 def mend_streams() -> None:
     """Open closed standard streams on nothing, and let the others replace what they cannot encode.

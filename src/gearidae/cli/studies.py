@@ -21,17 +21,6 @@ if TYPE_CHECKING:
 
     from gearidae.wear import LossLaw
 
-__all__ = [
-    "conduct",
-    "follow_life",
-    "follow_lives",
-    "map_coating",
-    "map_outcomes",
-    "run_ensemble",
-    "search_starting_torque",
-    "search_threshold",
-]
-
 _FRACTION: Final = "coating.sam_fraction"
 _TORQUE: Final = "drive.torque"
 

@@ -14,21 +14,6 @@ from gearidae.cli import completing
 from gearidae.cli.app import Case, app
 from gearidae.cli.request import Request
 
-__all__ = [
-    "USUAL",
-    "Design",
-    "Seed",
-    "Usual",
-    "Vary",
-    "calibrate",
-    "coating_map",
-    "ensemble",
-    "operating_map",
-    "predict",
-    "starting_torque",
-    "threshold",
-]
-
 Vary = Annotated[
     list[str],
     Parameter(

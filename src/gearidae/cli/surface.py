@@ -16,8 +16,6 @@ from gearidae.errors import SceneError
 from gearidae.scene.prefixes import with_prefix
 from gearidae.surfaces.files import read_lines
 
-__all__ = ["Choices", "analyse_scan"]
-
 
 @dataclass(frozen=True, slots=True)
 class Choices:

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from gearidae.surfaces import MeasuredSurface
 
-__all__ = ["show_surface"]
-
 _MOST_ROWS = 9
 _HEADINGS = (
     "cut-off",

@@ -20,8 +20,6 @@ from gearidae.cli.output import complain, say, show
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import ATTRIBUTE, holds_rows, mean_note, rows_from_json
 
-__all__ = ["label_text", "name_failures", "show_account", "show_outcomes", "show_rows"]
-
 _GEAR_HEADINGS = ("outcome", "min rad/s", "max rad/s", "impacts", "wall s")
 _ROLLER_HEADINGS = ("outcome", "peak", "pull-off", "restitution", "impacts", "wall s")
 _NAMED = 3

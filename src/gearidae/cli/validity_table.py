@@ -14,8 +14,6 @@ from gearidae.cli.output import show
 if TYPE_CHECKING:
     from gearidae.scene.validity_row import ValidityRow
 
-__all__ = ["show_validity"]
-
 
 def show_validity(rows: Sequence[ValidityRow], *, about: str = "") -> None:
     """Print the limits of the model; an exclamation mark marks a limit that is exceeded.

@@ -11,8 +11,6 @@ from gearidae.errors import SceneError
 from gearidae.scene.literal import literal
 from gearidae.scene.units import from_text
 
-__all__ = ["assignments", "default_output", "quantity", "spread", "sweep_values", "texts"]
-
 _LONGEST_RANGE = 100_000
 _TAKES_PAIRS = ("--set", "--over", "--vary", "--seen", "--select", "--line")
 

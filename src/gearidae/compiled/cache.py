@@ -24,8 +24,6 @@ from llvmlite import binding
 from numba.core import caching
 from platformdirs import user_cache_path
 
-__all__ = ["HAS_LOCATOR_HOOK", "PLAIN", "cache_folder", "is_cached", "own_cache"]
-
 log = logging.getLogger(__name__)
 
 COMPILED_PACKAGES: Final = ("asperities/ranges.py", "compiled", "contact", "engine", "records")

@@ -12,8 +12,6 @@ import numba
 from gearidae.compiled.cache import HAS_LOCATOR_HOOK, is_cached, own_cache
 from gearidae.compiled.options import numba_options
 
-__all__ = ["Function", "compiled", "compiled_callback"]
-
 F = TypeVar("F", bound=Callable[..., Any])
 
 

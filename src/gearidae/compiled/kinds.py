@@ -10,8 +10,6 @@ import numba
 import numpy as np
 from numba import types
 
-__all__ = ["name_type", "signature_of"]
-
 _KINDS: Final[dict[Any, Any]] = {
     bool: types.boolean,
     int: types.int64,

@@ -29,8 +29,6 @@ from gearidae.compiled.kinds import signature_of
 from gearidae.compiled.options import numba_options
 from gearidae.compiled.ready import make_ready, wait
 
-__all__ = ["compiled_once"]
-
 F = TypeVar("F", bound=Callable[..., Any])
 
 _slots: Final[list[ctypes.c_int64]] = []

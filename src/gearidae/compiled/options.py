@@ -16,8 +16,6 @@ import numba
 
 from gearidae.compiled.cache import PLAIN, cache_folder, is_cached
 
-__all__ = ["compiles", "numba_options"]
-
 log = logging.getLogger(__name__)
 
 _UNDOCUMENTED: Final[dict[str, Any]] = {

@@ -5,8 +5,6 @@ from __future__ import annotations
 import threading
 from typing import Final, Protocol
 
-__all__ = ["is_ready", "make_ready", "wait"]
-
 
 class Waiting(Protocol):
     """A function that has been declared and not yet compiled."""

@@ -22,15 +22,6 @@ from gearidae.asperities.tip import Surface, asperity_of
 from gearidae.contact.heights import heights_of
 from gearidae.contact.psi import psi, psi_derivatives
 
-__all__ = [
-    "asperities_for_mean",
-    "density_product",
-    "expected_asperities",
-    "half_spacing",
-    "mean_square_place",
-    "zero_load_radius",
-]
-
 
 def expected_asperities(gap: ArrayLike, radius: float, width: float, surface: Surface) -> NDArray[np.float64]:
     r"""Number of asperities that two teeth may be expected to touch with, approaching.

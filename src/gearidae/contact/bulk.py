@@ -29,17 +29,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearidae.errors import SceneError
 
-__all__ = [
-    "STENCIL",
-    "LineGrid",
-    "averaged_kernel",
-    "between_nodes",
-    "bulk_influence",
-    "line_grid",
-    "place_nodes",
-    "strip_deflection",
-]
-
 Array = NDArray[np.float64]
 
 _FINE = 64

@@ -32,8 +32,6 @@ from gearidae.contact.bulk import LineGrid, line_grid
 from gearidae.contact.heights import Heights, heights_of, normal_density, normal_density_slope
 from gearidae.errors import SceneError, SolverError
 
-__all__ = ["ElasticCurve", "ElasticFoldError", "elastic_grid", "elastic_line_curve", "elastic_line_force"]
-
 Array = NDArray[np.float64]
 
 _TAIL = 5.5

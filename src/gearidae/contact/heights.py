@@ -27,8 +27,6 @@ from gearidae.asperities import AsperityLaw, law_of
 from gearidae.asperities.tip import Surface, asperity_of
 from gearidae.errors import SceneError
 
-__all__ = ["Heights", "checked_gap_and_stretch", "heights_of", "normal_density", "normal_density_slope"]
-
 Array: TypeAlias = NDArray[np.float64]
 Kernel: TypeAlias = Callable[[Array], Array]
 

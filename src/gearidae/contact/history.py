@@ -15,8 +15,6 @@ import math
 
 from gearidae.compiled import compiled
 
-__all__ = ["extreme_gap", "joined_height"]
-
 
 @compiled
 def joined_height(joined: float, gap: float, limit: float) -> float:

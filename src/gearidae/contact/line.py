@@ -28,8 +28,6 @@ from gearidae.contact.heights import checked_gap_and_stretch, heights_of
 from gearidae.contact.psi import psi
 from gearidae.errors import SceneError
 
-__all__ = ["line_force"]
-
 
 def line_force(
     gap: ArrayLike,

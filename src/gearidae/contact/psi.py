@@ -26,8 +26,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import special
 
-__all__ = ["gaussian_tail", "psi", "psi_derivatives"]
-
 # Three ways to the same numbers, each where it loses no digits: the asymptotic series left of _LEFT, the trapezoidal
 # rule between, Bessel functions with the recurrence upwards in order right of _RIGHT.
 _LEFT, _RIGHT = -11.0, 1.0

@@ -35,14 +35,6 @@ from gearidae.contact.heights import (
     normal_density_slope,
 )
 
-__all__ = [
-    "MaximumTension",
-    "adhesion_loss_per_asperity",
-    "maximum_tension",
-    "rough_pressure",
-    "rough_pressure_slopes",
-]
-
 
 class MaximumTension(NamedTuple):
     """Where two rough planes pull together hardest."""

@@ -14,16 +14,6 @@ from __future__ import annotations
 import math
 from typing import Final
 
-__all__ = [
-    "AIR_MEAN_FREE_PATH",
-    "AIR_VISCOSITY",
-    "BOLTZMANN",
-    "ROOM_TEMPERATURE",
-    "disc_drag",
-    "film_damping",
-    "thermal_amplitude",
-]
-
 BOLTZMANN: Final = 1.380649e-23
 """Boltzmann's constant [J/K], exact in the SI."""
 ROOM_TEMPERATURE: Final = 300.0

@@ -15,18 +15,6 @@ from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
 from gearidae.engine.pairs.tooth_pairs import set_joined
 from gearidae.engine.setup.problem import Problem
 
-__all__ = [
-    "carry_nodes",
-    "change_over",
-    "deepen",
-    "join_anew",
-    "join_as_pairs",
-    "lighten",
-    "note_gaps",
-    "remember",
-    "take_over",
-]
-
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
 
 

@@ -14,8 +14,6 @@ from numba.core import event
 
 from gearidae.compiled import is_ready, make_ready
 
-__all__ = ["ELASTIC", "EXPOSURES", "HOW_LONG", "POPULATION", "SOLVER", "compiling", "make_part_ready"]
-
 log = logging.getLogger(__name__)
 
 SOLVER: Final = "the solver"

@@ -59,15 +59,6 @@ from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
 from gearidae.scene.differences import MAY_CHANGE, first_difference
 
-__all__ = [
-    "checkpoint_of_start",
-    "end_of",
-    "knots_at_start",
-    "problem_from",
-    "refuse_other_bodies",
-]
-
-
 _SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
 _FORCES: Final = ("largest_force", "smallest_force")
 _TIMES: Final = ("stuck_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")

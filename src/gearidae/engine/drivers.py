@@ -14,8 +14,6 @@ from gearidae.engine.model.state import GEARS
 from gearidae.engine.setup.problem import Problem
 from gearidae.records import Statistics
 
-__all__ = ["ADAMS", "BDF", "formulas", "load_driver", "native_formulas", "ready_driver"]
-
 log = logging.getLogger(__name__)
 
 ADAMS, BDF = "adams", "bdf"

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from gearidae.records import Block, EnergyBalance, Extremes, Statistics
 
-__all__ = ["Ended", "OnBlock"]
-
 
 @dataclass(frozen=True, slots=True)
 class Ended:

@@ -32,8 +32,6 @@ from gearidae.engine.setup.problem import Problem
 from gearidae.records import EventKind, Statistics
 from gearidae.scene import Scene
 
-__all__ = ["examine", "examine_apart", "failure"]
-
 TRIED: Final = ("linux",)
 """Systems on which the driver has been run; on others the first trial is made in a process of its own."""
 TRIAL: Final = f"import sys; from {__name__} import examine; sys.stdout.write('seen:' + examine(sys.argv[1]))"

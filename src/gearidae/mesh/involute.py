@@ -18,17 +18,6 @@ from numpy.typing import ArrayLike
 
 from gearidae.arrays import Floats
 
-__all__ = [
-    "Geometry",
-    "GeometryError",
-    "check_geometry",
-    "curvature_radii",
-    "flank_arc",
-    "mesh_geometry",
-    "place_of_arc",
-    "separation",
-]
-
 
 class GeometryError(ValueError):
     """Two such gears cannot mesh.

@@ -14,8 +14,6 @@ from gearidae.errors import SceneError
 from gearidae.plot.files import BY_FFMPEG, MOVING, whole_file
 from gearidae.plot.teeth_view import TeethView, mesh_states
 
-__all__ = ["animate_teeth"]
-
 _MOST_FRAMES = 5000
 
 

@@ -19,8 +19,6 @@ from gearidae.plot.style import NEGATIVE, POSITIVE
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.studies.tooth_states import ToothContact
 
-__all__ = ["COATING", "FLANKS", "SAMPLES", "close_up", "half_width", "joined_asperities", "rough_sample"]
-
 FLANKS = "#d3e5f3", "#deb968"
 """Colours of pinion and gear, one lighter than the other in grey."""
 _WIDTH = 2.5  # of half a close-up over sqrt(2 R sigma)

@@ -6,8 +6,6 @@ import numpy as np
 
 from gearidae.arrays import Floats
 
-__all__ = ["banded", "crowded_from"]
-
 _PER_OCTAVE = 24
 
 

@@ -13,8 +13,6 @@ from gearidae.errors import SceneError
 from gearidae.plot.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
 from gearidae.studies.products import require
 
-__all__ = ["coating_map", "starting_torque"]
-
 _LATER = "0.6"
 
 

@@ -12,8 +12,6 @@ from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, tidy
 from gearidae.studies._sticking_probability import drawn_keys
 from gearidae.studies._sticking_probability import sticking_probability as probability_of
 
-__all__ = ["sobol_indices", "sticking_probability"]
-
 _COVERAGE = "coating.sam_fraction"
 
 

@@ -12,8 +12,6 @@ from matplotlib.figure import Figure
 from gearidae.archive import target
 from gearidae.errors import SceneError
 
-__all__ = ["BY_FFMPEG", "MOVING", "whole_file", "write"]
-
 BY_FFMPEG = ("mp4", "webm")
 """Endings of moving pictures that need ffmpeg."""
 MOVING = ("gif", "webp", *BY_FFMPEG)

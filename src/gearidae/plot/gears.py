@@ -7,8 +7,6 @@ from matplotlib.axes import Axes
 
 from gearidae.plot.style import Run, label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 
-__all__ = ["gap", "gear_speed", "transmission_error"]
-
 
 def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the speed of the gear over time, all runs in one frame (Teodorescu et al. 2009, Figs. 4 and 7).

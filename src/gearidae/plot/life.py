@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-__all__ = ["coverage_along_flank", "life"]
-
 
 def life(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw coverage against passages, with the end of the life and the frequency that a speed sensor sees.

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-__all__ = ["lives"]
-
 
 def lives(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the share of gears that still turn against passages, with its 95 % band.

@@ -20,8 +20,6 @@ from gearidae.errors import SceneError
 from gearidae.plot.parameter_axis import ParameterAxis, parameter_axis
 from gearidae.plot.style import new_axes, scale_for, scaled, tidy
 
-__all__ = ["outcome"]
-
 
 @dataclass(frozen=True, slots=True)
 class _Look:

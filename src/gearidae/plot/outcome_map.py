@@ -14,8 +14,6 @@ from gearidae.errors import SceneError
 from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.style import new_axes
 
-__all__ = ["outcome_map"]
-
 _LOOKS = {
     Outcome.UNFINISHED: ("0.8", "not finished"),
     Outcome.TURNS: ("#0072B2", "turns"),

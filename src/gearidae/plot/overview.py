@@ -15,8 +15,6 @@ from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.style import runs_of
 from gearidae.plot.torque import contact_torque
 
-__all__ = ["overview", "usual_pictures"]
-
 _PICTURES: Final = {
     "coating_map": {"coating_map": "Frequency of the impact response against the coverage"},
     "ensemble": {

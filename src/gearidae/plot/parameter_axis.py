@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from gearidae.plot.style import scaled
 
-__all__ = ["ParameterAxis", "parameter_axis"]
-
 
 @dataclass(frozen=True, slots=True)
 class ParameterAxis:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-__all__ = ["pick"]
-
 _HELD = ("sticks", "runs back", "stops")
 """Verdicts of gears that adhesion or a load has stopped."""
 

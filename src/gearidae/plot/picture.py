@@ -15,8 +15,6 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-__all__ = ["Picture", "PictureAxes", "new_picture", "usual_style"]
-
 _WIDTH = 100
 """Pixels of the page that an inch of a figure takes; the picture itself has more, for fine screens."""
 

@@ -18,8 +18,6 @@ from gearidae.plot.picture import PictureAxes, new_picture
 from gearidae.plot.style import POSITIVE, tidy
 from gearidae.studies.products import calibrated_keys
 
-__all__ = ["posterior"]
-
 _BINS: Final = 40
 """Bins of draws, along each key."""
 _PANEL: Final = 2.4

@@ -7,8 +7,6 @@ from matplotlib.axes import Axes
 
 from gearidae.plot.style import label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 
-__all__ = ["roller_force", "roller_gap"]
-
 
 def roller_force(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the contact force over time (Teodorescu et al. 2009, Fig. 2).

@@ -19,8 +19,6 @@ from gearidae.plot.bands import banded, crowded_from
 from gearidae.plot.style import Run, legend, new_axes, runs_of, scale_for, thin, tidy
 from gearidae.scene.prefixes import with_prefix
 
-__all__ = ["cycle", "impact_spectrum", "power_spectrum", "spectrogram"]
-
 _DECADES = 6
 """Spectra are shown down to this many decades below their largest value."""
 _SETTLED = 0.2

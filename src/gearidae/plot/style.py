@@ -25,25 +25,6 @@ from gearidae.plot.picking import pick
 from gearidae.plot.picture import PictureAxes, new_picture
 from gearidae.scene.prefixes import PREFIXES
 
-__all__ = [
-    "COLOURS",
-    "LINE_STYLES",
-    "NEGATIVE",
-    "POSITIVE",
-    "Run",
-    "Scale",
-    "label_time",
-    "largest",
-    "legend",
-    "new_axes",
-    "number_shown",
-    "runs_of",
-    "scale_for",
-    "scaled",
-    "thin",
-    "tidy",
-]
-
 # Okabe and Ito's palette, dark colours first: distinguishable for colour-blind readers and, with the line styles,
 # in grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")

@@ -12,8 +12,6 @@ from gearidae.errors import SceneError
 from gearidae.plot.picture import new_picture
 from gearidae.plot.style import COLOURS, LINE_STYLES, tidy
 
-__all__ = ["surface"]
-
 _PANELS = (
     ("roughness", "roughness $\\sigma$", "m"),
     ("asperity_density", "density $N$", "1/µm²"),

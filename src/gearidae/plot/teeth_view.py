@@ -21,8 +21,6 @@ from gearidae.records import Flank
 from gearidae.scene import Scene
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
-__all__ = ["STATE_WORDS", "TeethView", "mesh_states", "nearest_pairs", "pairs_at_most", "teeth"]
-
 STATE_WORDS = {
     ContactState.UNTOLD: "not recoverable from the archive",
     ContactState.OPEN: "open",

@@ -11,8 +11,6 @@ from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, tidy
 from gearidae.studies.products import require
 
-__all__ = ["sticking_threshold"]
-
 
 def sticking_threshold(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the limit at which a gear begins to stick against the mesh exits waited for, with its bracket.

@@ -23,8 +23,6 @@ from gearidae.mesh.involute import Geometry
 from gearidae.records import Flank
 from gearidae.scene import Scene
 
-__all__ = ["GearPicture", "ToothedWheel", "contact_points", "mesh_picture"]
-
 _FLANK_POINTS = 40
 _DEDENDUM = 1.25  # modules
 _ROUNDED = 8.0

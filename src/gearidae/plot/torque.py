@@ -21,8 +21,6 @@ from gearidae.plot.style import (
     tidy,
 )
 
-__all__ = ["contact_torque"]
-
 _TORQUE = "gear_contact_torque"
 
 

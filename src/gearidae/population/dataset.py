@@ -14,8 +14,6 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["population"]
-
 
 def population(scene: Scene) -> xr.Dataset:
     """Return the asperities of a scene with ``contact.model = "population"``.

@@ -19,8 +19,6 @@ from gearidae.scene import Scene
 from gearidae.scene.asperity_list import FLANKS, ListedAsperity
 from gearidae.scene.strip import flank_strip
 
-__all__ = ["FlankAsperities", "flanks_digest", "flanks_of"]
-
 
 class FlankAsperities(NamedTuple):
     """The asperities of one flank, in the order of their places.

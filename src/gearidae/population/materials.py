@@ -12,8 +12,6 @@ from gearidae.population.flanks import FlankAsperities
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.coating_table import fraction_at
 
-__all__ = ["along_path", "covered_sides", "materials_at"]
-
 Bools = NDArray[np.bool_]
 _BARE, _COATED, _MIXED = (MATERIAL_NAMES.index(name) for name in ("bare", "coated", "mixed"))
 MATERIAL_OF_SIDES: Final = np.array([[_BARE, _MIXED], [_MIXED, _COATED]])

@@ -9,23 +9,6 @@ from __future__ import annotations
 from collections import namedtuple
 from typing import Any, Final, NamedTuple
 
-__all__ = [
-    "ELASTIC_COLUMNS",
-    "ELASTIC_SAMPLES",
-    "GEAR",
-    "GEAR_COLUMNS",
-    "GEAR_POPULATION",
-    "GEAR_SAMPLES",
-    "POPULATION_COLUMNS",
-    "POPULATION_SAMPLES",
-    "ROLLER",
-    "ROLLER_COLUMNS",
-    "ROLLER_POPULATION",
-    "ROLLER_SAMPLES",
-    "Column",
-    "sampled_columns",
-]
-
 
 class Column(NamedTuple):
     """One sampled quantity.

@@ -8,8 +8,6 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["EventKind", "Events", "Flank"]
-
 
 class EventKind(IntEnum):
     """Kind of an event, as stored in ``event_kind``."""

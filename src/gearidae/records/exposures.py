@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple, Self
 
-__all__ = ["ExposureRows"]
-
 
 class ExposureRows(NamedTuple):
     """Which row is what.

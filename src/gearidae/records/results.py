@@ -12,8 +12,6 @@ from gearidae.records.events import Events
 from gearidae.records.statistics import Statistics
 from gearidae.records.totals import EnergyBalance, Extremes
 
-__all__ = ["Block", "Solution", "Words"]
-
 Words = NDArray[Any]
 """A vector of 8-byte words, whose layout only the engine knows."""
 

@@ -10,8 +10,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["first_sample", "sample_times"]
-
 _ON_GRID: Final = 1e-9
 """A start counts as a whole multiple within this part of a spacing."""
 

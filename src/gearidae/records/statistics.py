@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass, field
 from enum import Enum
 
-__all__ = ["Ending", "Statistics"]
-
 
 class Ending(Enum):
     """Ending of a run: its status in the dataset, and a sentence."""

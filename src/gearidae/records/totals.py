@@ -7,19 +7,6 @@ import sys
 from array import array
 from dataclasses import dataclass, field
 
-__all__ = [
-    "GEAR_BOUND",
-    "QUADRATURE_BOUND",
-    "ROLLER_BOUND",
-    "ROUNDING_BOUND",
-    "RUN_PARTS",
-    "TABLE_BOUND",
-    "TORQUE_BOUND",
-    "TRAVEL_BOUND",
-    "EnergyBalance",
-    "Extremes",
-]
-
 RUN_PARTS = (0.05, 0.5, 0.95)
 """Where the parts of a run begin over which speeds are judged, as shares of it: start-up, half, last twentieth."""
 GEAR_BOUND = 10.0

@@ -9,8 +9,6 @@ from typing import Any
 
 from gearidae.printable import printable
 
-__all__ = ["definitions", "folded", "json_block", "paragraph", "section", "table", "text"]
-
 
 def text(value: object) -> str:
     """Escape a value for use between tags or in a quoted attribute."""

@@ -14,8 +14,6 @@ from gearidae.report import html
 from gearidae.report.tables import law_table
 from gearidae.scene.prefixes import with_prefix
 
-__all__ = ["life_table", "life_viewer", "pack_life"]
-
 
 def life_table(ds: xr.Dataset) -> str:
     """List the steps of a life."""

@@ -33,8 +33,6 @@ from gearidae.report.teeth import pack_teeth
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
 
-__all__ = ["build_report", "write_report"]
-
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 """What the browser may load for the page: nothing from anywhere."""
 

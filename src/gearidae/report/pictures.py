@@ -15,8 +15,6 @@ from gearidae.plot.picture import usual_style
 from gearidae.report import html
 from gearidae.report.svg import colour_rules, drawing
 
-__all__ = ["figures", "pictures"]
-
 _Draw = Callable[[xr.Dataset], Any]
 
 _OUTCOME: tuple[_Draw, str] = (plot.outcome, "Outcome of each run against what was swept")

@@ -16,8 +16,6 @@ from gearidae.errors import SceneError
 from gearidae.plot.style import runs_of
 from gearidae.records import EventKind
 
-__all__ = ["MOST_VALUES", "pack"]
-
 MOST_VALUES = 1_500_000
 """Numbers a page holds at most (8 MB of text); longer series are reduced to the extremes of intervals."""
 _MOST_EVENTS = 2000

@@ -12,8 +12,6 @@ from matplotlib.figure import Figure
 
 from gearidae.report import html
 
-__all__ = ["colour_rules", "drawing"]
-
 _ON_DARK = {
     "#0072b2": "#4da6e0",
     "#d55e00": "#f08040",

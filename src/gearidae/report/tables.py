@@ -24,19 +24,6 @@ from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.shown import flat
 from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, holds_rows, rows_from_json
 
-__all__ = [
-    "account_table",
-    "answer_tables",
-    "event_table",
-    "headline",
-    "law_table",
-    "member_table",
-    "outcome_table",
-    "parameter_tables",
-    "provenance_list",
-    "validity_table",
-]
-
 _NAMED_KEYS = 12
 _GEAR_HEADINGS = ("outcome", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
 _ROLLER_HEADINGS = (

@@ -22,8 +22,6 @@ from gearidae.scene import MATERIAL_NAMES, Scene
 if TYPE_CHECKING:
     from gearidae.studies.tooth_states import MeshState, ToothContact
 
-__all__ = ["FRAME", "MOST_STATES", "PAIR", "pack_teeth"]
-
 MOST_STATES = 3000
 """States embedded at most, over all runs."""
 FRAME = ("time", "phase", "transmission_error", "gear_speed", "mesh_force")

@@ -26,8 +26,6 @@ from gearidae.runs.sweep_plan import SweepPlan
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Batch"]
-
 _AHEAD: Final = 8
 """Runs that wait for each thread: all at once would take more memory than what they leave behind."""
 _ALONE: Final = 16

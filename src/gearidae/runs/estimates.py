@@ -13,16 +13,6 @@ from gearidae.errors import SceneError
 from gearidae.runs.pair_contact import PairContact, pair_contact
 from gearidae.scene import Drive, Gears, Load, Scene
 
-__all__ = [
-    "Rest",
-    "balanced_speed",
-    "effective_mass",
-    "mean_drive_torque",
-    "rest_of",
-    "resting_gap",
-    "steady_speed",
-]
-
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
 
 

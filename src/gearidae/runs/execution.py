@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import Scene
 
-__all__ = ["Execution", "Store", "interruptible", "origin_of", "run_kept", "solutions"]
-
 
 class Store(Protocol):
     """Results that are kept beside an archive until it is written."""

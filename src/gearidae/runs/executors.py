@@ -17,8 +17,6 @@ from gearidae import __version__
 from gearidae.errors import SceneError
 from gearidae.runs.halting import heed
 
-__all__ = ["check_executor", "check_jobs", "dask_executor", "own_executor", "side_by_side", "stop"]
-
 Made = TypeVar("Made")
 
 _PATIENCE = 10.0

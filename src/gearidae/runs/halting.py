@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import threading
 
-__all__ = ["heed", "is_halted"]
-
 _of_this_thread = threading.local()
 
 

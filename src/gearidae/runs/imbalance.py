@@ -13,8 +13,6 @@ from gearidae.archive.select import swept_dims
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["log_imbalance"]
-
 log = logging.getLogger(__name__)
 
 

@@ -24,8 +24,6 @@ from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statisti
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["KeptRuns", "circumstances", "folder_beside", "name_of"]
-
 _LAYOUT = 6
 """Version of the entries' layout."""
 _KEY: Final = re.compile(r"[0-9a-f]{64}")

@@ -13,8 +13,6 @@ from gearidae.scene.validity_row import ATTRIBUTE, ValidityRow, holds_rows, rows
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["validity_of", "with_validity"]
-
 
 def with_validity(ds: xr.Dataset, scene: Scene) -> xr.Dataset:
     """Add the rows of `gearidae.studies.validity` to a dataset that is about to be written.

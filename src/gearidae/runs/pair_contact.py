@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from gearidae.scene.coating import Material
     from gearidae.scene.surface import Surface
 
-__all__ = ["PairContact", "pair_contact"]
-
 _OUTERMOST, _INNERMOST = 30.0, -900.0
 """Gaps to look at, in roughnesses: beyond 30 the tail of the heights is below 1e-195."""
 _BEGIN = 9.0

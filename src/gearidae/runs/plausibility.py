@@ -11,8 +11,6 @@ from gearidae.scene.prefixes import with_prefix
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["doubts", "log_doubts"]
-
 log = logging.getLogger(__name__)
 
 _PEAKS: Final = 6.0

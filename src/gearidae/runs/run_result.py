@@ -12,8 +12,6 @@ from gearidae.records import Solution
 from gearidae.runs.running import solve, unsolved
 from gearidae.scene import Scene
 
-__all__ = ["RunResult", "crashed", "leave", "solve_and_leave", "solve_group"]
-
 
 @dataclass(frozen=True, slots=True)
 class RunResult:

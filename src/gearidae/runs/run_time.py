@@ -19,8 +19,6 @@ from gearidae.runs.pair_contact import PairContact
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["RunTime", "run_time"]
-
 _STEPS_A_PERIOD: Final = 15.0
 """Steps for each oscillation on approaching flanks at a relative tolerance of 1e-6, turning points included."""
 _STEPS_A_PASSAGE: Final = 50.0

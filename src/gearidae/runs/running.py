@@ -16,8 +16,6 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["early_end", "prepare", "solve", "solve_to_end", "unsolved"]
-
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from gearidae.records import Block
     from gearidae.scene import Scene
 
-__all__ = ["simulate"]
-
 
 def simulate(
     scene: Scene,

@@ -13,8 +13,6 @@ from gearidae.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["started_attributes", "started_from"]
-
 
 def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene) -> engine.Start:
     """Read where a run is to go on from, and make sure that a scene can.

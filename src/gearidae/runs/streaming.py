@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from gearidae.records import Block, Solution, Statistics
     from gearidae.scene import Scene
 
-__all__ = ["stream"]
-
 _FREE_SPACE = "free some space and go on with --resume (resume=True)"
 
 

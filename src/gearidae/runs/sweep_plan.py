@@ -16,8 +16,6 @@ from gearidae.scene.keys import scene_value
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["SweepPlan", "plan_sweep"]
-
 MOST_RUNS: Final = 1_000_000
 """Runs of one sweep: their scenes take some gigabytes."""
 _TOO_MANY: Final = f"a sweep has {MOST_RUNS} runs at most"

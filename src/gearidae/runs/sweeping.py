@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["run_plan", "run_study", "sweep"]
-
 
 def sweep(
     scene: Scene,

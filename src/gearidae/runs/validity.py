@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["validity", "validity_attribute", "validity_rows"]
-
 _DENSEST: Final = 0.06
 """Random surfaces have a product N beta sigma of 0.03 to 0.06."""
 _SPACINGS: Final = 0.165e-9, 0.3e-9

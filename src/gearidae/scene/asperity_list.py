@@ -29,8 +29,6 @@ from gearidae.scene.units import from_text
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
-__all__ = ["FLANKS", "AsperityList", "ListedAsperities", "ListedAsperity", "check_asperities"]
-
 FLANKS: Final = ("drive", "coast")
 _LENGTHS: Final = {"arc": (-1.0, 1.0), "x": (-1.0, 1.0), "height": (-0.1, 0.1), "radius": (1e-10, 0.1)}
 _NUMBERS: Final = _LENGTHS | {"q": (0.0, 1.0), "q2": (0.0, 1.0), "tooth": (0.0, 9999.0)}

@@ -11,8 +11,6 @@ from gearidae.scene.literal import read_toml
 from gearidae.scene.scene import Scene
 from gearidae.scene.schedule_table import in_folder
 
-__all__ = ["load_case"]
-
 _LARGEST = 1_000_000  # bytes; a scene takes two thousand
 
 

@@ -33,8 +33,6 @@ from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.surface import Energy, Surface
 
-__all__ = ["MATERIAL_NAMES", "THICKEST", "Coating", "Material", "interface_shares", "materials_of"]
-
 MATERIAL_NAMES: Final = ("bare", "coated", "mixed")
 """Names of the materials that an interface may have, in the order of `Scene.materials`."""
 

@@ -28,8 +28,6 @@ from gearidae.scene.quantity import Quantity
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
-__all__ = ["MOST_PLACES", "FractionTable", "check_tables", "fraction_at", "met_teeth", "path_means"]
-
 MOST_PLACES: Final = 64
 """Places along a flank: steps of the solver follow each of them."""
 _MOST_TEETH: Final = 10_000

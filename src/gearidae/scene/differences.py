@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
-__all__ = ["MAY_CHANGE", "first_difference"]
-
 MAY_CHANGE: Final = ("name", "drive", "load", "coating", "initial", "run")
 """What may differ between a run and the one that it goes on from, whose end is its start."""
 

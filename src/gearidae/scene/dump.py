@@ -17,8 +17,6 @@ from gearidae.scene.quantity import Quantity
 from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.scene import Scene
 
-__all__ = ["dump_case", "dump_keys"]
-
 _LONGEST_BESIDE = 80
 """Characters of an entry that still has its comment beside it."""
 

@@ -12,8 +12,6 @@ from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Count, Phase, Quantity, Switch
 from gearidae.scene.tables import one_or_more
 
-__all__ = ["Gears", "Mesh", "StaticErrorHarmonic"]
-
 Inertia = Annotated[float, Quantity(unit="kg m^2", at_least=1e-40, at_most=1)]
 # the disc of one atom's thickness and the smallest base radius has 1e-38 kg m^2
 Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]

@@ -12,8 +12,6 @@ from pydantic_core import PydanticSerializationError
 
 from gearidae.errors import SceneError
 
-__all__ = ["Group", "did_you_mean", "shorten"]
-
 _LONGEST_VALUE = 60
 _NOT_NOTED: set[str] = set()
 """Shared by all tables, and never changed."""

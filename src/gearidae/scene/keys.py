@@ -19,8 +19,6 @@ from gearidae.scene.quantity import Count, Quantity
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
-__all__ = ["INSTEAD", "KeyInfo", "find_key", "keys_of", "put", "scene_value"]
-
 _LONGEST_KEY = 200
 INSTEAD: Final = {
     "gears.module": ("gears.pinion_base_radius",),

@@ -15,15 +15,6 @@ from gearidae.scene.coating import THICKEST
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
-__all__ = [
-    "MOST_PAIRS",
-    "check_gaps",
-    "check_reach",
-    "check_stretch",
-    "check_thickness",
-    "pairs_within_reach",
-]
-
 MOST_PAIRS: Final = 32
 """Tooth pairs of one flank whose history the engine keeps at a time."""
 WIDEST_BACKLASH: Final = 1e9

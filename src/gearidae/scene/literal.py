@@ -6,8 +6,6 @@ import re
 import tomllib
 from typing import Any, Final
 
-__all__ = ["literal", "read_toml"]
-
 _MOST_PARTS: Final = 32
 # The part before each dot of a key, bare or quoted; it begins where no other does, so that the search stays linear.
 _PART: Final = r"""(?:(?<![\w-])[\w-]+|"[^"\n]*"|'[^'\n]*')\s*\.\s*"""

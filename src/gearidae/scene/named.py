@@ -10,8 +10,6 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-__all__ = ["Named"]
-
 
 @dataclass(frozen=True, slots=True)
 class Named:

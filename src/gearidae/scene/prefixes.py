@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["PREFIXES", "with_prefix"]
-
 PREFIXES = {
     -24: "y",
     -21: "z",

@@ -15,8 +15,6 @@ from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.scene import Scene
 
-__all__ = ["PRESETS", "preset"]
-
 _Tables = Mapping[str, Mapping[str, Any]]
 
 _SILICON: Final[_Tables] = {

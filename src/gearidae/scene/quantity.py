@@ -19,8 +19,6 @@ from pydantic_core import CoreSchema, core_schema
 
 from gearidae.scene.units import from_text
 
-__all__ = ["Count", "Phase", "Quantity", "Sampling", "Switch"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Bounded:

@@ -14,8 +14,6 @@ from pydantic_core import CoreSchema, core_schema
 
 from gearidae.scene.quantity import Quantity
 
-__all__ = ["InRoughnesses", "Length"]
-
 _UNIT: Final = "sigma"
 
 

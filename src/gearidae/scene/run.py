@@ -13,8 +13,6 @@ from gearidae.scene.knots import Time
 from gearidae.scene.quantity import Count, Quantity, Sampling, Switch
 from gearidae.scene.roughnesses import Length
 
-__all__ = ["Initial", "Roller", "Run"]
-
 MOST_SAMPLES: Final = 100_000_000
 MOST_TURNS: Final = 1e9
 MOST_CHECKPOINTS: Final = 10_000

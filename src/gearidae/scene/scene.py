@@ -24,8 +24,6 @@ from gearidae.scene.strip import check_population
 from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.torque import Drive, Load
 
-__all__ = ["Scene", "describe_key", "describe_keys"]
-
 _GEAR_TABLES = ("gears", "mesh", "drive", "load", "initial")
 _MOST_PLACES = 20_000  # on all teeth of the pinion: exposures are part of every checkpoint
 _NOTHING_IF_EMPTY = (

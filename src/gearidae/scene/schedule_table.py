@@ -25,8 +25,6 @@ from gearidae.scene.tables import MOST_KNOTS
 from gearidae.scene.text_table import column_of, listed, split_unit
 from gearidae.scene.units import from_text
 
-__all__ = ["in_folder", "pack_knots", "read_schedule"]
-
 _KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
 _SOURCES: Final = ("file", "data", "knots", "packed")
 _LARGEST: Final = 50_000_000  # bytes of a file

@@ -9,8 +9,6 @@ from pydantic.json_schema import GenerateJsonSchema
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
-__all__ = ["DIALECT", "json_schema"]
-
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 _GEAR_TABLES = ("gears", "mesh", "drive", "initial")

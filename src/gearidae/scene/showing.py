@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from functools import singledispatch
 
-__all__ = ["as_html", "as_line"]
-
 
 @singledispatch
 def as_line(thing: object) -> str:

@@ -12,8 +12,6 @@ from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.scene import Scene, describe_key
 from gearidae.scene.showing import as_html, as_line
 
-__all__ = ["differences", "flat", "nearest_preset", "value_text"]
-
 _NEAR: Final = 12
 """Keys in which a scene may differ from a preset that it is compared with."""
 _NAMED: Final = 3

@@ -12,8 +12,6 @@ from gearidae.mesh.involute import curvature_radii, flank_arc
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
-__all__ = ["check_population", "flank_strip"]
-
 BEYOND: Final = 1e-6
 """Length of the strip beyond both ends of the path of contact [m], or to either side of a roller's middle; more where
 asperities that stand so high and so far away touch all the same."""

@@ -13,8 +13,6 @@ from gearidae.scene.group import Group
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Count, Quantity
 
-__all__ = ["Contact", "Energy", "Surface"]
-
 _LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
 

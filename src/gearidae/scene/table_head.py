@@ -11,8 +11,6 @@ from typing import Any, Final, NamedTuple
 
 from gearidae.scene.text_table import TextTable, as_number, cells_of, check_regular, split_unit
 
-__all__ = ["open_table"]
-
 _LONGEST_LINE: Final = 2**22
 _SAMPLE: Final = 2**16  # bytes from which the encoding is recognised
 _MOST_ABOVE: Final = 100  # lines in which the headings are looked for

@@ -11,16 +11,6 @@ from pydantic import AfterValidator, BeforeValidator
 
 from gearidae.scene.group import Group, shorten
 
-__all__ = [
-    "CLOSEST_KNOTS",
-    "MOST_KNOTS",
-    "MOST_TABLES",
-    "check_increasing",
-    "increasing",
-    "one_or_more",
-    "pairs",
-]
-
 MOST_TABLES: Final = 1_000
 """Harmonics of one torque, or of the static error: all of them are summed in every evaluation of the residual."""
 MOST_KNOTS: Final = 100_000

@@ -21,8 +21,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TextTable", "as_number", "cells_of", "check_regular", "column_of", "listed", "split_unit"]
-
 _SMALL: Final = 2**22
 """Bytes of a file below which it is read row by row: importing pandas takes longer."""
 _MISSING: Final = ("", "nan", "na", "n/a", "null", "-", "--", "---")

@@ -22,8 +22,6 @@ from gearidae.scene.tables import increasing, one_or_more, pairs
 from gearidae.scene.units import to_si
 from gearidae.torques import Parameter, torque_law, torque_names
 
-__all__ = ["Drive", "Harmonic", "Law", "Load"]
-
 _SCHEDULE = "torque over time, added to the constant: [time, torque] knots, or a table with columns"
 
 

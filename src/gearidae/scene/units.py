@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pint
 
-__all__ = ["from_text", "to_si"]
-
 _NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 # Only names, products, quotients and one-digit powers reach pint: it would also work out 9**9**9.
 _UNIT = re.compile(r"(?:[^\W\d_]|[ _*/()%])*")

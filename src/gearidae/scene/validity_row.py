@@ -8,17 +8,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-__all__ = [
-    "ATTRIBUTE",
-    "EXPECTED_ASPERITIES",
-    "ValidityRow",
-    "contact_subject",
-    "holds_rows",
-    "mean_note",
-    "rows_from_json",
-    "rows_to_json",
-]
-
 ATTRIBUTE = "validity"
 """Name of the attribute."""
 EXPECTED_ASPERITIES = "expected_asperities"

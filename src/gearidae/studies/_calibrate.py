@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from gearidae.runs.kept_runs import KeptRuns
     from gearidae.scene import Scene
 
-__all__ = ["calibrate"]
-
 METHODS: Final = ("auto", "grid", "emcee")
 
 

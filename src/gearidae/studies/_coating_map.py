@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from gearidae.runs.sweep_plan import SweepPlan
     from gearidae.scene import Scene
 
-__all__ = ["coating_map"]
-
 _FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
 _FRACTION = "coating.sam_fraction"
 _TORQUE = "drive.torque"

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
 
-__all__ = ["ensemble", "figure_names"]
-
 
 def ensemble(
     scene: Scene,

@@ -35,8 +35,6 @@ from gearidae.wear import LossLaw
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["life"]
-
 _PLACES: Final = 8
 
 

@@ -38,8 +38,6 @@ from gearidae.wear import LossLaw
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["lives"]
-
 _SETTINGS: Final = (
     "passages",
     "fraction",

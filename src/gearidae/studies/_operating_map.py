@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
 
-__all__ = ["operating_map"]
-
-
 _OUTCOME = {
     "long_name": "what the gear does",
     "units": "1",

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
 
-__all__ = ["posterior_draws", "predict"]
-
 
 def predict(
     scene: Scene,

@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
 
-__all__ = ["Sensitivity", "sensitivity"]
-
 Figure = Callable[["xr.Dataset"], float]
 
 _LARGEST_STEP: Final = 0.04

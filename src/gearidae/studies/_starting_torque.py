@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import Scene
 
-__all__ = ["starting_torque", "static_starting_torque"]
-
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
 _LOWEST = 1e-3
 """Default lower end of the search, as a part of the scene's torque."""

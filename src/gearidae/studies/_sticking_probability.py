@@ -11,8 +11,6 @@ import xarray as xr
 from gearidae.archive.dataset import dimension_names
 from gearidae.errors import SceneError
 
-__all__ = ["drawn_keys", "sticking_probability"]
-
 _PER_BIN: Final = 25
 """Members that a bin has at least, by default: a probability of one half is then known to 0.1."""
 _MOST_BINS: Final = 20

@@ -34,8 +34,6 @@ from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["sticking_threshold"]
-
 _PARTS = 4
 """Parts into which a bracket is divided at a time, however many runs go side by side: results do not depend on that."""
 _WIDTH = 1.0 / 256.0

@@ -11,8 +11,6 @@ import xarray as xr
 from gearidae.arrays import Floats, Ints
 from gearidae.errors import SceneError
 
-__all__ = ["surviving_share"]
-
 
 def surviving_share(ds: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
     """Estimate the share of gears that still turn, by Kaplan and Meier.

@@ -31,8 +31,6 @@ from gearidae.studies.equilibrium import MaterialLaw, material_laws
 from gearidae.studies.tooth_record import ToothRecord, joined_heights
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
-__all__ = ["tooth_contacts"]
-
 Integers = NDArray[np.int64]
 
 AGREEMENT = 0.1

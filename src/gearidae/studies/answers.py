@@ -20,8 +20,6 @@ from gearidae.archive.select import scene_of
 from gearidae.scene import describe_key
 from gearidae.scene.prefixes import with_prefix
 
-__all__ = ["Answer", "answer"]
-
 Rows: TypeAlias = Iterator[tuple[str, str, str]]
 
 _FIGURES: Final = (

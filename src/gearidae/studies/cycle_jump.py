@@ -17,8 +17,6 @@ import numpy as np
 
 from gearidae.arrays import Floats
 
-__all__ = ["Direct", "GearStuck", "Life", "jump"]
-
 _FIRST: Final = 0.01
 """Change of the state in the first step."""
 _ABSOLUTE: Final = 0.1

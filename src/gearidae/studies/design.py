@@ -19,8 +19,6 @@ from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import MOST_RUNS
 from gearidae.studies.distributions import Distribution
 
-__all__ = ["DESIGNS", "Design", "check_design", "pick_freeze_design", "plain_design"]
-
 DESIGNS = ("sobol", "random")
 _MOST_DIMENSIONS = 21_201
 """Of Sobol' sequences whose direction numbers scipy has."""

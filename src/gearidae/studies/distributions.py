@@ -19,8 +19,6 @@ from gearidae.scene.units import from_text
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["KINDS", "Distribution", "read_distributions"]
-
 _CALL: Final = re.compile(r"\s*(\w+)\s*\((.*)\)\s*", re.DOTALL)
 _FIXED: Final = ("run.duration", "run.samples")
 _EDGE: Final = 2.0**-53

@@ -32,18 +32,6 @@ from gearidae.runs.estimates import mean_drive_torque, resting_gap
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = [
-    "MaterialLaw",
-    "PairLaw",
-    "contact_resonance",
-    "leaving_radii",
-    "material_laws",
-    "natural_frequency",
-    "nearest_gap",
-    "pair_law",
-    "settled_gap",
-]
-
 PairLaw = Callable[..., float]
 
 

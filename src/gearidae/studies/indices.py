@@ -10,8 +10,6 @@ from scipy.stats import sobol_indices
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 
-__all__ = ["Indices", "indices_of"]
-
 RESAMPLES: Final = 200
 """Bootstrap samples of rows: the standard deviation of so many is known to 5 %."""
 FEWEST: Final = 8

@@ -16,8 +16,6 @@ from gearidae.studies.members import drawn_members
 from gearidae.wear import LossLaw, loss_law
 from gearidae.wear.registry import loss_law_units
 
-__all__ = ["drawn_laws", "law_of_medians", "parameter_units"]
-
 _LAW: Final = "law."
 
 

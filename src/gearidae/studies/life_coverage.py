@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import Coating, Scene
 
-__all__ = ["RESOLUTIONS", "Coverage", "coverage_of"]
-
 RESOLUTIONS = ("uniform", "place", "tooth")
 
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
     from gearidae.studies.life_rates import StateResult
 
-__all__ = ["life_dataset"]
-
 _EXPOSURES = {
     "contacts": ("m-2", "asperity contacts made on coated flank in a passage, per area of it"),
     "adhesion_work": ("J m-2", "energy lost to adhesion on coated flank in a passage, per area of it"),

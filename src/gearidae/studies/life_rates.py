@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
     from gearidae.wear import Exposure
 
-__all__ = ["MOST_STATES", "DirectCycles", "StateResult", "Windows"]
-
 MOST_STATES: Final = 1000
 """Largest number of states whose rate is computed."""
 _EVALUATIONS: Final = 3

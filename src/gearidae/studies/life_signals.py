@@ -16,8 +16,6 @@ from gearidae.studies.products import require
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["assess_life", "life_signal", "signal_of"]
-
 SAMPLES: Final = 30_001
 """Of a signal, where the scene asks for none."""
 _ASSESSED: Final = {

@@ -26,20 +26,6 @@ if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import Scene
 
-__all__ = [
-    "Cycles",
-    "Window",
-    "gained",
-    "part_of",
-    "run_window",
-    "solved",
-    "stands",
-    "steady_exposures",
-    "steady_window",
-    "window_scene",
-    "with_exposures",
-]
-
 _PATIENCE: Final = 4.0
 """Time that each part of a window gets, over that of its cycles at the steady speed."""
 _MOST_BLOCKS: Final = 8

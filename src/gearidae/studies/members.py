@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
     from gearidae.studies.distributions import Distribution
 
-__all__ = ["along_members", "drawn_members", "member_plan", "names_of"]
-
 Made = TypeVar("Made")
 
 STICKS = {

@@ -14,8 +14,6 @@ from gearidae.scene.table_head import open_table
 from gearidae.scene.text_table import check_regular
 from gearidae.studies.observations import Observation
 
-__all__ = ["observation_of", "read_observations"]
-
 _OWN: Final = ("of", "value", "uncertainty", "misjudged")
 """What is said of an observation beside its conditions."""
 _LARGEST: Final = 10_000_000  # bytes

@@ -17,8 +17,6 @@ from gearidae.scene.units import from_text
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["RING", "STICKS", "Observation"]
-
 Model = Callable[["Scene"], float]
 
 STICKS: Final = "sticks"

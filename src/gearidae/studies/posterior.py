@@ -13,8 +13,6 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.studies.distributions import Distribution
 
-__all__ = ["LEVELS", "grid_posterior", "sampled_posterior", "summary"]
-
 LogLikelihood = Callable[[Floats], Floats]
 """Of points, shape (n, keys); shape (n,)."""
 

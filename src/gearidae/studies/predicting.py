@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
 
-__all__ = ["Predictor"]
-
 _SAMPLED: Final = ("extremes", "gear_speed", "events")
 _ONE_TIME_AXIS: Final = ("run.duration", "run.samples")
 _AT_A_TIME: Final = 64

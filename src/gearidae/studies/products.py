@@ -16,17 +16,6 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
-__all__ = [
-    "calibrated_keys",
-    "kind_of",
-    "open_life",
-    "open_lives",
-    "open_map",
-    "open_posterior",
-    "open_product",
-    "require",
-]
-
 _HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
 """How netCDF files begin, those of version 4 and the older ones."""
 

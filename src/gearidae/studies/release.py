@@ -32,8 +32,6 @@ from gearidae.studies.equilibrium import leaving_radii, nearest_gap, pair_law, s
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["holding_forces"]
-
 _STEPS = 60
 """Places along the tip at which the pull is evaluated."""
 _REACH = 4.0

@@ -9,8 +9,6 @@ from gearidae.errors import SceneError
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-__all__ = ["require_constant", "require_gears"]
-
 
 def require_gears(scene: Scene) -> None:
     """Refuse anything but a scene with gears.

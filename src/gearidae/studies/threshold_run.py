@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import Scene
 
-__all__ = ["ThresholdRun", "run_until", "value_of"]
-
 _LONGEST = 8.0
 """A slow gear gets up to this many times the time; what it has not passed then counts as not passed."""
 

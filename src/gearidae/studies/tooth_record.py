@@ -26,8 +26,6 @@ from gearidae.mesh.involute import separation
 from gearidae.records import EventKind, Flank
 from gearidae.scene import Scene
 
-__all__ = ["ToothRecord", "joined_heights"]
-
 Integers = NDArray[np.int64]
 
 

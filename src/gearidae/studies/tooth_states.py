@@ -7,8 +7,6 @@ from enum import IntEnum
 
 from gearidae.records import Flank
 
-__all__ = ["ContactState", "MeshState", "ToothContact"]
-
 
 class ContactState(IntEnum):
     """State of the asperities in a pair of teeth."""

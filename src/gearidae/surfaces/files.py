@@ -18,8 +18,6 @@ from gearidae.scene.table_head import open_table
 from gearidae.scene.text_table import check_regular
 from gearidae.scene.units import from_text
 
-__all__ = ["Scan", "read_lines", "read_scan"]
-
 _TEXTS = (".csv", ".txt", ".dat")
 _LARGEST = 2**32  # bytes
 _MOST_POINTS = 100_000_000

@@ -16,8 +16,6 @@ from scipy import fft
 
 from gearidae.arrays import Floats
 
-__all__ = ["POINTS_PER_WAVE", "Field", "band_limited", "cosine_sum", "grid_points"]
-
 POINTS_PER_WAVE = 8
 """Points of the grid along one cut-off wavelength."""
 

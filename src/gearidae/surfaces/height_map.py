@@ -14,8 +14,6 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.surfaces.lines import aligned_rows, line_noise
 
-__all__ = ["FEWEST_POINTS", "HeightMap", "height_map"]
-
 Flags = NDArray[np.bool_]
 
 FEWEST_POINTS = 64

@@ -10,8 +10,6 @@ import numpy as np
 
 from gearidae.arrays import Floats
 
-__all__ = ["aligned_rows", "line_noise"]
-
 _STRONGER = 2.5
 """Line noise makes the medians' variance so many times that in the other direction: of isotropic maps 0.4 to 1.5."""
 _WHITE = 1.8

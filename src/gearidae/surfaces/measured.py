@@ -19,8 +19,6 @@ from gearidae.surfaces.statistics import METHODS, statistics, usual_cutoffs
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["MeasuredSurface", "surface_from"]
-
 _DIGITS = 4
 """Significant digits of the numbers that go into a scene: sampling leaves two or three."""
 _STEEPEST = 10.0

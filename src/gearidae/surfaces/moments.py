@@ -15,8 +15,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-__all__ = ["Asperities", "from_moments"]
-
 _HEIGHT_FACTOR = 0.8968
 """Nayak's variance of the summit heights is (1 - 0.8968/alpha) m0."""
 

@@ -11,8 +11,6 @@ from gearidae.scene.prefixes import with_prefix
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["remarks"]
-
 _BANDWIDTHS = (1.50, 1.75, 2.70, 9.44)
 _GAUSSIAN_SKEWNESS = (0.49, 0.27, 0.09, -0.02)
 _GAUSSIAN_KURTOSIS = (0.22, 0.08, 0.06, 0.03)

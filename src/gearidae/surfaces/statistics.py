@@ -15,8 +15,6 @@ from gearidae.surfaces.height_map import HeightMap
 from gearidae.surfaces.moments import Asperities, from_moments
 from gearidae.surfaces.summits import find_summits
 
-__all__ = ["METHODS", "allowed_cutoffs", "statistics", "usual_cutoffs"]
-
 METHODS = ("summits", "moments")
 """Ways to the asperities: counted and measured one by one, or from the spectral moments of a Gaussian surface."""
 

@@ -11,8 +11,6 @@ from scipy import ndimage
 from gearidae.arrays import Floats
 from gearidae.surfaces.filtering import Field
 
-__all__ = ["Summits", "find_summits"]
-
 _NEIGHBOURS = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], dtype=bool)
 
 

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 
-__all__ = ["gaussian_map"]
-
 
 def gaussian_map(
     points: int,

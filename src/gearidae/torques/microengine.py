@@ -10,8 +10,6 @@ import math
 
 from gearidae.torques.registry import Parameter, Parameters, register_torque
 
-__all__ = ["microengine"]
-
 _FIRST_KNOT = 5
 """Where the knots of the frequency begin: the last parameter."""
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from gearidae.torques.registry import Parameters, register_torque
 
-__all__ = ["motor"]
-
 
 @register_torque("motor", parameters=2)
 def motor(t: float, speed: float, p: Parameters) -> float:

@@ -18,17 +18,6 @@ from numpy.typing import NDArray
 from gearidae.errors import SceneError
 from gearidae.registry import Registry
 
-__all__ = [
-    "MOST_PARAMETERS",
-    "Parameter",
-    "Parameters",
-    "TorqueLaw",
-    "register_torque",
-    "torque_law",
-    "torque_names",
-    "unregister_torque",
-]
-
 Parameters: TypeAlias = NDArray[np.float64]
 Law = TypeVar("Law", bound=Callable[..., Any])
 

@@ -9,8 +9,6 @@ from gearidae.arrays import Floats
 from gearidae.wear.base import Exposure, LossLaw, parameter
 from gearidae.wear.registry import register_loss
 
-__all__ = ["AdhesionWork"]
-
 
 @register_loss
 @dataclass(frozen=True)

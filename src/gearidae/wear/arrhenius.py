@@ -11,8 +11,6 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.wear.base import Exposure, LossLaw, parameter
 
-__all__ = ["Arrhenius"]
-
 BOLTZMANN = 1.380649e-23
 """J/K, exact (SI)."""
 

@@ -10,8 +10,6 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.quantity import Quantity
 
-__all__ = ["Exposure", "LossLaw", "parameter"]
-
 
 @dataclass(frozen=True, slots=True)
 class Exposure:

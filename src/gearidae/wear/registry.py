@@ -9,8 +9,6 @@ from gearidae.errors import SceneError
 from gearidae.registry import Registry
 from gearidae.wear.base import LossLaw
 
-__all__ = ["loss_law", "loss_law_names", "loss_law_units", "register_loss", "unregister_loss"]
-
 Law = TypeVar("Law", bound=type[LossLaw])
 
 _LAWS: Final = Registry[type[LossLaw]]("gearidae.wear", "law", "loss law")

@@ -11,8 +11,6 @@ from gearidae.arrays import Floats
 from gearidae.wear.base import Exposure, LossLaw, parameter
 from gearidae.wear.registry import register_loss
 
-__all__ = ["SlidingWork"]
-
 
 @register_loss
 @dataclass(frozen=True)

@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CODE_ATTRIBUTES", "Outcome", "VerdictCode", "sticking", "verdict_codes"]
-
 
 class VerdictCode(IntEnum):
     """Verdict of a run, as stored in ``verdict_code``; `gearidae.outcomes` says what the words mean."""

@@ -12,16 +12,6 @@ from numpy.typing import NDArray
 from gearidae.records import EventKind, Extremes, Solution
 from gearidae.scene import Scene
 
-__all__ = [
-    "BACK_FROM",
-    "IRREGULAR_ABOVE",
-    "gear_verdict",
-    "in_touch",
-    "is_scheduled",
-    "roller_verdict",
-    "verdict_of",
-]
-
 IRREGULAR_ABOVE = 0.25
 """A gear turns irregularly if its speed both falls and rises again by more than this fraction of its mean."""
 BACK_FROM = 0.5

@@ -20,8 +20,6 @@ from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of, swept_dims
 from gearidae.records import RUN_PARTS, EventKind
 
-__all__ = ["START_UP", "GearOutcome", "RollerOutcome", "outcomes"]
-
 START_UP = RUN_PARTS[0]
 """Share of the run in which the teeth may still bounce from how they were set down."""
 

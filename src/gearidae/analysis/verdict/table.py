@@ -9,8 +9,6 @@ from typing import Any, TypeVar
 
 from gearidae.scene.prefixes import with_prefix
 
-__all__ = ["Outcomes", "Shown"]
-
 T = TypeVar("T")
 
 _COLUMNS = {

@@ -29,8 +29,6 @@ from gearidae.contact.kernels.layout import (
     MODE_TABLE,
 )
 
-__all__ = ["B_JOINED", "B_PIECES", "branch_length", "branch_value", "set_branch"]
-
 B_SHARE: Final = 0  # 1 / D
 B_PIECES: Final = 1
 B_END: Final = 2  # t at full stretch

@@ -13,8 +13,6 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.layout import GAP_LOW, STRETCH_HIGH, Kernel
 from gearidae.contact.psi import psi_derivatives
 
-__all__ = ["kernel_at", "kernel_at_knots"]
-
 
 def kernel_at_knots(kernel: Kernel, knots: Floats) -> Floats:
     """Density with three derivatives at a few places, each worked out anew, shape (4, n)."""

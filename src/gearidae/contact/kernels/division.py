@@ -15,8 +15,6 @@ from gearidae.asperities import AsperityLaw
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.layout import H_ABOVE, H_BEFORE, H_BELOW, H_KINK, H_PIECES
 
-__all__ = ["Division", "place_above", "place_of"]
-
 _NO_KINK = 2.0  # no v is as large
 _LEAST_ABOVE = 4  # pieces above a kink: one alone would be off by 1e-7 where the kink is near joining
 

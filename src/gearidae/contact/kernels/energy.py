@@ -66,8 +66,6 @@ from gearidae.contact.kernels.layout import (
 )
 from gearidae.contact.kernels.pieces import hermite_matrix, hermite_pieces
 
-__all__ = ["energy_table", "joining_energy", "loading_pieces", "number_table", "stretched_energy"]
-
 _GAUSS: Final = 16
 
 

@@ -30,18 +30,6 @@ from gearidae.contact.kernels.layout import (
     N_LOADING,
 )
 
-__all__ = [
-    "coefficients",
-    "integrated_value",
-    "integrated_work",
-    "law_value",
-    "loading_value",
-    "mixed_value",
-    "power8",
-    "stretched_value",
-    "value_and_slope",
-]
-
 Three: TypeAlias = tuple[float, float, float]
 Eight: TypeAlias = tuple[float, float, float, float, float, float, float, float]
 

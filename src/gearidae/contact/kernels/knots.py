@@ -22,8 +22,6 @@ from gearidae.contact.gauss import gauss_rule
 from gearidae.contact.kernels.densities import kernel_at
 from gearidae.contact.kernels.layout import KNOTS_PER_SIGMA, Kernel
 
-__all__ = ["loading_derivatives", "stretched_derivatives"]
-
 PANEL: Final = 0.5
 """Longest panel of offsets, in roughnesses."""
 PLACES: Final = 16

@@ -14,14 +14,6 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-__all__ = [
-    "LANES",
-    "add_lanes",
-    "eight_powers",
-    "product_of_lanes",
-    "sum_rows",
-]
-
 LANES = 8
 
 

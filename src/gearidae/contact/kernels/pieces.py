@@ -14,8 +14,6 @@ from gearidae.contact.kernels.division import Division
 from gearidae.contact.kernels.knots import stretched_derivatives
 from gearidae.contact.kernels.layout import DEGREE, GAP_HIGH, GAP_LOW, KNOTS_PER_SIGMA, STRETCH_HIGH, Kernel
 
-__all__ = ["asperity_pieces", "hermite_matrix", "hermite_pieces", "kernel_table", "partial_pieces"]
-
 
 def _scaled(x: Floats, derivatives: Floats, positive: bool) -> Floats:
     """Derivatives of ``exp(x^2/2) f`` from those of f (first axis), on the side x > 0; f itself on the other."""

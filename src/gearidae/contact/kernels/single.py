@@ -20,8 +20,6 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import coefficients, power8, value_and_slope
 from gearidae.contact.kernels.layout import DEGREE
 
-__all__ = ["asperity_energy", "asperity_table", "asperity_value"]
-
 A_FOLD: Final = 0  # displacement at detachment,
 A_START: Final = 1  # and where the pieces in log(1 + w/b) begin: there, or at a kink
 A_BELOW: Final = 2  # pieces below the kink, and in a unit of w there

@@ -41,8 +41,6 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import EMPTY, Floats, Model
 
-__all__ = ["FINISH", "PREDICT", "SETTLE", "begin_deflections", "pair_deflections", "predict", "settle_pair"]
-
 SETTLE: Final = 0  # what to do with a pair's deflections: solve for them,
 PREDICT: Final = 1  # only interpolate or extrapolate them,
 FINISH: Final = 2  # or set them at the end of a step, and note them

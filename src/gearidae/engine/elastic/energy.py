@@ -44,14 +44,6 @@ from gearidae.engine.elastic.rows import (
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.coverage import Shares, noted_shares, potential_of, potentials_of
 
-__all__ = [
-    "nodes_energies",
-    "nodes_length_force",
-    "nodes_losses",
-    "nodes_number",
-    "nodes_stored",
-]
-
 
 @compiled_once(ELASTIC, makes_arrays=True)
 def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float, length: float) -> float:

@@ -20,8 +20,6 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 
-__all__ = ["book_points", "follow_nodes", "init_nodes", "join_nodes"]
-
 _MOVED = 1e-5  # roughnesses; over less than this the share of a node in the motion is undefined
 _LARGEST_SHARE = 4.0
 """Largest share of a node in the motion of its pair."""

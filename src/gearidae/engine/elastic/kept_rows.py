@@ -23,8 +23,6 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 
-__all__ = ["KEPT_ROWS", "kept_rows", "restore_rows"]
-
 KEPT_ROWS: Final = ("gap", "share", "joined")
 """Names of the kept rows, part of a checkpoint's layout."""
 

@@ -23,17 +23,6 @@ from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_value, loading_t
 from gearidae.engine.elastic.rows import FINER, point_count
 from gearidae.scene import Material, Scene
 
-__all__ = [
-    "DEPTH_HIGH",
-    "NODES",
-    "RIGID_DEFLECTION",
-    "ContactBounds",
-    "NodeGrid",
-    "deepest_gap",
-    "node_grid",
-    "rigid_limit",
-]
-
 NODES = 12
 """Nodes on one side of a contact, the middle included.
 

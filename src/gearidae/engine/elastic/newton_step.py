@@ -32,8 +32,6 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import Floats, Model
 
-__all__ = ["FOLLOW", "STEP", "SUMS", "equation_space", "influence_space", "newton_step"]
-
 STEP: Final = 0  # vectors in the scratch space: the step, in the end, to be taken off the deflections,
 FOLLOW: Final = 1  # slopes of the deflections in the pair's gap,
 SUMS: Final = 2  # slopes of the nodes' loads in the pair's gap,

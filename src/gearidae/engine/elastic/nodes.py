@@ -69,20 +69,6 @@ from gearidae.engine.elastic.rows import (
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 from gearidae.engine.pairs.coverage import loading_of, noted_shares
 
-__all__ = [
-    "farthest_joined",
-    "force_of_nodes",
-    "influence",
-    "mark_out_of_reach",
-    "middle_gap",
-    "node_force",
-    "node_rates",
-    "node_residual",
-    "pressure_shares",
-    "stiffness_matrix",
-    "weighed_stiffness",
-]
-
 _CLOSING, _OPENING, _TURNED = 0, 1, 2
 _BEGUN = 1e-9  # roughnesses of stretch
 _NOTHING = 6.5  # standard deviations: beyond, heights have 1e-9 of the density in the middle

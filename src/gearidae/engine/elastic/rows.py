@@ -16,48 +16,6 @@ from gearidae.contact.bulk import STENCIL
 from gearidae.contact.kernels.lanes import LANES, add_lanes, product_of_lanes
 from gearidae.engine.model.state import MATERIALS, ROLLER, Floats, Model
 
-__all__ = [
-    "ADHERED_ENERGY",
-    "BEFORE",
-    "BEFORE_TANGENT",
-    "DEFLECTION",
-    "FINER",
-    "GAP",
-    "JOINED",
-    "LAST",
-    "LAST_TANGENT",
-    "MATRICES",
-    "NODE_ROWS",
-    "POINT_ADDED",
-    "POINT_GAPS",
-    "POINT_TURNS",
-    "PRESSURE",
-    "SHARE",
-    "SLOPE",
-    "STIFFNESS",
-    "TANGENT",
-    "add_to_nodes",
-    "first_node",
-    "first_unknown",
-    "influence_powers",
-    "joined_at",
-    "node_profile",
-    "node_weights",
-    "padded",
-    "point_count",
-    "point_gaps",
-    "point_profile",
-    "point_weights",
-    "profile_of",
-    "row",
-    "row_numbers",
-    "row_of",
-    "scratch",
-    "scratch_size",
-    "shares_of_nodes",
-    "to_points",
-]
-
 FINER: Final = 4
 """Steps from point to point in one from node to node."""
 

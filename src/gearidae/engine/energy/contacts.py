@@ -22,8 +22,6 @@ from gearidae.engine.pairs.tooth_pairs import (
 )
 from gearidae.engine.population.forces import population_energy
 
-__all__ = ["free_energies", "joining_losses", "stored_energies", "stored_energy"]
-
 
 @compiled_once(SOLVER)
 def stored_energy(m: Model, y: Floats) -> tuple[float, float]:

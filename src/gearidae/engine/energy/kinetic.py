@@ -6,8 +6,6 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.tooth_pairs import static_error
 
-__all__ = ["kinetic_energy"]
-
 
 @compiled
 def kinetic_energy(m: Model, y: Floats) -> float:

@@ -22,8 +22,6 @@ from gearidae.engine.pairs.coverage import NONE, Shares, note_shares, noted_shar
 from gearidae.engine.pairs.lengths import length_and_rates, weighed_length
 from gearidae.engine.pairs.tooth_pairs import history_of, pairs_on_path
 
-__all__ = ["radius_force", "radius_power"]
-
 
 @compiled
 def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, float]:

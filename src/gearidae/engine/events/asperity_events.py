@@ -34,15 +34,6 @@ from gearidae.engine.population.layout import (
 from gearidae.engine.population.spots import Pair, overlap_slopes, pair_now, spot_at
 from gearidae.records import EventKind
 
-__all__ = [
-    "asperity_guard",
-    "first_dip",
-    "flip_asperities",
-    "join_at_start",
-    "note_step_start",
-    "record_flips",
-]
-
 _ONSET, _DETACHMENT = float(EventKind.ASPERITY_ONSET), float(EventKind.ASPERITY_DETACHMENT)
 _PAIR_ONSET, _PAIR_SEPARATION = float(EventKind.ONSET), float(EventKind.SEPARATION)
 _FLANK_CHANGE: Final = float(EventKind.FLANK_CHANGE)

@@ -9,8 +9,6 @@ from gearidae.engine.model.state import Floats, Model, W
 from gearidae.engine.motion.dry_limit import NO_FORCE, dry_limit, push_on_gear
 from gearidae.records import EventKind, Flank
 
-__all__ = ["dry_guard", "note_slip", "stick_or_slip"]
-
 _STICK, _SLIP, _NO_FLANK = float(EventKind.STICK), float(EventKind.SLIP), float(Flank.NONE)
 
 

@@ -28,8 +28,6 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_near,
 )
 
-__all__ = ["ROOT", "STOP", "chatters", "guard", "handle_mesh"]
-
 LIGHT_EXITS = 4
 """Mesh exits without a deep contact after which elastic bodies are no longer needed."""
 

@@ -23,8 +23,6 @@ from gearidae.engine.pairs.tooth_pairs import (
 )
 from gearidae.engine.population.candidates import forget
 
-__all__ = ["accept", "begin"]
-
 
 @compiled(inline=True)
 def accept(m: Model, t: float, y: Floats) -> None:

@@ -11,17 +11,6 @@ from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model, W
 from gearidae.engine.pairs.tooth_pairs import gap_and_rate
 from gearidae.records import EventKind
 
-__all__ = [
-    "MARKS",
-    "cross_mark",
-    "crossed_mark",
-    "first_mark",
-    "mark_guard",
-    "outruns_relief",
-    "relief_step",
-    "set_marks",
-]
-
 _MESH_ENTRY, _MESH_EXIT = float(EventKind.MESH_ENTRY), float(EventKind.MESH_EXIT)
 MARKS: Final = 4
 """Kinds of marks in each pitch."""

@@ -16,8 +16,6 @@ from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import gap_and_rate, set_joined
 from gearidae.records import EventKind
 
-__all__ = ["PairEvent", "find_event", "newly_stretched", "pair_guard", "take_event"]
-
 _ONSET: Final = float(EventKind.ONSET)
 _SEPARATION: Final = float(EventKind.SEPARATION)
 _TURNING_POINT: Final = float(EventKind.TURNING_POINT)

@@ -7,8 +7,6 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model
 
-__all__ = ["EVENTS_AT_ONCE", "EVENT_NUMBERS", "record", "record_asperity"]
-
 EVENT_NUMBERS: Final = 6
 """Numbers of an event."""
 EVENTS_AT_ONCE: Final = 8 * 64 + 64

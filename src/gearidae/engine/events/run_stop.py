@@ -11,8 +11,6 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PHASE, STOPS, Floats, Model, W
 
-__all__ = ["arm_stop", "stop_guard"]
-
 _STICKS: Final = STOPS.index("sticks")
 
 

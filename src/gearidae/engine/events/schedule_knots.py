@@ -8,8 +8,6 @@ from gearidae.engine.model.state import SCHEDULES, Floats, Model
 from gearidae.engine.torques.schedule import enter_segment
 from gearidae.records import EventKind, Flank
 
-__all__ = ["keeps_checkpoint", "next_stop", "pass_knot"]
-
 _SCHEDULE_KNOT, _NO_FLANK = float(EventKind.SCHEDULE_KNOT), float(Flank.NONE)
 
 

@@ -63,18 +63,6 @@ from gearidae.engine.pairs.tooth_pairs import (
 )
 from gearidae.engine.torques.torque import is_constant, torque_force, torque_rate
 
-__all__ = [
-    "ENERGIES",
-    "begin",
-    "carry_balance",
-    "energies_at",
-    "finish",
-    "open_balance",
-    "resume",
-    "step",
-]
-
-
 ORDER: Final = 4
 """Order of the quadrature."""
 

@@ -16,8 +16,6 @@ from gearidae.engine.followers.extremes import follow as extremes
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import GEARS, Floats, Model, W
 
-__all__ = ["begin", "event", "finish", "look_at", "resume", "step"]
-
 
 @compiled
 def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:

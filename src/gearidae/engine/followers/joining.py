@@ -20,8 +20,6 @@ from gearidae.engine.pairs.coverage import NONE, WHOLE, Shares, path_position, s
 from gearidae.engine.pairs.lengths import weighed_length
 from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pairs_on_path
 
-__all__ = ["begin", "event", "joining_lag", "resume", "step"]
-
 
 @compiled(inline=True)
 def begin(m: Model, t: float) -> None:

@@ -29,16 +29,6 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import MOST_ORDERS, MOTION, Floats, Record
 
-__all__ = [
-    "begin",
-    "between",
-    "keep",
-    "order_error_sq",
-    "rates_at_end",
-    "set_differences",
-    "weighed_squares",
-]
-
 _points, _weights = np.polynomial.legendre.leggauss(5)  # exact for the polynomials of degree nine
 _X0, _X1, _X2, _X3, _X4 = (0.5 + 0.5 * float(x) for x in _points)
 _W0, _W1, _W2, _W3, _W4 = (0.5 * float(w) for w in _weights)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 
-__all__ = ["cubic", "cubic_slope", "quintic", "vertex"]
-
 
 @compiled
 def cubic(s: float, h: float, f0: float, rate0: float, f1: float, rate1: float) -> float:

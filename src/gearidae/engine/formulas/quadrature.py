@@ -6,17 +6,6 @@ from typing import NamedTuple
 
 from gearidae.compiled import compiled
 
-__all__ = [
-    "Ends",
-    "correction",
-    "error_estimate",
-    "error_of_square",
-    "integral",
-    "integral_of_cube",
-    "integral_of_square",
-    "torque_work",
-]
-
 
 class Ends(NamedTuple):
     """A quantity and its rate at the beginning and at the end of an interval."""

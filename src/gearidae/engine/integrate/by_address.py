@@ -15,16 +15,6 @@ from gearidae.engine.model.state import Floats
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.residual import jacobian, residual
 
-__all__ = [
-    "finish_step_at",
-    "first_dip_at",
-    "guard_at",
-    "jacobian_at",
-    "note_step_start_at",
-    "observe_at",
-    "residual_at",
-]
-
 
 @compiled
 def residual_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:

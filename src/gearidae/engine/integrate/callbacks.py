@@ -17,8 +17,6 @@ from gearidae.engine.sundials import memory as ptr
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import Functions
 
-__all__ = ["callbacks"]
-
 # This loads the library as well, without which the functions below would abort the process.
 if _reason := sun.unavailable():
     raise ImportError(_reason)

@@ -10,8 +10,6 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import is_stuck, motion
 
-__all__ = ["correct"]
-
 
 @compiled(inline=True)
 def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats) -> float:

@@ -18,8 +18,6 @@ from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import NO_PAIRS, history_of, in_flight, pair_at, pairs_near
 
-__all__ = ["finish_step", "handle", "has_room", "prepare_restart", "prepare_start"]
-
 
 @compiled
 def has_room(count: int, events: Floats) -> bool:

@@ -51,8 +51,6 @@ FIRST_STEPS = 1_000
 GROWTH_HIGH = 50
 """By how much a block may have more steps than the one before."""
 
-__all__ = ["advance", "make_arrays", "restart", "run", "state_for_sample"]
-
 
 @compiled
 def _new(cell: Ints, counted: Ints, which: int) -> int:

@@ -23,8 +23,6 @@ from gearidae.engine.integrate.correction import correct
 from gearidae.engine.integrate.step_control import below_gap_bound, control_step, max_stable_order
 from gearidae.engine.model.state import Floats, Model
 
-__all__ = ["Attempt", "iterate"]
-
 MOST: Final = 4  # corrections
 SLOWEST: Final = 0.9  # a correction this large, over the last, is called divergence
 NOTHING: Final = 1e-9  # a correction this small, over the tolerance, needs no second

@@ -50,8 +50,6 @@ from gearidae.engine.setup.problem import Problem
 from gearidae.errors import SceneError
 from gearidae.records import Statistics
 
-__all__ = ["run"]
-
 STATES_HIGH = 600
 """States at most: the Jacobian is a full matrix here."""
 _POINTS = 6  # number of former returns used by an interpolation

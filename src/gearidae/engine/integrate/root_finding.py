@@ -28,8 +28,6 @@ from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import IDA, YP, Y
 from gearidae.engine.sundials.interpolation import solution_at
 
-__all__ = ["SHARPNESS", "Arrays", "Stepper", "next_time", "start_search", "state_at"]
-
 SHARPNESS: Final = 0.01
 """Of the relative tolerance; a tenth of it changes no number of steps beyond scatter, ten times as much some."""
 DIPS: Final = 16  # of asperities that are looked for in an interval

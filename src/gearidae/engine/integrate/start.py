@@ -13,8 +13,6 @@ from gearidae.engine.model.state import EMPTY, GEARS, PHASE, ROLLER, Floats, Mod
 from gearidae.engine.motion.residual import residual
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 
-__all__ = ["first_step", "rebase", "set_rates"]
-
 PHASE_HIGH = 16.0
 """Pitches at which whole ones are taken out of the phase: it is held to absolute tolerances, down to 1e-15."""
 FIRST_RELIEF = 0.25

@@ -35,8 +35,6 @@ from gearidae.engine.model.state import COAST, DRIVE, MOST_ORDERS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 from gearidae.engine.sundials import names as sun
 
-__all__ = ["below_gap_bound", "change_wanted", "configure_ida", "control_step", "max_stable_order"]
-
 SAFETY: Final = 5.0  # E over e_k; the error of a run then is some tens of tolerances
 # Squared step times squared frequency, up to which orders six or less, seven and eight are stable with some margin.
 STABLE: Final = 0.64

@@ -10,16 +10,6 @@ from typing import Final
 from gearidae.engine.model.record_types import INT, MATERIALS, REAL, SCHEDULES, SLOTS_HIGH, record_type
 from gearidae.records import RUN_PARTS
 
-__all__ = [
-    "ENERGY",
-    "EXTREMES",
-    "HISTORY",
-    "PART",
-    "PROGRESS",
-    "STATE",
-    "STOPS",
-]
-
 HISTORY: Final = record_type(
     ("pair", INT),  # number of the pair, counted without the turns taken out of the phase, or EMPTY
     ("direction", REAL),  # sign of the gap rate; 0 at the very start

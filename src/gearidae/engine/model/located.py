@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import SCENE, STATE, WORK, Model
 
-__all__ = ["POINTERS", "Located", "model_at", "note_addresses"]
-
 _WORD: Final = ir.IntType(64)
 _ARRAY: Any = types.Array(types.float64, 1, "C")
 _RECORDS: Final = tuple(from_dtype(dtype) for dtype in (SCENE, STATE, WORK))

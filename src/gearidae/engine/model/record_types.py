@@ -9,29 +9,6 @@ import numpy as np
 from gearidae.scene.coating import MATERIAL_NAMES
 from gearidae.scene.limits import MOST_PAIRS
 
-__all__ = [
-    "COAST",
-    "DRIVE",
-    "EMPTY",
-    "GEARS",
-    "INT",
-    "LOAD",
-    "MATERIALS",
-    "MOST_ORDERS",
-    "MOTION",
-    "PHASE",
-    "REAL",
-    "ROLLER",
-    "SCHEDULES",
-    "SLOTS_HIGH",
-    "SPEED",
-    "Record",
-    "U",
-    "V",
-    "W",
-    "record_type",
-]
-
 Record: TypeAlias = Any
 """A numpy record; compiled code checks its names."""
 

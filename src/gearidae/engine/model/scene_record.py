@@ -16,16 +16,6 @@ from gearidae.engine.model.record_types import (
     record_type,
 )
 
-__all__ = [
-    "COVERAGE",
-    "FOLLOW",
-    "MATERIAL",
-    "POPULATION",
-    "SCENE",
-    "SCHEDULE",
-    "TORQUE",
-]
-
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # force per sqrt(radius / pb), with the material's share of the surface [F]
     ("gap_offset", REAL),  # by which its gap is wider than that of the pair [sigma]

@@ -18,22 +18,6 @@ from gearidae.engine.model.record_types import (
     record_type,
 )
 
-__all__ = [
-    "ADAMS",
-    "DRIVER",
-    "EXPOSED",
-    "EXPOSING",
-    "NOTED",
-    "NOTES",
-    "POINT",
-    "QUADRATURE",
-    "RESISTANCE",
-    "SEARCH",
-    "SETTLING",
-    "TRACK",
-    "WORK",
-]
-
 QUADRATURE: Final = record_type(  # inputs of the powers at the last sample of the energy balance
     ("time", REAL),  # [tau]
     ("steps", INT),  # accepted since

@@ -27,15 +27,6 @@ from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import is_stuck, jacobian
 from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pair_gap, pairs_touching
 
-__all__ = [
-    "assemble",
-    "dense_jacobian",
-    "factorise",
-    "solve_blocks",
-    "store_size",
-    "unknowns",
-]
-
 _MOTION: Final = 0  # sizes: states of motion, nodes, blocks
 _NODES: Final = 1
 _BLOCKS: Final = 2

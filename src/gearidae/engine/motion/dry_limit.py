@@ -11,8 +11,6 @@ from gearidae.engine.motion.residual import mesh_forces
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.torques.torque import torque_force
 
-__all__ = ["NO_FORCE", "dry_limit", "is_pulled_back", "push_on_gear"]
-
 NO_FORCE: Final = 1e-12
 """Of the reference load: less than this neither holds a gear nor moves it from rest."""
 

@@ -15,8 +15,6 @@ from gearidae.engine.population.forces import asperities_joined
 from gearidae.engine.torques.torque import torque_force
 from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
 
-__all__ = ["observe"]
-
 
 @compiled_once(SOLVER)
 def observe(m: Model, t: float, y: Floats, row: Floats) -> None:

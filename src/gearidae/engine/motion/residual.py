@@ -36,21 +36,6 @@ from gearidae.engine.pairs.tooth_pairs import (
 from gearidae.engine.population.forces import mesh_sums, roller_sum
 from gearidae.engine.torques.torque import torque_force
 
-__all__ = [
-    "begin_notes",
-    "finish_deflections",
-    "is_eliminated",
-    "is_stuck",
-    "jacobian",
-    "mesh_forces",
-    "motion",
-    "note_force",
-    "residual",
-    "resisting_force",
-    "roller_force",
-    "set_deflections",
-]
-
 
 @compiled_once(SOLVER)
 def roller_force(m: Model, t: float, y: Floats, settling: bool) -> tuple[float, float]:

@@ -10,8 +10,6 @@ from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.model.state import ROLLER, Floats, Model, U
 from gearidae.engine.pairs.tooth_pairs import all_pairs, gap_and_rate, history_of, pair_at
 
-__all__ = ["rigid_separation", "separation"]
-
 
 @compiled_once(SOLVER)
 def separation(m: Model, y: Floats) -> float:

@@ -11,8 +11,6 @@ from gearidae.engine.elastic.rows import GAP, PRESSURE, first_unknown, profile_o
 from gearidae.engine.model.state import EMPTY, Floats, Model
 from gearidae.engine.motion.residual import residual
 
-__all__ = ["SETTLED", "fold_gap", "settle_nodes"]
-
 SETTLED = 1e-12  # roughnesses
 _TRIES = 60
 _STRIDE = 0.25  # longest step of Newton's, in roughnesses

@@ -14,21 +14,6 @@ from gearidae.contact.kernels.evaluate import mixed_value
 from gearidae.contact.kernels.law import N_LOADING, loading_value
 from gearidae.engine.model.state import Model
 
-__all__ = [
-    "NONE",
-    "WHOLE",
-    "Shares",
-    "loading_of",
-    "note_shares",
-    "noted_shares",
-    "path_position",
-    "potential_of",
-    "potentials_of",
-    "share_changes",
-    "shares_of",
-    "weighed",
-]
-
 Shares: TypeAlias = tuple[float, float, float]
 """A number for each of bare, coated and mixed, the order of the materials."""
 

@@ -13,8 +13,6 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.coverage import WHOLE, Shares, path_position, share_changes, weighed
 
-__all__ = ["WeighedLength", "length_and_rates", "weighed_length"]
-
 SHORTEST_SQ = 1e-12
 """Least square of a contact length: a step that is tried may lead beyond the path, to where there is none."""
 

@@ -6,8 +6,6 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import LOAD, Model
 from gearidae.engine.pairs.tooth_pairs import static_error
 
-__all__ = ["angle_of_shaft", "torque_angle"]
-
 
 @compiled
 def angle_of_shaft(m: Model, shaft: int, u: float, phase: float) -> float:

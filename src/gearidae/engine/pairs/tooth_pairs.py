@@ -39,26 +39,6 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.pairs.coverage import Shares, loading_of
 
-__all__ = [
-    "NO_PAIRS",
-    "Reach",
-    "all_pairs",
-    "contact_length",
-    "energy_branch",
-    "gap_and_rate",
-    "history_of",
-    "in_flight",
-    "nearest_gap",
-    "pair_at",
-    "pair_force",
-    "pair_gap",
-    "pairs_near",
-    "pairs_on_path",
-    "pairs_touching",
-    "set_joined",
-    "static_error",
-]
-
 ANGLE_PHASE = 1e-9
 """Error of the pinion's angle, as a phase of the static error's highest harmonic [rad], below which it is settled; far
 above what rounding leaves of an order of 1e5."""

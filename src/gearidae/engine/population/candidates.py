@@ -29,8 +29,6 @@ from gearidae.engine.population.layout import (
 )
 from gearidae.engine.population.spots import Spot, spot_at
 
-__all__ = ["LEVELS", "choose", "choose_beside", "covers", "forget", "list_joined"]
-
 LEVELS: Final = (1.0, 2.0)
 """Roughnesses above which asperities are listed once more: a sixth of them, and one in fifty."""
 GAP_MARGIN: Final = 0.25  # roughnesses

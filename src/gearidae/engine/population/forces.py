@@ -27,15 +27,6 @@ from gearidae.engine.population.layout import (
 )
 from gearidae.engine.population.spots import Pair, overlap_slopes, pair_now, spot_at
 
-__all__ = [
-    "asperities_joined",
-    "candidate_energy",
-    "candidate_load",
-    "mesh_sums",
-    "population_energy",
-    "roller_sum",
-]
-
 
 class Sums(NamedTuple):
     """Sums over the joined asperities of a pair: loads P and stiffnesses K, alone and with D, its square and slope."""

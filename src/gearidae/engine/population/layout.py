@@ -14,28 +14,6 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
 
-__all__ = [
-    "ARC",
-    "BOUND",
-    "FIELDS",
-    "HEIGHT",
-    "INDEX",
-    "JOINED",
-    "KIND",
-    "KINDS",
-    "K_DETACH",
-    "K_ENERGY",
-    "K_JOIN",
-    "K_LOAD",
-    "K_OFFSET",
-    "K_SCALE",
-    "K_TABLE",
-    "REMEMBERED",
-    "SIGN",
-    "column",
-    "flank_of",
-]
-
 # columns of the candidates
 INDEX: Final = 0  # of the asperity among all,
 ARC: Final = 1  # its place on the flank,

@@ -10,8 +10,6 @@ from gearidae.engine.population.candidates import choose_beside, forget
 from gearidae.engine.population.layout import REMEMBERED, column, flank_of
 from gearidae.engine.population.spots import pair_now
 
-__all__ = ["take_joined"]
-
 
 @compiled_once(POPULATION)
 def take_joined(m: Model, y: Floats, joined: Floats) -> int:

@@ -17,8 +17,6 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.tooth_pairs import pair_gap, pairs_on_path
 
-__all__ = ["Pair", "Spot", "overlap_slopes", "pair_now", "spot_at"]
-
 
 class Spot(NamedTuple):
     """Where a pair touches.

@@ -45,8 +45,6 @@ from gearidae.records import sampled_columns
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.limits import check_reach, pairs_within_reach
 
-__all__ = ["make_problem"]
-
 LIGHTER = 0.25
 """Roughnesses above the bound of the asperity model; below, contacts count as deep while bodies are elastic."""
 

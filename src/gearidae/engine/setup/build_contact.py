@@ -28,8 +28,6 @@ from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.scene import Material, Scene
 
-__all__ = ["Nodes", "add_contact", "add_nodes", "choose_model"]
-
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
 

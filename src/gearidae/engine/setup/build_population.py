@@ -22,8 +22,6 @@ from gearidae.scene import MATERIAL_NAMES, Scene
 
 Integers = NDArray[np.int64]
 
-__all__ = ["add_population", "population_rows"]
-
 RELEASED: Final = 1e-10
 """Distance of detachment before the fold, over the width of the hysteresis: the slope of its load is
 infinite there, and less of its loss is out than this."""

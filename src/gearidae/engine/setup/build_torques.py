@@ -14,8 +14,6 @@ from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack
 from gearidae.scene import Drive, Knots, Load, Scene
 from gearidae.torques import torque_law
 
-__all__ = ["add_torques", "reference_force", "set_run", "set_stop"]
-
 STRIDE = 6  # accepted steps near contact that the energy balance integrates over at once
 SPAN = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
 KNOT_SPACING = 1e-12  # what knots must be apart, over the time itself

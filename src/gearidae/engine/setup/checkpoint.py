@@ -21,17 +21,6 @@ from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, ass
 from gearidae.engine.setup.checkpoint_checks import check, refused
 from gearidae.engine.setup.kept_asperities import asperity_words, joined_in, kept_asperities
 
-__all__ = [
-    "HEADER",
-    "depth_of",
-    "elastic_so_far",
-    "exceeded",
-    "light",
-    "pack",
-    "scene_digest",
-    "unpack",
-]
-
 HEADER: Final = 8
 """Words in front of the state: layout, scene (four), contact model, states, words of node rows and exposures."""
 

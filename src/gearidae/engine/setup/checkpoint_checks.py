@@ -14,8 +14,6 @@ import numpy as np
 from gearidae.engine.model.state import EMPTY, GEARS, PHASE, STATE, Floats, Model, Record
 from gearidae.errors import SceneError
 
-__all__ = ["check", "refused", "require"]
-
 _COUNT_HIGH: Final = 2**53
 """Counts, and pitches from which pairs are numbered, beyond which a double no longer counts."""
 _LARGEST: Final = 1e200  # squares of what is really there are still finite

@@ -16,8 +16,6 @@ from gearidae.engine.population.layout import FIELDS, INDEX, JOINED
 from gearidae.engine.population.restore import take_joined
 from gearidae.engine.setup.checkpoint_checks import refused, require
 
-__all__ = ["asperity_words", "joined_asperities", "joined_in", "kept_asperities", "restore_asperities"]
-
 WORDS: Final = 64
 FIRST: Final = 5  # words in front of the asperities
 SLACK: Final = 1e-6

@@ -35,8 +35,6 @@ from gearidae.engine.torques.schedule import fastest_schedule
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Extremes, first_sample
 
-__all__ = ["Problem"]
-
 ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
 PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
 FELT = 0.1  # of the tolerance of a speed

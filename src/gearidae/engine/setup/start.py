@@ -9,8 +9,6 @@ from gearidae.engine.model.state import Floats
 from gearidae.records import Statistics
 from gearidae.scene import Scene
 
-__all__ = ["AT_ONCE", "Start"]
-
 
 @dataclass(frozen=True, slots=True)
 class Start:

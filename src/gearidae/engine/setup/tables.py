@@ -8,8 +8,6 @@ import numpy as np
 
 from gearidae.engine.model.state import Floats
 
-__all__ = ["Tables"]
-
 
 class Tables:
     """One flat array in the making.

@@ -14,8 +14,6 @@ from gearidae.engine.motion.block_jacobian import store_size
 from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 
-__all__ = ["HANDLES", "IDA", "YP", "Functions", "Places", "Y", "close_solver", "open_solver"]
-
 # Handles: addresses of what SUNDIALS has made.
 CONTEXT, IDA, Y, YP, DKY, MATRIX, LINEAR, NEWTON, HANDLES = range(9)
 

@@ -11,8 +11,6 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.sundials import names as sun
 
-__all__ = ["solution_as_documented", "solution_as_ida", "solution_at"]
-
 
 @compiled(inline=True)
 def solution_as_ida(ida: int, t: float, y: int, yp: int) -> int:

@@ -12,16 +12,6 @@ from numba.extending import intrinsic
 from gearidae.arrays import Floats, Ints
 from gearidae.compiled import compiled
 
-__all__ = [
-    "STEP",
-    "SYSTEM",
-    "numbers",
-    "replace",
-    "step",
-    "system",
-    "words",
-]
-
 
 def _to_integers(typing: Any, address: Any) -> Any:
     """Type of an address taken as a pointer to integers."""

@@ -22,8 +22,6 @@ from numpy.typing import NDArray
 
 from gearidae.engine.sundials.memory import STEP, SYSTEM
 
-__all__ = ["exports", "libraries", "newton_places", "places", "unavailable"]
-
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
 

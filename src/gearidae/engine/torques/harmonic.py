@@ -8,15 +8,6 @@ from collections.abc import Iterable
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model
 
-__all__ = [
-    "fastest_harmonic",
-    "harmonic_rate",
-    "harmonic_value",
-    "order_rate",
-    "order_value",
-    "pack_harmonics",
-]
-
 
 def pack_harmonics(
     harmonics: Iterable[tuple[float, float, float]], time_unit: float, torque_unit: float

@@ -6,8 +6,6 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import SPEED, Model
 from gearidae.engine.torques.schedule import schedule_rate, schedule_value
 
-__all__ = ["held_speed_rate", "held_speed_value"]
-
 
 @compiled
 def held_speed_value(m: Model, t: float, speed: float) -> float:

@@ -25,8 +25,6 @@ from gearidae.engine.model.state import Model
 from gearidae.errors import SceneError
 from gearidae.torques import torque_law
 
-__all__ = ["largest_torque", "law_address", "law_rate", "law_value"]
-
 STEP: Final = 1e-4
 """Over tau, by which a law's rate looks to either side: contacts vibrate with about a radian a tau."""
 LOOKS: Final = 65

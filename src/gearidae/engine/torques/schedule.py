@@ -15,16 +15,6 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import Floats, Model, Record
 
-__all__ = [
-    "LEAST_CUBIC",
-    "enter_segment",
-    "fastest_schedule",
-    "pack_schedule",
-    "schedule_rate",
-    "schedule_value",
-    "segment_ends",
-]
-
 LEAST_CUBIC = 3
 """Knots that a cubic takes; two are joined by a straight line."""
 

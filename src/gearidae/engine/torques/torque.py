@@ -14,8 +14,6 @@ from gearidae.engine.torques.held_speed import held_speed_rate, held_speed_value
 from gearidae.engine.torques.law import law_rate, law_value
 from gearidae.engine.torques.schedule import schedule_rate, schedule_value
 
-__all__ = ["is_constant", "torque_force", "torque_rate"]
-
 
 @compiled(inline=True)
 def torque_force(m: Model, shaft: int, t: float, angle: float, speed: float) -> float:

@@ -9,8 +9,6 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.records import ExposureRows
 
-__all__ = ["ROWS", "bin_at", "exposures_of", "share_at_edge", "way_to_edge"]
-
 ROWS: Final = ExposureRows.of(MATERIALS)
 """Of the exposures of a tooth, each over all bins."""
 

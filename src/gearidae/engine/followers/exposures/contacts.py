@@ -18,8 +18,6 @@ from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import contact_length
 
-__all__ = ["adds_often", "begin_contacts", "join", "joins", "joins_here", "turn_to_closing"]
-
 
 @compiled
 def adds_often(m: Model) -> bool:

@@ -58,13 +58,6 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_near,
 )
 
-__all__ = [
-    "begin",
-    "event",
-    "finish",
-    "step",
-]
-
 
 @compiled_once(EXPOSURES)
 def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:

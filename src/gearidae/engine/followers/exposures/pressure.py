@@ -8,8 +8,6 @@ from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.tooth_pairs import contact_length
 
-__all__ = ["note_pressure", "see_pressure"]
-
 
 @compiled(inline=True)
 def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:

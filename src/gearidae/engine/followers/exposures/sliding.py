@@ -24,16 +24,6 @@ from gearidae.engine.formulas.quadrature import error_estimate, integral
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.tooth_pairs import static_error
 
-__all__ = [
-    "add_sliding",
-    "begin_intervals",
-    "next_interval",
-    "next_look",
-    "sliding_speeds",
-    "start_with_one_step",
-    "time_to_zero",
-]
-
 PARTS = 16
 """Parts of an interval in which a contact passes the pitch point, or pushes between ends that pull."""
 

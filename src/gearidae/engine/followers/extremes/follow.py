@@ -16,8 +16,6 @@ from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, Rec
 from gearidae.engine.motion.dry_limit import is_pulled_back
 from gearidae.engine.motion.separation import rigid_separation, separation
 
-__all__ = ["begin", "note_present", "resume", "step"]
-
 
 @compiled(inline=True)
 def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) -> None:

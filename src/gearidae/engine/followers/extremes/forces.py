@@ -18,8 +18,6 @@ from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
 from gearidae.engine.torques.torque import torque_force
 
-__all__ = ["first_force", "follow_force", "force_of_motion", "note_corner"]
-
 NEAR_RECORD: Final = 0.1
 """Share of a record by which the parabola may miss it: it has been seen to be out by 3 % at loose tolerances."""
 EVALUATIONS: Final = 3

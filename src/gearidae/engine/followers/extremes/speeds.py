@@ -16,8 +16,6 @@ from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.motion.dry_limit import is_pulled_back
 from gearidae.records import RUN_PARTS
 
-__all__ = ["come_to_stand", "follow_speed", "next_part", "note_hold", "note_speed"]
-
 HELD_WITHIN: Final = 0.5
 """Pitches that a gear must turn on by before it counts as free again."""
 

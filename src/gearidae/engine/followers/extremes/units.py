@@ -11,8 +11,6 @@ from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, V, W, plain
 from gearidae.records import Extremes
 
-__all__ = ["extremes_in_si"]
-
 
 def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
     """Take the extremes out of a model.
