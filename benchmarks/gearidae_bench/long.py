@@ -137,7 +137,7 @@ def measure_long(passages: int = PASSAGES, report: Callable[[int], object] = lam
     if ended.status != "finished":
         raise SolverError(
             f"the long run ended early ({ended.message})",
-            time=ended.reached, state={}, last_event="none", advice="report this",
+            time=ended.end_time, state={}, last_event="none", advice="report this",
         )  # fmt: skip
     return watch.parts
 

@@ -14,7 +14,14 @@ import gearidae as gd
 from gearidae.archive import combine, dimension_names, to_dataset
 from gearidae.archive.select import run_value, runs
 from gearidae.archive.variables import EVENTS, SAMPLES
-from gearidae.records import ELASTIC_COLUMNS, GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Statistics
+from gearidae.records import (
+    ELASTIC_COLUMNS,
+    GEAR_COLUMNS,
+    POPULATION_COLUMNS,
+    ROLLER_COLUMNS,
+    EventKind,
+    Statistics,
+)
 from gearidae.runs.running import unsolved
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
@@ -31,6 +38,9 @@ GEAR_LAYOUT = {
     "drive_gap": ("time", "m"),
     "coast_gap": ("time", "m"),
     "pairs_in_contact": ("time", "1"),
+    "drive_torque": ("time", "N m"),
+    "load_torque": ("time", "N m"),
+    "pinion_angle": ("time", "rad"),
     "event_time": ("event", "s"),
     "event_kind": ("event", "1"),
     "event_pair": ("event", "1"),
@@ -46,7 +56,7 @@ def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
 
 
 def test_catalogue_knows_every_column_of_the_engine():
-    assert set(SAMPLES) == {*GEAR_COLUMNS, *ROLLER_COLUMNS, *ELASTIC_COLUMNS}
+    assert set(SAMPLES) == {*GEAR_COLUMNS, *ROLLER_COLUMNS, *ELASTIC_COLUMNS, *POPULATION_COLUMNS}
 
 
 def test_gear_run_has_the_promised_layout(make_solution):
@@ -80,9 +90,10 @@ def test_flags_follow_cf(make_solution):
     kind, flank = ds.event_kind.attrs, ds.event_flank.attrs
     assert kind["flag_meanings"].split() == [
         "onset", "separation", "turning_point", "full_stretch", "mesh_entry",
-        "mesh_exit", "stick", "slip", "flank_change", "schedule_knot",
+        "mesh_exit", "stick", "slip", "flank_change", "schedule_knot", "asperity_onset",
+        "asperity_detachment",
     ]  # fmt: skip
-    assert kind["flag_values"].tolist() == list(range(10))
+    assert kind["flag_values"].tolist() == list(range(12))
     assert flank["flag_meanings"].split() == ["none", "drive", "coast"]
     assert flank["flag_values"].tolist() == [-1, 0, 1]
     for name in ("event_kind", "event_flank"):  # CF: flag values have the variable's own type
@@ -207,7 +218,7 @@ def test_words_and_lists_as_swept_values(make_solution):
     [
         (["coating.sam_fraction"], ["sam_fraction"]),
         (["mesh.backlash", "drive.torque"], ["backlash", "torque"]),
-        (["drive.torque", "load.torque"], ["drive_torque", "load_torque"]),
+        (["drive.torque", "load.torque"], ["swept_drive_torque", "swept_load_torque"]),
         (["surface.energy", "coating.energy"], ["surface_energy", "coating_energy"]),
         (["roller.speed"], ["roller_speed"]),  # speed is a variable of the dataset
         (["initial.gear_speed"], ["initial_gear_speed"]),

@@ -99,8 +99,20 @@ def test_checkpoints(tmp_path):
     assert (found.samples, found.events, found.time, found.wall_time) == (3, 4, 0.1, 0.2)
     assert found.statistics == point.statistics
     assert Checkpoint.newest(archive, "other") is None  # of a run that this one has replaced
-    Store(archive).path("checkpoint_one").write_bytes(b"damaged")
+    (path,) = Store(archive).folder.iterdir()
+    path.write_bytes(b"damaged")
     assert Checkpoint.newest(archive, "one") is None
     Store(archive).put("a", {}, {})
     drop_checkpoints(archive)
     assert Store(archive).entries() == {"a"}
+
+
+def test_the_name_of_a_run_leads_nowhere(tmp_path):
+    """It is read from a file, which may hold anything."""
+    for run in ("../../other", "/tmp/other", "a" * 5000, "\udc80", ""):
+        Checkpoint(0, 0, 0.1, 0.2, Statistics(), np.empty(3)).keep(tmp_path / "out.nc", run)
+        assert Checkpoint.newest(tmp_path / "out.nc", run).time == 0.1
+    assert [path.name for path in tmp_path.iterdir()] == ["out.nc.runs"]
+    assert len(Store(tmp_path / "out.nc").entries()) == 5
+    drop_checkpoints(tmp_path / "out.nc")
+    assert list(tmp_path.iterdir()) == []

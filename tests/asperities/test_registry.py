@@ -325,19 +325,30 @@ def fails(cls, tip, unit):
 
 
 FAULTS = {
-    "an attribute that is not there": (classmethod(fails), r"Broken\.of fails: AttributeError"),
-    "a division by zero": (classmethod(lambda cls, tip, unit: 1 / 0), r"Broken\.of fails: ZeroDivisionError"),
-    "other arguments": (classmethod(lambda cls, tip: None), r"Broken\.of fails: TypeError"),
-    "nothing": (classmethod(lambda cls, tip, unit: None), r"Broken\.of must return an AsperityLaw, not None"),
+    "an attribute that is not there": ({"of": classmethod(fails)}, "of fails: AttributeError"),
+    "a division by zero": (
+        {"of": classmethod(lambda cls, tip, unit: 1 / 0)},
+        "of fails: ZeroDivisionError",
+    ),
+    "other arguments": ({"of": classmethod(lambda cls, tip: None)}, "of fails: TypeError"),
+    "nothing": (
+        {"of": classmethod(lambda cls, tip, unit: None)},
+        "of must return an AsperityLaw, not None",
+    ),
+    "no hash": ({"__hash__": None}, "__hash__ fails: TypeError"),
+    "a distance that fails": ({"detach": property(lambda law: law.no_such)}, "detach fails: AttributeError"),
+    "a distance that is none": ({"join": property(lambda law: None)}, "join fails: TypeError"),
+    "a load that fails": ({"load": lambda law, displacement: law.no_such}, "load fails: AttributeError"),
+    "a load of another shape": ({"load": lambda law, displacement: np.zeros(3)}, "load fails: ValueError"),
 }
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_law_that_fails_is_named_with_its_function(fault):
-    of, words = FAULTS[fault]
-    register(broken(of=of))
+    changes, words = FAULTS[fault]
+    register(broken(**changes))
     try:
-        with pytest.raises(SceneError, match=rf"contact\.asperity = broken: {words}"):
+        with pytest.raises(SceneError, match=rf"contact\.asperity = broken: Broken\.{words}"):
             solve(gd.preset("roller_slow").replace({"contact.asperity": "broken"}))
     finally:
         unregister("broken")

@@ -69,6 +69,13 @@ def test_a_run_says_beside_its_verdict_that_it_is_a_mean(tmp_path, capfd):
     assert "The verdict is a mean over many gears: 5.13e-08 asperities in contact" in words(capfd)
 
 
+def test_check_does_not_guess_the_speed_that_a_law_gives(capfd):
+    assert main(["check", str(Path(CASE).with_name("microengine.toml"))]) == 0
+    out = words(capfd)
+    assert "gear speed unknown a torque law decides" in out
+    assert "does not overcome" not in out
+
+
 def test_check_counts_events_beside_samples(tmp_path, capfd):
     """Within the factor of three that the number of steps is known to."""
     case = str(Path(CASE).with_name("high_speed.toml"))

@@ -71,7 +71,7 @@ def test_what_is_compiled_is_said(first_runs):
         assert f"compiling {message} for this machine" in told.stderr
         names = [path.name for path in kept]
         assert any(name.startswith("nodes.node_force-") for name in names) == (model == "elastic")
-        assert not any(name.startswith("exposures.follow_exposures-") for name in names)
+        assert not any(name.startswith("follow._follow-") for name in names)
 
 
 @pytest.mark.slow

@@ -1,7 +1,6 @@
 """A damaged cache of compiled code, a full disk, and the user's own settings of numba never end in a traceback."""
 
 import os
-import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -87,6 +86,7 @@ def test_a_damaged_entry_is_made_anew_and_that_is_said_once(tmp_path, damage, en
 
 def test_a_full_disk_keeps_nothing_and_runs(tmp_path):
     """No file may grow beyond ten bytes: as on a full disk, files can be made and not written."""
+    resource = pytest.importorskip("resource")
     full = run(tmp_path, preexec=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10)))
     assert (full.returncode, full.stdout) == (0, ANSWER), full.stderr
     assert len(full.stderr.splitlines()) == 1

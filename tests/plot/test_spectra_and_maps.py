@@ -132,7 +132,8 @@ def test_map_over_torque_names_its_lines():
 def test_starting_torque_leaves_out_where_nothing_holds():
     ds = gd.analysis.starting_torque(LOW, [1.0, 0.5, 0.45], simulated=False)
     ax = gd.plot.starting_torque(ds)
-    (line,) = ax.get_lines()
+    line, drive = ax.get_lines()
+    assert np.array_equal(drive.get_ydata(), [LOW.drive.torque] * 2)
     assert np.array_equal(line.get_xdata(), [50.0, 45.0])
     assert np.array_equal(line.get_ydata(), ds.static_torque[1:])
     with pytest.raises(gd.SceneError, match="does not hold"):

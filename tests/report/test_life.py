@@ -85,7 +85,7 @@ def test_the_page_stands_alone(life, tmp_path):
     assert main(["report", str(path), "-o", str(tmp_path / "life.html")]) == 0
     page = (tmp_path / "life.html").read_text(encoding="utf-8")
     assert not re.search(r"""(src|href)=["'](?!#|data:)""", page)
-    assert "sticks by 2.1e+06 passages" in page
+    assert "sticks between 2e+06 and 2.1e+06 passages" in page
     assert "a &lt;b&gt;source&lt;/b&gt;" in page
     data = json.loads(re.search(r'id="life-data">(.*?)</script>', page, re.DOTALL)[1])
     assert data["passages"] == [0.0, 1e6, 2e6]

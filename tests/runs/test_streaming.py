@@ -42,11 +42,12 @@ def path(tmp_path):
 
 @pytest.fixture
 def many_small_blocks(monkeypatch):
-    """Blocks and checkpoints all the time, by the driver whose limits are not compiled in."""
+    """Blocks, checkpoints and growth of the file all the time, by the driver whose limits are not compiled in."""
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 300)
     monkeypatch.setattr(portable, "BLOCK_SECONDS", 0.0)
     monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr(growing, "EVENT_ROOM", 16)
     monkeypatch.setattr(growing, "COPIED", 50)
 
 
@@ -402,7 +403,7 @@ def test_a_file_that_may_not_grow_ends_the_run_and_is_resumed(path):
     case.write_text(gd.dump_case(scene))
 
     def limited():
-        native.BLOCK_STEPS = 500
+        native.BLOCK_STEPS, growing.EVENT_ROOM = 500, 1024
         resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
         return main(["run", str(case), "-o", str(path)])
 

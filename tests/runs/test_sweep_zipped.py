@@ -66,9 +66,16 @@ def test_the_fraction_as_the_second_of_a_pair():
 
 def test_keys_of_one_last_part_take_their_whole_names():
     ds = gd.sweep(LOW, {"drive.torque": TORQUES, "load.torque": [0.0, 1e-19, 0.0]}, zipped=True)
-    assert ds.gear_speed.dims == ("drive_torque", "time")
-    assert ds.load_torque.dims == ("drive_torque",)
-    assert ds.event_drive_torque.dims == ("event",)
+    assert ds.gear_speed.dims == ("swept_drive_torque", "time")  # a variable has the name of the whole key
+    assert ds.swept_load_torque.dims == ("swept_drive_torque",)
+    assert ds.drive_torque.dims == ("swept_drive_torque", "time")
+    assert ds.event_swept_drive_torque.dims == ("event",)
+
+
+def test_torques_of_both_shafts_can_be_swept():
+    ds = gd.sweep(LOW, {"drive.torque": TORQUES[:2], "load.torque": [0.0, 1e-19]})
+    assert ds.gear_speed.dims == ("swept_drive_torque", "swept_load_torque", "time")
+    assert ds.drive_torque.dims == ("swept_drive_torque", "swept_load_torque", "time")
 
 
 def test_runs_by_name():

@@ -95,3 +95,23 @@ def test_a_list_needs_the_model_that_reads_it():
 def test_exposures_are_not_kept_of_a_population():
     with pytest.raises(SceneError, match=r"run.exposures.*must be 0"):
         GEARS.replace({"run.exposures": 4})
+
+
+def test_a_list_with_decimal_commas_and_bad_rows(tmp_path):
+    """Read by the reader of all tables: no comma is lost, and no row is shifted."""
+    path = tmp_path / "list.csv"
+    path.write_text("arc [um];height [nm];flank\n4,5;1,25;drive\n5;-2;\n")
+    first, second = listed({"file": str(path)})
+    assert (first.place, first.height, first.flank) == (
+        pytest.approx(4.5e-6, rel=1e-12, abs=0),
+        pytest.approx(1.25e-9, rel=1e-12, abs=0),
+        "drive",
+    )
+    assert second.flank is None
+    for row, reason in (
+        ("4;1.234;drive", r"row 3 is '1.234'; ',' is taken for the decimal sign"),
+        ("4;1;drive;2", "line 4: row 3 has 4 cells, but there are 3 headings"),
+    ):
+        path.write_text(f"arc [um];height [nm];flank\n4,5;1,25;drive\n5;-2;\n{row}\n")
+        with pytest.raises(SceneError, match=rf"contact\.asperities.*{reason}"):
+            listed({"file": str(path)})

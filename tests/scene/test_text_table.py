@@ -131,11 +131,15 @@ def schedule(path):
     gd.preset("teodorescu2009_low_speed").replace({"drive.schedule": {"file": str(path)}})
 
 
+def asperities(path):
+    gd.preset("teodorescu2009_low_speed").replace({"contact.asperities": {"file": str(path)}})
+
+
 def observations(path):
     read_observations(path)
 
 
-READERS = [schedule, read_signal, read_scan, observations]
+READERS = [schedule, asperities, read_signal, read_scan, observations]
 needs_posix = pytest.mark.skipif(sys.platform == "win32", reason="no FIFOs")
 
 

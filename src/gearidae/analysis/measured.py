@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -116,7 +117,7 @@ def read_signal(
 
 def _checked(columns: Sequence[str] | None, bridge: int) -> tuple[str, str] | None:
     """Refuse settings that are none."""
-    if isinstance(bridge, bool) or not isinstance(bridge, int) or bridge < 0:
+    if isinstance(bridge, bool) or not isinstance(bridge, Integral) or bridge < 0:
         raise SceneError("bridge", shorten(bridge), "must be a whole number of samples, 0 or more")
     if columns is None:
         return None
@@ -249,6 +250,6 @@ def _decimal(decimal: str | None) -> str | None:
 
 
 def _lines(skip: int | None) -> int | None:
-    if skip is not None and (isinstance(skip, bool) or not isinstance(skip, int) or skip < 0):
+    if skip is not None and (isinstance(skip, bool) or not isinstance(skip, Integral) or skip < 0):
         raise SceneError("skip", shorten(skip), "must be a whole number of lines, 0 or more")
     return skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Final
@@ -67,13 +68,13 @@ class Checkpoint:
         }
         # as words: some may be no numbers
         words = np.ascontiguousarray(self.state).view(np.uint64)
-        Store(archive).put(_PREFIX + run, header, {"state": words}, durable=True)
+        Store(archive).put(_key(run), header, {"state": words}, durable=True)
 
     @classmethod
     def newest(cls, archive: Path, run: str) -> Checkpoint | None:
         """Read the newest checkpoint of a run; None if there is none, or no longer a whole one."""
         try:
-            found = Store(archive).take(_PREFIX + run)
+            found = Store(archive).take(_key(run))
             if found is None:
                 return None
             header, tables = found
@@ -86,6 +87,11 @@ class Checkpoint:
             )
         except Exception:  # what a damaged file makes the libraries raise may be anything
             return None
+
+
+def _key(run: str) -> str:
+    """Where the checkpoint of a run is; a hash, as its name comes from a file and must lead nowhere else."""
+    return _PREFIX + hashlib.sha256(run.encode(errors="replace")).hexdigest()
 
 
 def drop_checkpoints(archive: Path) -> None:

@@ -238,7 +238,8 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
     """Name the dimension of every swept key.
 
     The last part of the key (``coating.sam_fraction`` gives ``sam_fraction``), unless that is taken by
-    another swept key or by a variable of the dataset; then the whole key with underscores (``roller_speed``).
+    another swept key or by a variable of the dataset; then the whole key with underscores (``roller_speed``), which has
+    ``swept_`` before it where that is a variable, too (``swept_drive_torque``).
 
     Parameters
     ----------
@@ -254,7 +255,9 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
     names = {}
     for key, short in zip(keys, last, strict=True):
         taken = last.count(short) > 1 or short in _RESERVED
-        names[key] = key.replace(".", "_") if taken and key != "coating.sam_fraction" else short
+        whole = key.replace(".", "_")
+        whole = f"swept_{whole}" if whole in _RESERVED else whole
+        names[key] = whole if taken and key != "coating.sam_fraction" else short
     return names
 
 

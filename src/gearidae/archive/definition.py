@@ -26,9 +26,7 @@ _HEADER = 2**17
 
 
 @uninterrupted()
-def define(
-    template: xr.Dataset, path: Path, sizes: Mapping[str, int | None], *, in_place: bool = False
-) -> None:
+def define(template: xr.Dataset, path: Path, sizes: Mapping[str, int], *, in_place: bool = False) -> None:
     """Create a netCDF file that holds a dataset's definitions at other lengths.
 
     Parameters
@@ -37,8 +35,8 @@ def define(
         A dataset in which the dimensions in `sizes` have length 0.
     path : Path
         File to create.
-    sizes : mapping of str to int or None
-        Lengths of the dimensions; None for one that grows.
+    sizes : mapping of str to int
+        Lengths of the dimensions.
     in_place : bool, optional
         Whether the file is written while others read it: in netCDF's classic format (CDF-5), whose structure is its
         beginning and never changes, and filled with what stands for nothing. By default netCDF4, in chunks.
@@ -59,7 +57,7 @@ def define(
                 fill = attributes.pop("_FillValue", None)
                 storage: dict[str, Any] = {}
                 if not in_place and variable.dtype is not str:
-                    shape = tuple(lengths[dim] or 0 for dim in variable.dimensions)
+                    shape = tuple(lengths[dim] for dim in variable.dimensions)
                     nbytes = variable.dtype.itemsize * int(np.prod(shape))
                     storage = chunked(name, variable.dtype, shape, nbytes)
                 made = new.createVariable(

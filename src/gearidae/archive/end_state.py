@@ -1,7 +1,7 @@
 """The state in which a run ended, carried by its dataset, so that another run can go on from it.
 
 It is the engine's checkpoint as text (compressed, some kilobytes), an attribute of single runs: a dataset in memory has
-it as its archive does. Only the engine knows what its words mean, and compares each with the scene before it is used.
+it as its archive does. Only the engine knows what its words mean, and checks their bounds.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Archives that grow while a run goes on: readable at any time, by anyone, whatever happens to the run.
 
-The file is in netCDF's classic format and made once, with room for every sample and filled with what stands for
-nothing; only the events' dimension grows, by a count at the file's beginning. Each block of output is written to its
-place, then the numbers of committed samples and events. So there is no instant at which the file could not be read, no
-lock lies on it, and the memory needed does not depend on the run's length. The state to go on from is kept beside it
+The file is in netCDF's classic format and made once, with room for every sample and for many events, and filled with
+what stands for nothing; where events run out of room, a larger file takes its place. Each block of output is written to
+its place, then the numbers of committed samples and events. So there is no instant at which the file could not be read,
+no lock lies on it, and the memory needed does not depend on the run's length. The state to go on from is kept beside it
 (`gearidae.archive.checkpoint`). When the run has ended, `finish` rewrites the file as any other archive.
 """
 
@@ -34,6 +34,8 @@ from gearidae.scene import Scene
 
 COPIED = 2**20
 """Rows copied at a time."""
+EVENT_ROOM = 65_536
+"""Events to make room for, twice as many whenever they run out: along a dimension without limit each takes longer."""
 CHECKPOINT_SECONDS = 1.0
 """Least wall time between checkpoints [s]: each waits for the disk."""
 _EVENT_COLUMNS = ("event_time", "event_kind", "event_pair", "event_flank", "event_gap_rate")
@@ -65,6 +67,8 @@ class GrowingArchive:
 
     def __init__(self, path: Path, template: xr.Dataset) -> None:
         self.path = path
+        self._template = template
+        self._file: Any = None
         self._columns = [
             str(name) for name, variable in template.data_vars.items() if variable.dims == ("time",)
         ]
@@ -73,10 +77,8 @@ class GrowingArchive:
         self._teeth = teeth_in(template.attrs)
         self._checkpointed = time.monotonic()
         self.samples = self.events = 0
-        with disk_errors(), LIBRARY:
-            self._file: Any = netCDF4.Dataset(path, "r+", keepweakref=True)
-            self._file.set_auto_maskandscale(False)
-            self._run = str(self._file.getncattr(_RUN))
+        with disk_errors():
+            self._open()
 
     @classmethod
     def create(cls, path: Path, template: xr.Dataset, samples: int, duration: float) -> Self:
@@ -98,14 +100,10 @@ class GrowingArchive:
         DiskError
             If the disk does not take it; nothing is left behind then.
         """
-        grown = template.assign({name: ((), np.int64(0), {"units": "1"}) for name in _COUNTS})
-        grown.attrs[_RUN] = secrets.token_hex(16)
         part = _part(path)
         with disk_errors():
-            part.unlink(missing_ok=True)
             try:
-                # a length of 0 is one without limit to netCDF
-                define(grown, part, {"time": max(samples, 1), "event": None}, in_place=True)
+                _lay_out(part, template, secrets.token_hex(16), samples, EVENT_ROOM)
                 _write_times(part, samples, float(template.attrs.get("start_time", 0.0)), duration)
                 drop_checkpoints(path)
                 part.replace(path)
@@ -203,7 +201,15 @@ class GrowingArchive:
             sync(self.path.parent)
             drop_checkpoints(self.path)
 
+    def _open(self) -> None:
+        with LIBRARY:
+            self._file = netCDF4.Dataset(self.path, "r+", keepweakref=True)
+            self._file.set_auto_maskandscale(False)
+            self._run = str(getattr(self._file, _RUN, ""))
+
     def _append(self, block: Block) -> None:
+        if self.events + len(block.events) > len(self._file.dimensions["event"]):
+            self._make_room(self.events + len(block.events))
         for column, name in enumerate(self._columns):
             self._write(name, self.samples, block.rows[:, column])
         for column, name in enumerate(_EVENT_COLUMNS):
@@ -230,23 +236,49 @@ class GrowingArchive:
                 self._file[name][...] = count
             self._file.sync()
 
+    def _make_room(self, events: int) -> None:
+        """Move to a file with room for more events, which takes the old one's place when it is complete."""
+        times, room = (len(self._file.dimensions[name]) for name in ("time", "event"))
+        while room < events:
+            room *= 2
+        part, committed = _part(self.path), {"time": self.samples, "event": self.events}
+        try:
+            _lay_out(part, self._template, self._run, times, room)
+            with opened(part, "a") as file:
+                for name, variable in file.variables.items():
+                    if variable.dimensions:
+                        self._copy(
+                            name, variable, times if name == "time" else committed[variable.dimensions[0]]
+                        )
+                    elif name in _COUNTS:
+                        variable[...] = self._file[name][...]
+            sync(part)
+            self.close()  # Windows replaces no file that is open
+            try:
+                part.replace(self.path)
+            finally:
+                self._open()
+        finally:
+            part.unlink(missing_ok=True)
+        sync(self.path.parent)
+
     def _compact(self, template: xr.Dataset, part: Path) -> None:
         define(template, part, {"time": self.samples, "event": self.events})
         with opened(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():
                 if set(variable.dimensions) & {"time", "event"} and variable.size:
-                    self._copy(name, variable)
+                    self._copy(name, variable, len(variable))
         sync(part)
 
-    def _copy(self, name: str, variable: Any) -> None:
+    def _copy(self, name: str, variable: Any, length: int) -> None:
         """Copy what is committed into a variable of another file, whole chunks at a time."""
         chunks, step = variable.chunking(), COPIED
         if isinstance(chunks, list):
             step = max(COPIED // chunks[0], 1) * chunks[0]
             variable.set_var_chunk_cache(size=0)  # whole chunks come once each: nothing to remember
-        for start in range(0, len(variable), step):
-            count = min(step, len(variable) - start)
+        for start in range(0, length, step):
+            count = min(step, length - start)
             variable[start : start + count] = self.read(name, slice(start, start + count))
 
 
@@ -281,6 +313,14 @@ def trimmed(ds: xr.Dataset, path: Path, *, running: bool) -> xr.Dataset:
         scene = Scene.from_dict(json.loads(cut.attrs["scene"]))
         cut = cut.assign(extreme_variables(scene, [point.extremes]))
     return cut
+
+
+def _lay_out(path: Path, template: xr.Dataset, run: str, samples: int, room: int) -> None:
+    """Write the file's structure, filled with what stands for nothing."""
+    path.unlink(missing_ok=True)
+    grown = template.assign({name: ((), np.int64(0), {"units": "1"}) for name in _COUNTS})
+    # a length of 0 is one without limit to netCDF
+    define(grown.assign_attrs({_RUN: run}), path, {"time": max(samples, 1), "event": room}, in_place=True)
 
 
 def _write_times(path: Path, total: int, begin: float, duration: float) -> None:

@@ -7,6 +7,9 @@ to register it before it makes scenes that name it.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
 from typing import Final, TypeVar
 
 import numpy as np
@@ -82,17 +85,38 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
         If there is no such law, or it fails.
     """
     law = _LAWS.find(name)
-    try:
+    with _naming(law, "of"):
         made = law.of(tip, unit)
-    except SceneError:
-        raise
-    except Exception as error:  # a law is the user's own code
-        raise SceneError("contact.asperity", name, f"{law.__qualname__}.of fails: {error!r}") from error
     if not isinstance(made, AsperityLaw):
         raise SceneError(
             "contact.asperity", name, f"{law.__qualname__}.of must return an AsperityLaw, not {made!r}"
         )
+    with _naming(law, "__hash__"):  # equal laws share their tables
+        hash(made)
+    _try_out(made)
     return made
+
+
+@lru_cache(maxsize=32)
+def _try_out(law: AsperityLaw) -> None:
+    """Call what a law must give, so that one that fails is named here and not somewhere in a table."""
+    for function in ("join", "detach", "pull_off"):
+        with _naming(type(law), function):
+            float(getattr(law, function))
+    with _naming(type(law), "load"):
+        np.asarray(law.load(np.zeros(1)), np.float64).reshape(1)
+
+
+@contextmanager
+def _naming(law: type[AsperityLaw], function: str) -> Iterator[None]:
+    """Name the law, which may be the user's own, and its function in whatever goes wrong in it."""
+    try:
+        yield
+    except SceneError:
+        raise
+    except Exception as error:
+        failed = f"{law.__qualname__}.{function} fails: {error!r}"
+        raise SceneError("contact.asperity", law.name, failed) from error
 
 
 def law_of(name: str, surface: Surface) -> AsperityLaw:

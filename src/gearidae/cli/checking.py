@@ -85,8 +85,12 @@ def _estimates(scene: Scene) -> Rows:
 
     assert scene.gears is not None
     yield "Estimates", "", "from the mean torques over the run, without sticking"
+    assert scene.drive is not None
+    assert scene.load is not None
     speed = steady_speed(scene)
-    if speed == 0.0:
+    if scene.drive.law is not None or scene.load.law is not None:
+        yield "gear speed", "unknown", "a torque law decides"
+    elif speed == 0.0:
         yield "gear speed", "0 rad/s", "the mean drive torque does not overcome the dry resistance"
     elif math.isinf(speed):
         yield "gear speed", "unbounded", "no limit: load.drag is 0"

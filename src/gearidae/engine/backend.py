@@ -297,7 +297,7 @@ def solve(
         statistics=ended.statistics,
         status=ended.status,
         message=ended.message,
-        reached=ended.reached,
+        reached=ended.end_time,
         balance=ended.balance,
         extremes=ended.extremes,
         start=start.time,

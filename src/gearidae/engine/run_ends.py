@@ -22,8 +22,8 @@ class Ended:
         ``finished``, ``interrupted`` (by Ctrl-C), or the named reason why the run ended early.
     message : str
         The status in a sentence; empty when finished.
-    reached : float
-        Simulated time reached [s].
+    end_time : float
+        Simulated time at the end [s].
     balance : EnergyBalance, optional
         The latest energy balance; None if the run did not begin.
     extremes : Extremes, optional
@@ -35,11 +35,11 @@ class Ended:
     statistics: Statistics
     status: str
     message: str
-    reached: float
+    end_time: float
     balance: EnergyBalance | None = None
     extremes: Extremes | None = None
     checkpoint: NDArray[np.float64] | None = None
 
 
 OnBlock: TypeAlias = Callable[[Block], object]
-"""Function that is called with every block of output, and ends the run by returning True."""
+"""Called with every block of output; a return value of True ends the run."""

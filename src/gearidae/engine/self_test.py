@@ -74,7 +74,7 @@ EXPECTED: Final = {
 }
 
 
-class Seen(NamedTuple):
+class TrialResult(NamedTuple):
     """One run of the motion.
 
     Attributes
@@ -201,7 +201,7 @@ def _scene() -> Scene:
     )
 
 
-def _run(way: str, rtol: float) -> Seen:
+def _run(way: str, rtol: float) -> TrialResult:
     """Run the motion, and compare it with the closed form."""
     scene, statistics = _scene(), Statistics()
     problem = make_problem(scene)
@@ -211,9 +211,9 @@ def _run(way: str, rtol: float) -> Seen:
     events = np.concatenate([block.events for block in blocks])
     order = int(problem.model.work.adams.order_used)
     if statistics.ending.status != "finished" or len(rows) != SAMPLES:
-        return Seen(statistics.ending.status, math.inf, math.inf, statistics.steps, order)
+        return TrialResult(statistics.ending.status, math.inf, math.inf, statistics.steps, order)
     error = _error(scene, problem, rows) / rtol
-    return Seen("finished", error, _mark_error(scene, events) / rtol, statistics.steps, order)
+    return TrialResult("finished", error, _mark_error(scene, events) / rtol, statistics.steps, order)
 
 
 def _error(scene: Scene, problem: Problem, rows: NDArray[np.float64]) -> float:

@@ -131,6 +131,8 @@ def starting_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     tidy(ax)
     if len(percent) > 1:
         ax.set_xlim(percent.min(), percent.max())
+    else:
+        ax.set_xticks(percent)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
         ax.axhline(
             ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"

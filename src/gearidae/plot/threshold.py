@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import StrMethodFormatter
 
 from gearidae.errors import SceneError
 from gearidae.plot.parameter_axis import parameter_axis
@@ -46,7 +45,8 @@ def sticking_threshold(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax.plot(exits, limit, color="0.3", linewidth=1.2, label="limit")
     ax.plot(exits, sticks, "X", color=NEGATIVE, markersize=5, label="sticks")
     ax.set_xscale("log")
-    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.set_xticks(exits, [str(number) for number in exits])
+    ax.minorticks_off()
     ax.set_xlabel("mesh exits waited for")
     ax.set_ylabel(along.label)
     tidy(ax)

@@ -169,7 +169,7 @@ def mean_drive_torque(scene: Scene) -> float:
     -------
     float
         Mean over ``run.duration`` of the size of the constant part plus the schedule [N m]; of a drive that holds a
-        speed, what the load takes at that speed.
+        speed, what the load takes at that speed; of one with a law, at least what the load takes at the initial speed.
 
     Raises
     ------
@@ -178,11 +178,13 @@ def mean_drive_torque(scene: Scene) -> float:
     """
     gears, drive, load = _tables(scene)
     mean = _mean_size(_over_run(scene, drive.torque, drive.schedule))
-    if drive.speed is None:
+    if drive.speed is None and drive.law is None:
         return mean
-    speed = balanced_speed(scene, mean)
+    assert scene.initial is not None
+    speed = abs(scene.initial.gear_speed) if drive.speed is None else balanced_speed(scene, mean)
     resistance = _mean_resistance(scene) + speed * (load.viscous + load.drag * speed)
-    return resistance * gears.pinion_teeth / gears.gear_teeth
+    taken = resistance * gears.pinion_teeth / gears.gear_teeth
+    return taken if drive.law is None else max(mean, taken)
 
 
 def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:

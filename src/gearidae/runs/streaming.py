@@ -161,9 +161,9 @@ class _Run:
         except KeyboardInterrupt:
             raise self._interrupted(archive) from None
         except DiskError as error:
-            raise self._not_written(archive, ended.reached, error) from error
+            raise self._not_written(archive, ended.end_time, error) from error
         if ended.status not in ("finished", "stopped"):
-            raise early_end(open_archive(self._target), ended.reached)
+            raise early_end(open_archive(self._target), ended.end_time)
 
     def _interrupted(self, archive: GrowingArchive) -> Interrupted:
         archive.close()
@@ -221,7 +221,7 @@ class _Run:
             statistics=ended.statistics,
             status=ended.status,
             message=ended.message,
-            reached=ended.reached,
+            reached=ended.end_time,
             balance=ended.balance,
             extremes=ended.extremes,
             checkpoint=ended.checkpoint,

@@ -185,7 +185,7 @@ def run_plan(plan: SweepPlan, how: Execution, kept: KeptRuns | None, keep: Keep 
     with sweep_progress(how.progress, len(plan.scenes)) as report:
         batch = Batch(plan, how.backend, report, kept, keep)
         try:
-            if kept is not None:
+            if kept is not None and kept.count():
                 batch.take_kept(kept)
             with how.computing(batch.left) as executor:
                 batch.run(executor, threads=how.threads())

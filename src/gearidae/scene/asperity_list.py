@@ -21,8 +21,9 @@ from pydantic_core import CoreSchema, core_schema
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
+from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
-from gearidae.scene.text_table import check_regular, split_unit
+from gearidae.scene.text_table import as_number, split_unit
 from gearidae.scene.units import from_text
 
 if TYPE_CHECKING:
@@ -139,7 +140,9 @@ class AsperityList:
             raise ValueError(
                 f"has {source} and {next(key for key in value if key != source)}; {source} is enough"
             )
-        frame = _read_file(value["file"]) if source == "file" else value["data"]
+        if source == "file":
+            return _rows(dict(_headed(name, cells) for name, cells in _read_file(value["file"]).items()))
+        frame = value["data"]
         if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
             raise ValueError("data must be a DataFrame")
         return _rows(
@@ -186,18 +189,32 @@ def check_asperities(scene: Scene) -> None:
             raise SceneError(key, f"(row {row}, flank coast)", "a roller has no coast flank")
 
 
-def _read_file(file: object) -> Any:
-    """Read a CSV file as texts; the name of a flank is no number."""
+def _read_file(file: object) -> dict[str, list[float | str]]:
+    """Read the columns of a file: numbers, and texts for what is none, such as the name of a flank."""
     if not isinstance(file, str | Path):
         raise ValueError("file must be the name of a CSV file")
-    import pandas as pd  # a third of a second, and few scenes need it
-
     path = Path(file)
     try:
-        check_regular(path, _LARGEST)
-        return pd.read_csv(path, dtype=str, keep_default_na=False, skipinitialspace=True, comment="#")
-    except (OSError, ValueError) as error:  # pandas' own are values that it cannot read
-        raise ValueError(f"the file {path.name}: {str(error).strip().partition(chr(10))[0]}") from None
+        table = open_table(path, largest=_LARGEST, names=_has_heights, unit_row=True)
+        columns: dict[str, list[float | str]] = {heading: [] for heading in table.headings}
+        for line, row, cells in table.rows():
+            if row > _MOST_ROWS:
+                raise ValueError(f"must have 1..{_MOST_ROWS} rows")
+            for heading, cell in zip(table.headings, cells, strict=True):
+                number = as_number(cell, table.decimal)
+                if number is None and as_number(cell, ".") is not None:
+                    sign = f"{table.decimal!r} is taken for the decimal sign"
+                    raise ValueError(
+                        f"line {line}: column {heading[:40]!r}, row {row} is {cell[:40]!r}; {sign}"
+                    )
+                columns[heading].append(cell if number is None else number)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"the file {path.name}: {error}") from None
+    return columns
+
+
+def _has_heights(headings: Iterable[str]) -> bool:
+    return any(split_unit(heading)[0] == "height" for heading in headings)
 
 
 def _is_column(cells: object, name: object) -> bool:

@@ -105,11 +105,15 @@ def require(ds: xr.Dataset, kind: str) -> xr.Dataset:
         If it is something else.
     """
     about = _KINDS[kind]
-    whole = all(
-        name in ds and ds[name].dims[:1] == (dim,) and ds.sizes[dim] > 0 for name, dim in about.needed.items()
-    )
-    if not whole or (kind == "life" and "side" not in ds.coords):
-        allowed = f"is no {about.words}; make one with {about.maker}"
+    lacking = [
+        name
+        for name, dim in about.needed.items()
+        if name not in ds or ds[name].dims[:1] != (dim,) or not ds.sizes[dim]
+    ]
+    if kind == "life" and "side" not in ds.coords:
+        lacking.append("side")
+    if lacking:
+        allowed = f"is no {about.words}: it lacks {', '.join(lacking)}; make one with {about.maker}"
         raise SceneError("dataset", type(ds).__name__, allowed)
     about.check(ds)
     return ds

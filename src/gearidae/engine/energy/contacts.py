@@ -78,7 +78,7 @@ def stored_energies(m: Model, k: int, gap: float) -> tuple[Shares, Shares]:
     return (a + a2, b + b2, c + c2), (a1 + a3, b1 + b3, c1 + c3)
 
 
-@compiled
+@compiled(inline=True)
 def _stretched(m: Model, k: int, gap: float, material: int) -> tuple[float, float]:
     """Energy of a material's stretched asperities beyond its loading branch, and its slope."""
     h, own = m.state.history[k], m.scene.material[material]
@@ -166,7 +166,7 @@ def joining_losses(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Sha
     return (a, b, c), (a1, b1, c1)
 
 
-@compiled
+@compiled(inline=True)
 def _loss(m: Model, k: int, gap: float, material: int, given: float) -> tuple[float, float]:
     """Loss of one material and its slope; that of an elastic contact is `given`."""
     own, h = m.scene.material[material], m.state.history[k]

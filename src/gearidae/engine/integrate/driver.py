@@ -65,10 +65,10 @@ _FLAGS = {
 }
 
 
-def ending_of_flag(flag: int, elastic: bool = False) -> Ending:
-    """Name an error flag of IDA's (negative) or one of the driver's own."""
+def ending_of_flag(flag: int, alone: bool = False) -> Ending:
+    """Name an error flag of IDA's (negative) or one of the driver's own; `alone` if no other contact model goes on."""
     if flag == BOUND_EXCEEDED:
-        return Ending.TOO_DEEP if elastic else Ending.DEFLECTION
+        return Ending.TOO_DEEP if alone else Ending.DEFLECTION
     return _FLAGS.get(flag, Ending.SOLVER_FAILURE)
 
 

@@ -257,7 +257,7 @@ def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) ->
         advance(problem.located.place, s, out, budget)
         budget = _next_budget(budget, time.monotonic() - started)
         update_statistics(statistics, m.state.progress)
-        statistics.ending = ending_of_flag(int(driver.error), elastic)
+        statistics.ending = ending_of_flag(int(driver.error), elastic or m.scene.population.flanks > 0)
         if driver.error < 0 and elastic:
             statistics.note_fold(fold_gap(m, m.state.time) * m.scene.length_unit)
         if driver.error in MODEL_CHANGES:  # the run that continues from here restarts

@@ -106,7 +106,9 @@ def run(
             handed_out = time.monotonic()
     solver.count()
     update_statistics(statistics, progress)
-    statistics.ending = solver.ending or ending_of_flag(int(driver.error), bool(m.scene.nodes > 0))
+    statistics.ending = solver.ending or ending_of_flag(
+        int(driver.error), bool(m.scene.nodes > 0 or m.scene.population.flanks > 0)
+    )
     if driver.error < 0 and m.scene.nodes > 0:
         statistics.note_fold(fold_gap(m, driver.time) * m.scene.length_unit)
     if driver.done != 0 or driver.error in MODEL_CHANGES:

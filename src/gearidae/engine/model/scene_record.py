@@ -24,7 +24,6 @@ MATERIAL: Final = record_type(
     ("table_at", INT),  # force law among the tables [index]
     ("energy_at", INT),  # stored energy among the tables [index]
     ("number_at", INT),  # number of asperities above a height, among the tables [index]
-    ("table_count", INT),  # numbers in each of the first two [1]
 )
 
 COVERAGE: Final = record_type(  # of one side's flanks
@@ -126,7 +125,6 @@ SCENE: Final = record_type(
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
     ("loading_at", INT),  # loading branch of all materials, or with `by_place` of each, in forces [index]
     ("potential_at", INT),  # potentials of these branches [index]
-    ("population", POPULATION),  # real asperities on the flanks
     ("slots", INT),  # histories per flank in use, a power of two [1]
     ("histories", INT),  # histories of all flanks [1]
     ("branch_length", INT),  # numbers of a branch of the force law or stored energy; 0 if none is kept [1]
@@ -183,4 +181,6 @@ SCENE: Final = record_type(
     ("balance_span", REAL),  # over which they may last [tau]
     ("balance_error", REAL),  # error over throughput from which on it takes single steps [1]
     ("flight_parts", INT),  # into which it divides a step in flight [1]
+    # last, so that what every step reads lies as close together as without it
+    ("population", POPULATION),  # real asperities on the flanks
 )

@@ -221,11 +221,11 @@ WORK: Final = record_type(
         (2 * SLOTS_HIGH, MATERIALS),
     ),  # by tooth and place, of elastic contacts as last computed [1]
     ("settling", SETTLING, (2 * SLOTS_HIGH,)),  # of elastic contacts
-    ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
     ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),  # of the integrator
     ("search", SEARCH),  # of the root search
     ("driver", DRIVER),
     ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins [index]
     ("torque_law", INT, (2,)),  # where the compiled torque law of either shaft lies; 0 without one [address]
+    ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
 )

@@ -50,7 +50,7 @@ class WeighedLength(NamedTuple):
     by_gap: float
 
 
-@compiled
+@compiled(inline=True)
 def weighed_length(
     m: Model, where: tuple[int, int, float], w: float, w_rate: float, values: Shares, slopes: Shares
 ) -> WeighedLength:
@@ -67,17 +67,32 @@ def weighed_length(
     """
     coast, pair, phase = where
     length, rate, bend = length_and_rates(m, coast, pair, phase, w, w_rate)
-    if m.scene.by_place == 0:
-        a, a1 = weighed(WHOLE, values), weighed(WHOLE, slopes)
-        return WeighedLength(a * length, a * rate, a * bend, a1 * rate)
+    if m.scene.by_place != 0:
+        return _by_place(m, where, (w, w_rate), (length, rate, bend), values, slopes)
+    a = weighed(WHOLE, values)
+    return WeighedLength(a * length, a * rate, a * bend, weighed(WHOLE, slopes) * rate)
+
+
+@compiled
+def _by_place(
+    m: Model,
+    where: tuple[int, int, float],
+    speed: tuple[float, float],
+    lengths: tuple[float, float, float],
+    values: Shares,
+    slopes: Shares,
+) -> WeighedLength:
+    """Weigh a contact length, given with its rates, where shares change along the path."""
+    coast, pair, phase = where
+    length, rate, bend = lengths
     shares, changes, bends = share_changes(m, coast, pair, path_position(m, coast, pair, phase))
     along = m.scene.phase_rate * (1.0 - 2.0 * coast)
-    speed, speed_rate = along * w, along * w_rate
-    a, a1 = weighed(shares, values), weighed(changes, values) * speed
-    a2 = weighed(bends, values) * speed * speed + weighed(changes, values) * speed_rate
+    v, v_rate = along * speed[0], along * speed[1]
+    a, a1 = weighed(shares, values), weighed(changes, values) * v
+    a2 = weighed(bends, values) * v * v + weighed(changes, values) * v_rate
     return WeighedLength(
         a * length,
         a * rate + a1 * length,
         a * bend + 2.0 * a1 * rate + a2 * length,
-        weighed(shares, slopes) * rate + weighed(changes, slopes) * speed * length,
+        weighed(shares, slopes) * rate + weighed(changes, slopes) * v * length,
     )

@@ -103,7 +103,7 @@ def add_contact(
         force = share * scale * unit_length / float(s.force_unit)
         own.force_scale, own.stretch_limit = force, table[H_STRETCH]
         own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
-        own.table_at, own.energy_at, own.table_count = tables.add(table), tables.add(energy), table.size
+        own.table_at, own.energy_at = tables.add(table), tables.add(energy)
         own.number_at = tables.add(number_table(kernel, law.join))
         longest = max(longest, branch_length(table))
         if share > 0.0:

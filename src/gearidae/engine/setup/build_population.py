@@ -50,9 +50,9 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     own, sigma, flanks = s.population, scene.surface.roughness, flanks_of(scene)
     counts = np.array([one.arc.size for one in flanks])
     if counts.sum() == 0:
-        raise SceneError(
-            "contact.asperities", "(none)", "a population needs an asperity on one of its flanks"
-        )
+        listed, density = scene.contact.asperities, scene.surface.asperity_density
+        key, value = ("contact.asperities", "(none)") if listed else ("surface.asperity_density", density)
+        raise SceneError(key, value, "gives no asperity on any flank: a population needs some")
     length = float(s.base_pitch) if scene.gears is not None else steepness * sigma
     arcs = np.concatenate([one.arc for one in flanks]) / length
     heights = np.concatenate([one.height for one in flanks]) / sigma

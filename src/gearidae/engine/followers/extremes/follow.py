@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled
+from gearidae.contact.history import extreme_gap
 from gearidae.engine.followers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
-from gearidae.engine.followers.extremes.separations import follow_separation, note_separation
 from gearidae.engine.followers.extremes.speeds import (
     come_to_stand,
     follow_speed,
@@ -12,9 +12,9 @@ from gearidae.engine.followers.extremes.speeds import (
     note_hold,
     note_speed,
 )
-from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.dry_limit import is_pulled_back
-from gearidae.engine.motion.separation import separation
+from gearidae.engine.motion.separation import rigid_separation, separation
 
 
 @compiled(inline=True)
@@ -39,7 +39,7 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) 
         last, now = k.point[k.last], k.point[here]
         if m.scene.kind == GEARS:
             follow_speed(m, last, now, y)
-        follow_separation(m, last, now, y)
+        _follow_separation(m, last, now, y)
         if k.smooth > 1:
             follow_force(m, k.point[k.last - 1 if k.last > 0 else 2], last, now, spare)
         k.time, k.last = t, here
@@ -68,7 +68,7 @@ def note_present(m: Model, y: Floats) -> None:
         note_speed(m, y[W])
     else:
         note_speed(m, y[V])
-    note_separation(m, separation(m, y))
+    _note_separation(m, separation(m, y))
 
 
 @compiled
@@ -94,3 +94,23 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     first_force(m, t, k.point[0].force)
     e.begun = 1
     note_present(m, y)
+
+
+@compiled(inline=True)
+def _follow_separation(m: Model, last: Record, now: Record, y: Floats) -> None:
+    """Follow the separation to an accepted time, given as ``POINT`` beside the one before.
+
+    Elastic contacts turn round at events, which are accepted times.
+    """
+    if m.scene.nodes > 0:
+        _note_separation(m, separation(m, y))
+    elif now.travel_rate * last.travel_rate <= 0.0 and now.travel_rate != last.travel_rate:
+        h = now.time - last.time
+        extreme = extreme_gap(h, last.travel, last.travel_rate, now.travel, now.travel_rate)
+        _note_separation(m, rigid_separation(m, extreme))
+
+
+@compiled
+def _note_separation(m: Model, distance: float) -> None:
+    """Note a distance."""
+    m.state.extremes.separation = min(m.state.extremes.separation, distance)
