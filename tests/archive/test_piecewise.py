@@ -21,7 +21,7 @@ from gearidae.plot import spectra, style
 from gearidae.report import build_report, series
 from same import assert_same
 
-teeth = import_module("gearidae.studies.tooth_contacts")
+teeth = import_module("gearidae.studies._tooth_contacts")
 SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
 LOOKED_BACK = 4_096  # samples that the view of the teeth looks back at together
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
