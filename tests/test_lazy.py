@@ -13,7 +13,7 @@ from pkgutil import iter_modules
 from types import ModuleType
 import gearidae as gd
 
-for package in (gd.analysis, gd.contact, gd.plot, gd.population, gd.studies, gd.surfaces):
+for package in (gd.analysis, gd.contact, gd.plot, import_module("gearidae.populations"), gd.studies, gd.surfaces):
     for module in iter_modules(package.__path__):
         import_module(f"{package.__name__}.{module.name}")
     hidden = [name for name in package.__all__ if isinstance(getattr(package, name), ModuleType)]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from gearidae.errors import Interrupted as Interrupted
     from gearidae.errors import SceneError as SceneError
     from gearidae.errors import SolverError as SolverError
-    from gearidae.population import population as population
+    from gearidae.populations import population as population
     from gearidae.report import write_report as write_report
     from gearidae.runs.simulation import simulate as simulate
     from gearidae.runs.sweeping import sweep as sweep

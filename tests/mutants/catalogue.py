@@ -506,10 +506,10 @@ MUTANTS = (
     ),
     Mutant(
         "flanks of a population drawn with tooth and flank exchanged",
-        "population/flanks.py",
+        "populations/flanks.py",
         "rng = np.random.default_rng([seed, tooth, flank])\n            n = int(rng.poisson(mean))",
         "rng = np.random.default_rng([seed, flank, tooth])\n            n = int(rng.poisson(mean))",
-        ("population/test_flanks.py::test_the_preset_s_surface_is_the_one_that_a_prototype_drew",),
+        ("populations/test_flanks.py::test_the_preset_s_surface_is_the_one_that_a_prototype_drew",),
     ),
     Mutant(
         "energy of an asperity counted from detachment in place of free surfaces",

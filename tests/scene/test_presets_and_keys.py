@@ -24,7 +24,7 @@ CONTRACT = {
     "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
     "harmonic.phase law law.name law.parameters",
     "initial": "gear_speed gap mesh_phase",
-    "run": "balance exposures duration samples rtol method stop checkpoints",
+    "run": "asperity_events balance exposures duration samples rtol method stop checkpoints",
     "roller": "radius mass width speed height",
     "contact": "model asperity seed radius_spread asperities",
 }

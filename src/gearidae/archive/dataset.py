@@ -33,7 +33,7 @@ from gearidae.archive.variables import (
     columns,
 )
 from gearidae.errors import SceneError
-from gearidae.population.flanks import flanks_digest, flanks_of
+from gearidae.populations.flanks import flanks_digest, flanks_of
 from gearidae.records import Solution
 from gearidae.scene import Scene, describe_key
 

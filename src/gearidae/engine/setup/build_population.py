@@ -16,8 +16,8 @@ from gearidae.engine.population.candidates import LEVELS
 from gearidae.engine.population.layout import FIELDS, K_DETACH, K_JOIN, KINDS
 from gearidae.engine.setup.tables import Tables
 from gearidae.errors import SceneError
-from gearidae.population.flanks import FlankAsperities, flanks_digest, flanks_of
-from gearidae.population.materials import materials_at
+from gearidae.populations.flanks import FlankAsperities, flanks_digest, flanks_of
+from gearidae.populations.materials import materials_at
 from gearidae.scene import MATERIAL_NAMES, Scene
 
 Integers = NDArray[np.int64]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.population.flanks import flanks_digest, flanks_of
-from gearidae.population.materials import along_path, materials_at
+from gearidae.populations.flanks import flanks_digest, flanks_of
+from gearidae.populations.materials import along_path, materials_at
 from gearidae.scene import MATERIAL_NAMES, preset
 from gearidae.scene.coating_table import fraction_at
 from gearidae.scene.strip import flank_strip

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.mesh.involute import place_of_arc
-from gearidae.population.flanks import FlankAsperities
+from gearidae.populations.flanks import FlankAsperities
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.coating_table import fraction_at
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gearidae.population.dataset import population as population
-    from gearidae.population.flanks import FlankAsperities as FlankAsperities
-    from gearidae.population.flanks import flanks_of as flanks_of
+    from gearidae.populations.dataset import population as population
+    from gearidae.populations.flanks import FlankAsperities as FlankAsperities
+    from gearidae.populations.flanks import flanks_of as flanks_of
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)

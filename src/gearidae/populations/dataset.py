@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearidae.errors import SceneError
-from gearidae.population.flanks import flanks_digest, flanks_of
-from gearidae.population.materials import covered_sides
+from gearidae.populations.flanks import flanks_digest, flanks_of
+from gearidae.populations.materials import covered_sides
 from gearidae.scene import Scene
 
 if TYPE_CHECKING:
