@@ -186,7 +186,7 @@ def test_run_that_ended_early(single):
 def test_account_of_a_run(single, swept):
     told = json.loads(single.attrs["account"])
     assert f"work of the drive {with_prefix(told['drive_work'], 'J', 6)}" in Page(build_report(single)).text
-    assert "Account of the run" not in Page(build_report(swept)).text
+    assert "Run summary" not in Page(build_report(swept)).text
 
 
 @pytest.mark.parametrize(

@@ -73,7 +73,7 @@ def simulate(
     -------
     xarray.Dataset
         Samples along ``time``, events along ``event``, all in SI units, with the scene as it was run, provenance,
-        solver statistics and (as JSON, see `gearidae.archive.run_summary`) the account of the run as attributes.
+        solver statistics and (as JSON, see `gearidae.archive.run_summary`) the run summary as attributes.
         With `archive`,
         what `open_archive` returns.
 

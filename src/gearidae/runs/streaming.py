@@ -171,7 +171,7 @@ class _Run:
         return Interrupted(kept, self._left())
 
     def _told(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
-        """Make the final template, with the account of the run."""
+        """Make the final template, with the run summary."""
         template = self._template(ended)
         if self._scene.roller is None:
             end = float(template.attrs["t_end"]) if ended.status == "finished" else 0.0
