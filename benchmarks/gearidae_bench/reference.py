@@ -109,7 +109,8 @@ class Reference:
 
 
 _YOUNGER: Final[dict[str, dict[str, Any]]] = {
-    "run": {"method": "auto", "stop": "time", "exposures": 0},
+    "run": {"method": "auto", "stop": "time", "exposures": 0, "balance": True, "asperity_events": True},
+    "contact": {"seed": 0, "radius_spread": 0.0},
     "mesh": {"radius_force": False},
     "surface": {"provenance": ""},
     "drive": {"speed_gain": 0.0},
@@ -129,6 +130,8 @@ def scene_hash(bench: BenchScene) -> str:
     solved = bench.scene.to_dict()
     if bench.scene.contact.asperity != "maugis":  # no other law has a range
         del solved["surface"]["interaction_range"]
+    if bench.scene.initial is not None:  # a length, in whichever way it is written
+        solved["initial"]["gap"] = float(bench.scene.initial.gap)
     for table, defaults in _YOUNGER.items():
         for key, default in defaults.items():
             if solved.get(table, {}).get(key) == default:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import socket
 import stat
@@ -11,6 +12,7 @@ from pathlib import Path
 import matplotlib.figure
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearidae as gd
 from gearidae.archive import check_target, save, target, to_dataset
@@ -39,6 +41,10 @@ def nothing_runs(monkeypatch):
     monkeypatch.setattr("gearidae.report.page.build_report", run)
 
 
+POSTERIOR = xr.Dataset(
+    {"sam_fraction": ("draw", [0.5, 0.6])},
+    attrs={"calibration": json.dumps({"priors": {"coating.sam_fraction": "uniform(0.4, 0.6)"}})},
+)
 STUDIES = {
     "simulate": lambda path, **how: gd.simulate(LOW, archive=path, **how),
     "sweep": lambda path, **how: gd.sweep(LOW, FRACTIONS, archive=path, jobs=1, **how),
@@ -68,7 +74,7 @@ STUDIES = {
         archive=path,
         **how,
     ),
-    "predict": lambda path, **how: gd.studies.predict(LOW, None, 2, archive=path, **how),
+    "predict": lambda path, **how: gd.studies.predict(LOW, POSTERIOR, 2, archive=path, **how),
 }
 
 
