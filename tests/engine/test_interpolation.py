@@ -8,6 +8,7 @@ import pytest
 import gearidae as gd
 from gearidae.engine.integrate import native
 from gearidae.engine.integrate.callbacks import callbacks
+from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.sundials import interpolation
 from gearidae.engine.sundials import names as sun
@@ -26,7 +27,8 @@ def stepped():
     functions, place = callbacks(s.y.size, False, True), problem.located.place
     out = native.Output.empty(len(problem.columns))
     try:
-        assert open_solver(s.handles, place, functions, places, (s.y, s.yp, s.dky)) == 0
+        vectors = (s.y, s.yp, s.dky)
+        assert open_solver(s.handles, place, functions, places, vectors, CONVERGENCE_FAILURES_HIGH) == 0
         native.advance(place, s, out, STEPS)
         begin = float(s.clock[0])
         native.advance(place, s, out, 1)

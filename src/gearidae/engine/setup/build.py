@@ -42,7 +42,7 @@ from gearidae.engine.torques.schedule import (
 )
 from gearidae.mesh.involute import Geometry
 from gearidae.records import sampled_columns
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene import MATERIAL_NAMES, Drive, Load, Scene
 from gearidae.scene.limits import check_reach, pairs_within_reach
 
 LIGHTER = 0.25
@@ -119,10 +119,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
         geometry.base_pitch / float(s.gear_radius),
     )
     s.radius_force = int(mesh.radius_force)
-    s.damping = mesh.damping * speed / float(s.force_unit)
-    s.drag = load.drag / geometry.base_radius_gear**3 * speed**2 / float(s.force_unit)
-    s.viscous = load.viscous / geometry.base_radius_gear**2 * speed / float(s.force_unit)
-    s.speed_gain = drive.speed_gain / geometry.base_radius_pinion**2 * speed / float(s.force_unit)
+    _set_resistances(s, mesh.damping, drive, load)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
     s.dry = int(load.is_dry)
     s.rest_speed = 10.0 * scene.run.rtol
@@ -202,6 +199,15 @@ def _set_units(s: Record, scene: Scene) -> None:
     s.kind, s.length_unit = GEARS, scene.surface.roughness
     s.time_unit, s.force_unit = math.sqrt(mass * scene.surface.roughness / force), force
     s.pinion_inverse_mass, s.gear_inverse_mass = mass / pinion_mass, mass / gear_mass
+
+
+def _set_resistances(s: Record, damping: float, drive: Drive, load: Load) -> None:
+    """Set forces per speed: of mesh damping [N s/m], of both drags and of a drive that holds a speed."""
+    speed, force = float(s.length_unit) / float(s.time_unit), float(s.force_unit)
+    s.damping = damping * speed / force
+    s.drag = load.drag / float(s.gear_radius) ** 3 * speed**2 / force
+    s.viscous = load.viscous / float(s.gear_radius) ** 2 * speed / force
+    s.speed_gain = drive.speed_gain / float(s.pinion_radius) ** 2 * speed / force
 
 
 def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> None:
