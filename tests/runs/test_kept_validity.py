@@ -70,8 +70,8 @@ def test_a_run_in_memory_does_not_wait_for_them(monkeypatch):
 
 def test_they_are_computed_once_for_a_run(path, monkeypatch):
     computed = []
-    whole = validity._resting
-    monkeypatch.setattr(validity, "_resting", lambda scene: computed.append(scene) or whole(scene))
+    whole = validity._asperities
+    monkeypatch.setattr(validity, "_asperities", lambda rest: computed.append(rest) or whole(rest))
     gd.simulate(LOW.replace({"surface.roughness": 6.01e-9}), archive=path)
     assert len(computed) == 1
 

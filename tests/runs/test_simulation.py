@@ -55,6 +55,8 @@ def test_settings_of_the_call_end_up_in_the_scene():
         "method": "auto",
         "stop": "time",
         "exposures": 0,
+        "balance": True,
+        "asperity_events": True,
     }
     assert (ds.attrs["rtol"], ds.attrs["t_end"]) == (1e-5, 1e-3)
     assert (ds.sizes["time"], ds.time[-1]) == (51, 1e-3)
