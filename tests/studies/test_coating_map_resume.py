@@ -30,7 +30,7 @@ import gearidae as gd
 low = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 4001})
 
 def shoot(done, total):
-    if len(list(pathlib.Path(sys.argv[1] + ".runs").glob("*.nc"))) >= 4:
+    if len(list(pathlib.Path(sys.argv[1] + ".runs").glob("*.npz"))) >= 4:
         os.kill(os.getpid(), signal.SIGKILL)
 
 gd.analysis.coating_map(low, [1.0, 0.9, 0.8], over={"drive.torque": [4e-18, 5e-18]}, jobs=1,
