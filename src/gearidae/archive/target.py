@@ -188,7 +188,9 @@ def whole_file(
 
 def _longest_name(folder: Path) -> int:
     """Bytes that the name of a file in a folder may have."""
+    if sys.platform == "win32" or not hasattr(os, "pathconf"):
+        return _USUAL_LONGEST
     try:
         return os.pathconf(folder, "PC_NAME_MAX")
-    except (AttributeError, OSError, ValueError):
+    except (OSError, ValueError):
         return _USUAL_LONGEST
