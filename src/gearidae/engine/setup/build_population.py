@@ -99,20 +99,20 @@ def _kinds(
     sigma, by_name = scene.surface.roughness, {one.name: one for one in scene.materials()}
     highest = float(s.population.highest) - GAP_LOW
     tips = []
+    reach: dict[AsperityLaw, float] = {}
     for pair in pairs.tolist():
         radius, one = radii[pair // len(MATERIAL_NAMES)], by_name[MATERIAL_NAMES[pair % len(MATERIAL_NAMES)]]
         tip = asperity_of(one.surface.model_copy(update={"asperity_radius": float(radius)}))
         unit = tip.stretch_limit if tip.stretch_limit > 0.0 else sigma
-        tips.append((law_of_tip(scene.contact.asperity, tip, unit), tip.hertz_factor, unit, one.gap_offset))
-    reach: dict[AsperityLaw, float] = {}
-    for law, _, unit, _ in tips:
+        law = law_of_tip(scene.contact.asperity, tip, unit)
+        tips.append((law, tip.hertz_factor, unit, one.gap_offset))
         reach[law] = max(reach.get(law, 0.0), highest * sigma / unit)
-    if len(reach) > MOST_LAWS:
-        raise SceneError(
-            "contact.asperity",
-            scene.contact.asperity,
-            f"has another law for each radius, here {len(reach)}: there may be {MOST_LAWS} at most, or the law jkr",
-        )
+        if len(reach) > MOST_LAWS:
+            raise SceneError(
+                "contact.asperity",
+                scene.contact.asperity,
+                f"has another law for each of {radii.size} radii: there may be {MOST_LAWS} at most, or the law jkr",
+            )
     places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
     numbers = np.empty((pairs.size, KINDS))
     for row, (law, factor, unit, offset) in enumerate(tips):
