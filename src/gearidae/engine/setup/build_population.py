@@ -111,7 +111,7 @@ def _kinds(
             raise SceneError(
                 "contact.asperity",
                 scene.contact.asperity,
-                f"has another law for each of {radii.size} radii: there may be {MOST_LAWS} at most, or the law jkr",
+                f"has another law for each radius, of {radii.size}: there may be {MOST_LAWS} at most, or the law jkr",
             )
     places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
     numbers = np.empty((pairs.size, KINDS))
