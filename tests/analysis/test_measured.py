@@ -201,7 +201,7 @@ def test_frames_are_read_by_their_headings():
     for one in (frame, frame.set_index("Zeit [ms]")):
         ds = read_signal(one, columns=["Zeit [ms]", "Drehzahl [rpm]"], bridge=1)
         np.testing.assert_allclose(ds.time, TIME, rtol=1e-12)
-        np.testing.assert_allclose(np.delete(ds.gear_speed, 9), np.delete(SPEED, 9), rtol=1e-12)
+        np.testing.assert_allclose(np.delete(ds.gear_speed.values, 9), np.delete(SPEED, 9), rtol=1e-12)
         assert ds.attrs["reading"] == "1 sample bridged"
     with pytest.raises(SceneError, match=r"signal = DataFrame.*sample 9"):
         read_signal(frame)
