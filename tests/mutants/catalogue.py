@@ -204,8 +204,8 @@ MUTANTS = (
     Mutant(
         "phase of a harmonic torque left out",
         "engine/torques/harmonic.py",
-        "value += m.tables[k] * math.cos(m.tables[k + 1] * t + m.tables[k + 2])",
-        "value += m.tables[k] * math.cos(m.tables[k + 1] * t)",
+        "value += m.tables[k] * math.cos(m.tables[k + 1] * x + m.tables[k + 2])",
+        "value += m.tables[k] * math.cos(m.tables[k + 1] * x)",
         SHAFTS,
     ),
     Mutant(

@@ -26,50 +26,29 @@ def pack_harmonics(
 
 
 @compiled(inline=True)
-def harmonic_value(m: Model, shaft: int, t: float, value: float) -> float:
-    """Add the harmonics at a time to a value."""
-    own = m.scene.torque[shaft]
-    k = own.harmonics_at
-    for _ in range(own.harmonic_count):
-        value += m.tables[k] * math.cos(m.tables[k + 1] * t + m.tables[k + 2])
+def add_cosines(m: Model, at: int, count: int, x: float, value: float) -> float:
+    """Add ``amplitude cos(factor x + phase)`` of some harmonics to a value; `x` is the time or the shaft's angle."""
+    k = at
+    for _ in range(count):
+        value += m.tables[k] * math.cos(m.tables[k + 1] * x + m.tables[k + 2])
         k += 3
     return value
 
 
 @compiled
-def harmonic_rate(m: Model, shaft: int, t: float) -> float:
-    """Rate of change of the harmonics."""
-    own = m.scene.torque[shaft]
-    k = own.harmonics_at
-    rate = 0.0
-    for _ in range(own.harmonic_count):
-        rate -= m.tables[k] * m.tables[k + 1] * math.sin(m.tables[k + 1] * t + m.tables[k + 2])
-        k += 3
-    return rate
+def sum_of_cosines(m: Model, at: int, count: int, x: float) -> float:
+    """Return their sum; not put into its callers, most of which have none."""
+    return add_cosines(m, at, count, x, 0.0)
 
 
 @compiled
-def order_value(m: Model, shaft: int, angle: float) -> float:
-    """Sum of the harmonics of the shaft's angle [rad]."""
-    own = m.scene.torque[shaft]
-    k = own.orders_at
-    value = 0.0
-    for _ in range(own.order_count):
-        value += m.tables[k] * math.cos(m.tables[k + 1] * angle + m.tables[k + 2])
+def slope_of_cosines(m: Model, at: int, count: int, x: float) -> float:
+    """Derivative of their sum in x."""
+    k, slope = at, 0.0
+    for _ in range(count):
+        slope -= m.tables[k] * m.tables[k + 1] * math.sin(m.tables[k + 1] * x + m.tables[k + 2])
         k += 3
-    return value
-
-
-@compiled
-def order_rate(m: Model, shaft: int, angle: float) -> float:
-    """Rate of change of these per radian."""
-    own = m.scene.torque[shaft]
-    k = own.orders_at
-    rate = 0.0
-    for _ in range(own.order_count):
-        rate -= m.tables[k] * m.tables[k + 1] * math.sin(m.tables[k + 1] * angle + m.tables[k + 2])
-        k += 3
-    return rate
+    return slope
 
 
 def fastest_harmonic(harmonics: Floats, felt: float) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import DRIVE, Model
-from gearidae.engine.torques.harmonic import harmonic_rate, harmonic_value, order_rate, order_value
+from gearidae.engine.torques.harmonic import add_cosines, slope_of_cosines, sum_of_cosines
 from gearidae.engine.torques.held_speed import held_speed_rate, held_speed_value
 from gearidae.engine.torques.law import law_rate, law_value
 from gearidae.engine.torques.schedule import schedule_rate, schedule_value
@@ -18,13 +18,13 @@ from gearidae.engine.torques.schedule import schedule_rate, schedule_value
 @compiled(inline=True)
 def torque_force(m: Model, shaft: int, t: float, angle: float, speed: float) -> float:
     """Torque over base radius and reference load, at scaled time t, angle [rad] and scaled speed of the shaft."""
-    value = m.scene.torque[shaft].constant
-    value = harmonic_value(m, shaft, t, value)
+    own = m.scene.torque[shaft]
+    value = add_cosines(m, own.harmonics_at, own.harmonic_count, t, own.constant)
     value = schedule_value(m, shaft, t, value)
     if m.work.torque_law[shaft] != 0:
         value += law_value(m, shaft, t, angle, speed)
-    if m.scene.torque[shaft].order_count != 0:
-        value += order_value(m, shaft, angle)
+    if own.order_count != 0:
+        value += sum_of_cosines(m, own.orders_at, own.order_count, angle)
     if shaft == DRIVE and m.scene.speed_gain != 0.0:
         value += held_speed_value(m, t, speed)
     return value
@@ -33,11 +33,12 @@ def torque_force(m: Model, shaft: int, t: float, angle: float, speed: float) -> 
 @compiled
 def torque_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float) -> float:
     """Rate of change of `torque_force` along the motion."""
-    rate = harmonic_rate(m, shaft, t) + schedule_rate(m, shaft, t)
+    own = m.scene.torque[shaft]
+    rate = slope_of_cosines(m, own.harmonics_at, own.harmonic_count, t) + schedule_rate(m, shaft, t)
     if m.work.torque_law[shaft] != 0:
         rate += law_rate(m, shaft, t, angle, speed, acceleration)
-    if m.scene.torque[shaft].order_count != 0:
-        rate += order_rate(m, shaft, angle) * speed * m.scene.torque[shaft].angle_unit
+    if own.order_count != 0:
+        rate += slope_of_cosines(m, own.orders_at, own.order_count, angle) * speed * own.angle_unit
     if shaft == DRIVE and m.scene.speed_gain != 0.0:
         rate += held_speed_rate(m, t, acceleration)
     return rate
