@@ -29,6 +29,7 @@ _PICTURES: Final = {
     "operating_map": {"outcome_map": "What the gears do over two keys"},
     "posterior": {"posterior": "Posterior of each key, and of each two"},
     "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
+    "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
     "sticking_threshold": {"sticking_threshold": "Sticking limit against the mesh exits waited for"},
 }
 """Pictures of what studies have written, and their captions: the one that says most first."""
