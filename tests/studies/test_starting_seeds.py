@@ -116,53 +116,58 @@ def test_quantiles_count_gears_that_did_not_start():
 
 @pytest.fixture(scope="module")
 def found():
-    return gd.studies.starting_torque(GEARS, [1.0, 0.0], **FEW)
+    return gd.studies.starting_torque(BARE, **FEW)
 
 
 def test_each_gear_is_found_alone_and_by_threads_alike(found):
     assert found.starting_torque.dims == ("sam_fraction", "seed")
-    second = GEARS.replace({"contact.seed": 1})
-    at = starting_ramp.laid(second.replace({"coating.sam_fraction": 0.0}), 1)
+    at = starting_ramp.laid(BARE, 1)
     assert float(found.place[1]) == at.initial.mesh_phase
-    scale = found.ramp_end.sel(sam_fraction=0.0).item() / 8.0
-    assert found.rate.sel(sam_fraction=0.0).item() == pytest.approx(
+    scale, (rate,) = found.ramp_end.item() / 8.0, found.rate.values
+    assert rate == pytest.approx(
         starting_ramp.ramp_rate(starting_ramp.pitch_of(at), scale, 1), rel=1e-12, abs=0
     )
-    assert (found.median_change < 0.1).all()
+    assert found.median_change.item() < 0.1
     with ThreadPoolExecutor(2) as executor:
-        other = gd.studies.starting_torque(GEARS, [1.0, 0.0], seeds=2, executor=executor)
+        other = gd.studies.starting_torque(BARE, seeds=2, executor=executor)
     xr.testing.assert_identical(without_times(other), without_times(found))
 
 
-def test_bare_teeth_hold_more_and_the_own_torque_starts_coated_ones(found):
-    assert (
-        found.starting_torque.sel(sam_fraction=0.0) > 10.0 * found.starting_torque.sel(sam_fraction=1.0)
-    ).all()
-    assert found.chance.sel(sam_fraction=1.0) == 1.0
-    assert (found.not_started == 0.0).all()
-    weak = BARE.replace({"drive.torque": 1e-13})
-    assert float(gd.studies.starting_torque(weak, seeds=1).chance[0]) == 0.0
+def test_bare_teeth_hold_more_and_dry_resistance_adds_to_them():
+    """A dry resistance presses the teeth before they start: not much, as it is a tenth of what adhesion takes."""
+    weak = GEARS.replace({"drive.torque": 1e-13})
+    free = gd.studies.starting_torque(weak, [1.0, 0.0], seeds=1)
+    coated, bare = free.starting_torque.values[:, 0]
+    assert bare > 10.0 * coated
+    assert free.chance.values.tolist() == [float(coated < 1e-13), 0.0]
+    assert (free.not_started == 0.0).all()
+    dry = gd.studies.starting_torque(BARE.replace({"load.torque": 0.4 * bare}), seeds=1)
+    assert float(dry.starting_torque[0, 0]) == pytest.approx(1.1 * bare, rel=0.1, abs=0)
 
 
 def test_cut_off_and_resumed_it_ends_alike(found, tmp_path):
     target = tmp_path / "out.nc"
 
     def cut_off(done, total):
-        if done >= 9.0:
+        if done >= 3.0:
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted, match="--resume"):
-        gd.studies.starting_torque(GEARS, [1.0, 0.0], archive=target, progress=cut_off, **FEW)
-    whole = gd.studies.starting_torque(GEARS, [1.0, 0.0], archive=target, resume=True, **FEW)
+        gd.studies.starting_torque(BARE, archive=target, progress=cut_off, **FEW)
+    whole = gd.studies.starting_torque(BARE, archive=target, resume=True, **FEW)
     xr.testing.assert_identical(without_times(whole), without_times(found))
     assert main(["plot", str(target), "-o", str(tmp_path / "out.png")]) == 0
 
 
 def test_bare_gears_start_as_those_of_a_prototype():
-    """A tenth is what half of its own rate may have changed the prototype's median, 1.1e-11 N m, by."""
+    """A tenth is what half of its own rate may have changed the prototype's median, 1.1e-11 N m, by.
+
+    Eight of its gears started at 1e-11 N m at once. One more or less may: of those close to their limit, what is left
+    of the motion decides.
+    """
     ds = gd.studies.starting_torque(BARE.replace({"drive.torque": 1e-11}), seeds=10)
     assert float(ds.quantiles.sel(quantile=0.5)[0]) == pytest.approx(1.1e-11, rel=0.1, abs=0)
-    assert float(ds.chance[0]) == 0.8
+    assert abs(int(ds.starts.sum()) - 8) <= 1
 
 
 def test_what_a_population_does_not_take_is_named():

@@ -35,8 +35,8 @@ _OCTAVES: Final = 30
 """Times that a pilot doubles its torque."""
 _LAYING: Final = 1e-3
 """Torque that lays the flanks together, over the scale of the starting torques."""
-_SETTLING: Final = 10.0
-"""Time for that, over the time of a pitch at the scale."""
+_SETTLING: Final = 100.0
+"""Time for that, over the time of a pitch at the scale: the speed has fallen to some 0.4 % of the one of that pitch."""
 _HIGHEST: Final = 8.0
 """Where the ramp ends, over the scale."""
 _PATIENCE: Final = 50.0
@@ -46,7 +46,7 @@ _AT_REST: Final = 0.01
 """Speed of a gear at rest at most, over the largest of its first pitch."""
 
 _TIGHTER: Final = (1.0, 0.1, 0.01)
-"""Tolerances to try, over the scene's: creeping over the end of a flank, where the force jumps, may need a small one."""
+"""Tolerances to try, over the scene's: creeping over the end of a flank, where the force jumps, may need one."""
 _TIGHTEST: Final = 1e-12
 
 RESTS = "rests"
