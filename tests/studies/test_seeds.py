@@ -102,3 +102,50 @@ def test_the_command_takes_seeds(tmp_path, capsys):
     assert main(["report", out, "-o", str(tmp_path / "out.html")]) == 0
     assert "one specimen" in (tmp_path / "out.html").read_text(encoding="utf-8")
     assert main(["plot", out, "-o", str(tmp_path / "out.png")]) == 0
+
+
+def test_probability_of_sticking_over_seeds_and_coverage():
+    """Of a sweep and of an ensemble by one study; the seed itself is no axis."""
+    still = GEARS.replace({"initial.gear_speed": 0.0, "drive.torque": 1e-12, "load.torque": 0.0})
+    still = still.replace({"run.duration": "0.5 ms", "contact.seed": 0, "mesh.damping": 7e-6})
+    over = {"coating.sam_fraction": [1.0, 0.0], "contact.seed": [0, 1, 2, 3, 4, 5]}
+    ds = gd.sweep(still, over, keep=["verdict"])
+    along = gd.studies.sticking_probability(ds, "coating.sam_fraction")
+    assert along.sam_fraction.values.tolist() == [0.0, 1.0]
+    assert along.members.values.tolist() == [6, 6]
+    stuck = np.isin(ds.verdict.values, ["sticks", "runs back"]).sum(axis=1)
+    assert along.stuck.values.tolist() == stuck[::-1].tolist()
+    assert stuck[1] > stuck[0]  # bare teeth hold the gear, coated ones do not
+    assert int(gd.studies.sticking_probability(ds).members) == 12
+    with pytest.raises(gd.SceneError, match=r"coating\.sam_fraction"):
+        gd.studies.sticking_probability(ds, "contact.seed")
+    ax = gd.plot.sticking_probability(ds)
+    assert ax.get_lines()[0].get_ydata().tolist() == along.probability.values.tolist()
+    ensemble = gd.studies.ensemble(still.replace({"coating.sam_fraction": 0.0}), SEEDS, 6)
+    assert ensemble.sticks.sum() == stuck[1]
+
+
+def test_a_picture_has_the_mean_of_the_specimens(found):
+    ax = gd.plot.specimens(found)
+    ax.figure.canvas.draw()
+    steps, mean = ax.get_lines()[:2]
+    assert steps.get_xdata().tolist() == sorted(found.settled_gear_speed.values)
+    assert mean.get_xdata()[0] == pytest.approx(float(found.settled_gear_speed.mean()), rel=1e-14)
+    with pytest.raises(gd.SceneError, match="figure"):
+        gd.plot.specimens(found, of="verdict_words")
+
+
+def test_one_run_is_called_one_specimen(tmp_path, capsys):
+    case, out = tmp_path / "own.toml", str(tmp_path / "out.nc")
+    case.write_text(gd.dump_case(GEARS), encoding="utf-8")
+    assert main(["run", str(case), "-o", out]) == 0
+    told = capsys.readouterr().out
+    assert "one specimen" in told
+    assert "contact.seed=seeds" in told
+    assert "mean over many gears" not in told
+    assert main(["check", str(case)]) == 0
+    assert "one specimen" in capsys.readouterr().out
+    ds = gd.open_archive(out)
+    assert gd.plot.overview(ds).get_suptitle().endswith("one specimen, seed 5")
+    assert main(["report", out, "-o", str(tmp_path / "out.html")]) == 0
+    assert "This is one specimen" in (tmp_path / "out.html").read_text(encoding="utf-8")

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.keep import read_keep
+from gearidae.archive.specimen import SEED
 from gearidae.archive.variables import extreme_names
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution
@@ -22,7 +23,7 @@ from gearidae.studies.design import Design, check_design, pick_freeze_design, pl
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.indices import Indices, indices_of
 from gearidae.studies.members import along_members, member_plan, names_of
-from gearidae.studies.seeds import NO_INDEX, SEED, SEEDS, numbers_seeds, seed_numbers
+from gearidae.studies.seeds import NO_INDEX, SEEDS, numbers_seeds, seed_numbers
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress

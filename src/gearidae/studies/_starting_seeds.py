@@ -24,10 +24,12 @@ from gearidae.studies.starting_ramp import (
     RESTS,
     constant,
     laid,
+    least_damping,
     pilot,
     pitch_of,
     place_of_seed,
     ramp,
+    ramp_end,
     ramp_rate,
     run_from_rest,
 )
@@ -45,6 +47,37 @@ _HALVINGS: Final = 4
 """Times that the rate is halved at most."""
 _STAGES: Final = 4
 """Runs of each gear, where the first two rates agree."""
+
+
+_ALONG: Final = ("sam_fraction",)
+_VARIABLES: Final[dict[str, tuple[tuple[str, ...], str, str]]] = {
+    "starting_torque": (
+        (*_ALONG, "seed"),
+        "N m",
+        "torque at the last moment of rest; NaN if the gear did not start",
+    ),
+    "starts": (
+        (*_ALONG, "seed"),
+        "1",
+        "whether the drive's own torque turns the gear from rest by one pitch",
+    ),
+    "place": (("seed",), "1", "place of the start, in pitches"),
+    "quantiles": (
+        (*_ALONG, "quantile"),
+        "N m",
+        "quantiles of the starting torque, gears that did not start included; NaN beyond the ramp",
+    ),
+    "not_started": (_ALONG, "1", "share that had not started when the ramp ended"),
+    "chance": (_ALONG, "1", "share that the drive's own torque starts"),
+    "rate": (_ALONG, "N m s-1", "rise of the torque"),
+    "ramp_end": (_ALONG, "N m", "torque at which the ramp ended"),
+    "median_change": (_ALONG, "1", "change of the median by half the rate"),
+    "damping": (_ALONG, "N s m-1", "damping of the mesh"),
+}
+_SUMMARY: Final = (
+    "Torques on the pinion at which gears with real asperities start from rest: the torque rises linearly, and that of "
+    "the last moment of rest before one pitch counts."
+)
 
 
 @dataclass
@@ -201,51 +234,8 @@ def _quantiles(torques: Floats) -> Floats:
 def _dataset(
     base: Scene, shares: Sequence[float], numbers: Sequence[int], designs: Sequence[_Design]
 ) -> xr.Dataset:
-    torques = np.stack([one.torques for one in designs])
-    rates = [ramp_rate(pitch_of(one.scene), one.scale, one.halvings) for one in designs]
-    ends = [float(ramp(one.laid[0], one.scale, 0).drive.schedule[-1][1]) for one in designs]  # type: ignore[union-attr]
-    starts = np.stack([one.starts for one in designs])
-    along, both = ("sam_fraction",), ("sam_fraction", "seed")
-    finite = np.where(np.isfinite(torques), torques, np.nan)
-    quantiles = np.stack([_quantiles(each) for each in torques])
-    columns: dict[str, tuple[tuple[str, ...], Any, str, str]] = {
-        "starting_torque": (
-            both,
-            finite,
-            "N m",
-            "torque at the last moment of rest; NaN if the gear did not start",
-        ),
-        "starts": (both, starts, "1", "whether the drive's own torque turns the gear from rest by one pitch"),
-        "place": (
-            ("seed",),
-            [place_of_seed(base, n) for n in numbers],
-            "1",
-            "place of the start, in pitches",
-        ),
-        "quantiles": (
-            (*along, "quantile"),
-            np.where(np.isfinite(quantiles), quantiles, np.nan),
-            "N m",
-            "quantiles of the starting torque, gears that did not start included; NaN beyond the ramp",
-        ),
-        "not_started": (
-            along,
-            np.isnan(finite).mean(axis=1),
-            "1",
-            "share that had not started when the ramp ended",
-        ),
-        "chance": (along, starts.mean(axis=1), "1", "share that the drive's own torque starts"),
-        "rate": (along, rates, "N m s-1", "rise of the torque"),
-        "ramp_end": (along, ends, "N m", "torque at which the ramp ended"),
-        "median_change": (
-            along,
-            [one.change for one in designs],
-            "1",
-            "change of the median by half the rate",
-        ),
-        "damping": (along, [one.laid[0].mesh.damping for one in designs], "N s m-1", "damping of the mesh"),  # type: ignore[union-attr]
-    }
     assert base.drive is not None
+    columns = _columns(designs) | {"place": [place_of_seed(base, number) for number in numbers]}
     coords = {
         "sam_fraction": ("sam_fraction", np.array(shares), SAM_FRACTION.attributes),
         "seed": ("seed", np.array(numbers), {"units": "1", "long_name": "contact.seed of the gear"}),
@@ -257,17 +247,36 @@ def _dataset(
     }
     return xr.Dataset(
         {
-            name: (dims, np.asarray(values), {"units": units, "long_name": words})
-            for name, (dims, values, units, words) in columns.items()
+            name: (dims, np.asarray(columns[name]), {"units": units, "long_name": words})
+            for name, (dims, units, words) in _VARIABLES.items()
         },
         coords=coords,
         attrs={
             **provenance(base, "found starting torques of a population", swept=("contact.seed",)),
             "title": f"{base.name}: starting torque of {len(numbers)} gears",
-            "summary": (
-                "Torques on the pinion at which gears with real asperities start from rest: the torque rises linearly, "
-                "and that of the last moment of rest before one pitch counts."
-            ),
+            "summary": _SUMMARY,
             "drive_torque": base.drive.torque,
         },
     )
+
+
+def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
+    """Values of the variables, design by design."""
+    torques = np.stack([one.torques for one in designs])
+    starts = np.stack([one.starts for one in designs])
+    finite = np.where(np.isfinite(torques), torques, np.nan)
+    quantiles = np.stack([_quantiles(each) for each in torques])
+    pitches = [pitch_of(one.scene) for one in designs]
+    return {
+        "starting_torque": finite,
+        "starts": starts,
+        "quantiles": np.where(np.isfinite(quantiles), quantiles, np.nan),
+        "not_started": np.isnan(finite).mean(axis=1),
+        "chance": starts.mean(axis=1),
+        "rate": [
+            ramp_rate(pitch, one.scale, one.halvings) for pitch, one in zip(pitches, designs, strict=True)
+        ],
+        "ramp_end": [ramp_end(pitch, one.scale) for pitch, one in zip(pitches, designs, strict=True)],
+        "median_change": [one.change for one in designs],
+        "damping": [least_damping(one.scene) for one in designs],
+    }

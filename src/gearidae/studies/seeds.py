@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.specimen import SEED
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
     from gearidae.studies.design import Design
 
-SEED: Final = "contact.seed"
 SEEDS: Final = "seeds"
 """Text that stands for a distribution of the key."""
 NO_INDEX: Final = (
@@ -52,8 +51,3 @@ def seed_numbers(scene: Scene, drawn: Design) -> NDArray[np.int64]:
     """
     rows = int(drawn.row.max()) + 1
     return np.asarray(scene.contact.seed + drawn.row + rows * (drawn.matrix == "B"), dtype=np.int64)
-
-
-def has_seeds(ds: xr.Dataset) -> bool:
-    """Whether the runs of a dataset are gears of several seeds."""
-    return SEED in str(ds.attrs.get("swept", ""))

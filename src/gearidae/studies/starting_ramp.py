@@ -155,12 +155,17 @@ def ramp_rate(pitch: Pitch, scale: float, halvings: int) -> float:
     return PACE * scale / pitch.time(scale) / 2.0**halvings
 
 
+def ramp_end(pitch: Pitch, scale: float) -> float:
+    """Torque at which the ramp ends [N m]."""
+    return pitch.dry + _HIGHEST * scale
+
+
 def ramp(at: Scene, scale: float, halvings: int) -> Scene:
     """Add a torque that rises linearly to a scene from `laid`."""
     pitch = pitch_of(at)
     knots = _laying(pitch, _LAYING * scale, _SETTLING * pitch.time(scale))
     time, torque = knots[-1]
-    end = pitch.dry + _HIGHEST * scale
+    end = ramp_end(pitch, scale)
     knots.append((time + (end - torque) / ramp_rate(pitch, scale, halvings), end))
     return _driven(at, knots, _SAMPLES)
 
