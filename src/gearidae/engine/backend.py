@@ -59,7 +59,7 @@ def choose_backend(backend: str, method: str) -> str:
     Raises
     ------
     SceneError
-        If the native driver is requested and cannot work here, the name is unknown, or numba has been told to compile
+        If the native driver is requested and cannot work here, the name is unknown, or numba is set to compile
         nothing.
     """
     if not compiles():

@@ -98,7 +98,7 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
     return list(_rows(scene))
 
 
-# Some 15 ms: an archive asks for them when it is begun and when it is finished.
+# Some 15 ms: an archive needs them at its beginning and at its end.
 @lru_cache(maxsize=16)
 def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rest = rest_of(scene)
@@ -222,7 +222,7 @@ def _tabor(scene: Scene) -> Iterator[ValidityRow]:
     for surface, _, _, name in scene.materials():
         high, low = (tabor_parameter(surface, eps) for eps in _SPACINGS)
         limit, bound, holds, verdict = _tabor_verdict(law, low, high)
-        # the end of the range that is compared: the small one where the law asks for large parameters
+        # the end of the range that is compared: the small one where the law needs large parameters
         number = high if law == "dmt" else low
         yield ValidityRow(
             f"tabor_{name}",

@@ -109,7 +109,7 @@ def _ends(one: xr.Dataset) -> tuple[str, str]:
 
 
 def _number(value: float, one: xr.Dataset) -> str:
-    """Write a value of a bracket with as many digits as tell its ends apart, four at least."""
+    """Write a value of a bracket with as many digits as distinguish its ends, four at least."""
     sticks, passes, unit = float(one["sticks"]), float(one["passes"]), str(one["limit"].attrs["units"])
     digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
     return f"{value:.{digits}g}" + ("" if unit == "1" else f" {unit}")
