@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from gearidae.asperities.tip import contact_modulus as contact_modulus
     from gearidae.asperities.tip import tabor_parameter as tabor_parameter
     from gearidae.asperities.tip import tabor_regime as tabor_regime
+    from gearidae.contact.attraction import attraction_energy as attraction_energy
+    from gearidae.contact.attraction import attraction_force as attraction_force
+    from gearidae.contact.attraction import attraction_pressure as attraction_pressure
     from gearidae.contact.bulk import bulk_influence as bulk_influence
     from gearidae.contact.elastic import ElasticCurve as ElasticCurve
     from gearidae.contact.elastic import ElasticFoldError as ElasticFoldError
