@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from gearidae.contact.elastic import elastic_line_curve as elastic_line_curve
     from gearidae.contact.elastic import elastic_line_force as elastic_line_force
     from gearidae.contact.line import line_force as line_force
+    from gearidae.contact.parting import adhesion_energy as adhesion_energy
     from gearidae.contact.rough import adhesion_loss_per_asperity as adhesion_loss_per_asperity
     from gearidae.contact.rough import maximum_tension as maximum_tension
     from gearidae.contact.rough import rough_pressure as rough_pressure

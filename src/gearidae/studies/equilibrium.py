@@ -50,7 +50,7 @@ class MaterialLaw(NamedTuple):
         assert scene.gears is not None
         own_gap = np.asarray(gap) + self.offset * scene.surface.roughness
         unit = attraction_force(own_gap, 1.0, scene.gears.face_width, self.hamaker)
-        return unit * np.sqrt(np.asarray(radius))
+        return np.asarray(unit * np.sqrt(np.asarray(radius)))
 
 
 _DEEPEST, _WIDEST = -30.0, GAP_HIGH - 0.1
