@@ -38,8 +38,8 @@ def test_one_asperity_has_the_pull_off_of_its_law(law, factor):
 
 
 def test_asperities_hold_together_if_the_load_has_joined_them():
-    """The lower one, 0.5 nm below, joins when the higher is pressed by as much; they are not stretched alike then."""
-    alone, pair = listed([12.0]), listed([12.0, 11.5])
+    """The lower one, 2 nm below, joins when the higher is pressed by as much; they are not stretched alike then."""
+    alone, pair = listed([12.0]), listed([12.0, 10.0])
     single = pull_off(alone, 1e-9)
     assert pull_off(pair, 1e-9) == pytest.approx(single, rel=1e-9, abs=0)
     ds = gd.studies.pull_off(pair, [0], load=1e-4)

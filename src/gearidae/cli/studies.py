@@ -132,15 +132,8 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
 
 def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int:
     """Part drawn pairs of a case, pressed with a force."""
-    target = request.output or default_output(case, "_pull_off.nc")
-    scene = read_scene(case, request.settings or ())
     force = None if load is None else quantity("--load", load, "N")
-    ds = gd.studies.pull_off(scene, seeds, load=force, archive=target, overwrite=request.overwrite)
-    found = answer(ds, "pull_off")
-    show_rows(found.rows)
-    say(found.sentence)
-    say(f"Pull-off: {target}")
-    return DONE
+    return conduct(case, request, "pull_off", "Pull-off", gd.studies.pull_off, seeds, load=force)
 
 
 def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from gearidae.cli import completing
-from gearidae.cli.app import Case, Output, Overwrite, Settings, app
+from gearidae.cli.app import Case, app
 from gearidae.cli.request import Request
 
 Vary = Annotated[
@@ -102,14 +102,12 @@ def pull_off(
     load: Annotated[
         str | None, Parameter(help="Force that presses the pair, 1 uN. Default: of the drive's mean torque.")
     ] = None,
-    output: Output = None,
-    settings: Settings = None,
-    overwrite: Overwrite = False,
+    request: Usual = USUAL,
 ) -> int:
     """Part single pairs of teeth with drawn asperities: the distribution of their pull-off force."""
     from gearidae.cli.studies import part_pairs
 
-    return part_pairs(str(case), Request(output=output, settings=settings, overwrite=overwrite), seeds, load)
+    return part_pairs(str(case), request, seeds, load)
 
 
 @app.command(name="operating-map")

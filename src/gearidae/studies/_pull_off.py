@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
-from typing import Final
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.netcdf import save
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import flank_arc
 from gearidae.populations.flanks import first_flanks
+from gearidae.progress import sweep_progress
 from gearidae.runs.estimates import mean_drive_torque
+from gearidae.runs.execution import Execution, origin_of, run_kept
+from gearidae.runs.executors import side_by_side
+from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.pair_contact import pair_contact
 from gearidae.scene import Scene
-from gearidae.studies.drawn_contact import DrawnContact
+from gearidae.studies.drawn_contact import DrawnContact, PullOff
+from gearidae.studies.products import open_product
+
+if TYPE_CHECKING:
+    from gearidae.progress import SweepProgress
 
 _MOST: Final = 1_000_000
+_PIECE: Final = 50
+"""Pairs that are parted at a time."""
 _COLUMNS: Final = {
     "pull_off": ("N", "largest tension of one drawn pair"),
     "asperities_joined": ("1", "asperities joined under the load"),
@@ -33,8 +44,12 @@ def pull_off(
     seeds: int | Sequence[int] = 100,
     *,
     load: float | None = None,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    progress: bool | SweepProgress = False,
     archive: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
+    resume: bool = False,
 ) -> xr.Dataset:
     """Largest tension of one drawn pair of teeth, for many surfaces of one design.
 
@@ -52,10 +67,8 @@ def pull_off(
         pinion's first tooth, as `gearidae.population` draws it.
     load : float, optional
         Force that presses the pair [N]; by default that of the mean torque of the drive. A roller needs one.
-    archive : path-like, optional
-        File to write.
-    overwrite : bool, optional
-        Whether it may replace a file.
+    executor, jobs, progress, archive, overwrite, resume
+        As for `sweep`; nothing is kept beside the archive, as a thousand pairs take some seconds.
 
     Returns
     -------
@@ -77,26 +90,50 @@ def pull_off(
     20
     """
     numbers, force = _seeds(scene, seeds), _load(scene, load)
+    how = Execution(executor, jobs, "auto", progress, archive, overwrite, resume)
+    pieces = [numbers[first : first + _PIECE] for first in range(0, len(numbers), _PIECE)]
+
+    def work(_: KeptRuns | None) -> xr.Dataset:
+        found: list[PullOff] = []
+        with sweep_progress(progress, len(numbers)) as report, how.computing(len(pieces)) as computing:
+            count = len(pieces)
+            for part in side_by_side(computing, _part, [scene] * count, pieces, [force] * count):
+                found += part
+                report(float(len(found)), len(numbers))
+        return _dataset(scene, numbers, force, found)
+
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, scene, how.driver),
+        work,
+        {**origin_of(scene), "settings": json.dumps([numbers, force])},
+        read=lambda path: open_product(path, "pull_off")[0],
+    )
+
+
+def _part(scene: Scene, seeds: Sequence[int], load: float) -> list[PullOff]:
+    """Part the pairs of some seeds."""
     contact, arc = pair_contact(scene), 0.0
     if scene.gears is not None:
         arc = float(flank_arc(scene.geometry, scene.geometry.approach))
-    found = [DrawnContact(scene, one, contact, arc).pull_off(force) for one in first_flanks(scene, numbers)]
-    ds = xr.Dataset(
+    return [DrawnContact(scene, one, contact, arc).pull_off(load) for one in first_flanks(scene, seeds)]
+
+
+def _dataset(scene: Scene, seeds: Sequence[int], load: float, found: Sequence[PullOff]) -> xr.Dataset:
+    columns = zip(_COLUMNS.items(), zip(*found, strict=True), strict=True)
+    return xr.Dataset(
         {
             name: ("seed", np.array(values, dtype=np.float64), {"units": unit, "long_name": text})
-            for (name, (unit, text)), values in zip(_COLUMNS.items(), zip(*found, strict=True), strict=True)
+            for (name, (unit, text)), values in columns
         },
-        coords={"seed": ("seed", np.array(numbers), {"long_name": "seed of the asperities", "units": "1"})},
+        coords={"seed": ("seed", np.array(seeds), {"long_name": "seed of the asperities", "units": "1"})},
         attrs={
             **provenance(scene, "parted drawn pairs"),
             "title": f"{scene.name}: pull-off of drawn pairs",
             "summary": "Largest tension of one pair of teeth with drawn asperities, one for each seed.",
-            "load": force,
+            "load": load,
         },
     )
-    if archive is not None:
-        save(ds, archive, overwrite=overwrite)
-    return ds
 
 
 def _seeds(scene: Scene, given: int | Sequence[int]) -> list[int]:
