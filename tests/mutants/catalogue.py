@@ -134,8 +134,8 @@ MUTANTS = (
     Mutant(
         "SAM fraction taken for the bare one",
         "engine/setup/build_contact.py",
-        "enumerate(_parts(scene))",
-        "enumerate([one._replace(share=1.0 - one.share) for one in _parts(scene)])",
+        "enumerate(parts_of(scene))",
+        "enumerate([one._replace(share=1.0 - one.share) for one in parts_of(scene)])",
         IMPACT,
     ),
     Mutant(

@@ -23,6 +23,7 @@ from gearidae.plot.outcome import outcome as outcome
 from gearidae.plot.outcome_map import outcome_map as outcome_map
 from gearidae.plot.overview import overview as overview
 from gearidae.plot.posterior import posterior as posterior
+from gearidae.plot.pull_off import pull_off as pull_off
 from gearidae.plot.roller import roller_force as roller_force
 from gearidae.plot.roller import roller_gap as roller_gap
 from gearidae.plot.spectra import cycle as cycle

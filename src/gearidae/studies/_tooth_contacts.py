@@ -288,7 +288,10 @@ def _force(
                 ]
             )
         )
-    return np.sqrt(2.0 * radius * sigma) * total
+    force = np.sqrt(2.0 * radius * sigma) * total
+    if scene.attracts:
+        force += sum(ratios[name] * law.attraction(gap, radius, scene) for name, law in laws.items())
+    return force
 
 
 def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, float]) -> ToothContact:
