@@ -66,6 +66,9 @@ POPULATION: Final = record_type(
     ("arcs_at", INT),  # places along the flank of all asperities, among the tables [index]
     ("heights_at", INT),  # their heights among the tables [index]
     ("kinds_at", INT),  # where the numbers of their kinds are, among the tables [index]
+    ("by_gear_tooth", INT),  # 1 where kinds depend on the gear's tooth: these where it is covered there
+    ("bare_kinds_at", INT),  # and these where it is bare, among the tables [index]
+    ("gear_numbers_at", INT),  # coverage numbers of the gear's side, among the tables [index]
     ("highest", REAL),  # of their heights [sigma]
     ("join", REAL),  # farthest distance at which any joins [sigma]
     ("steepness", REAL),  # base pitch, or a roller's radius, over sigma [1]

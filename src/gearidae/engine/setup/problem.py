@@ -104,9 +104,9 @@ class Problem:
         """Set the tolerance and the number of samples of a run, and return the model.
 
         Every state's error counts in absolute tolerances, `rtol` times its scale. At tight ones the energy balance
-        divides steps of high order: the error of its quadrature goes with the fourth power of a step, and a step with no
-        more than the eighth root of the tolerance. Torques that shake a gear by less than a share of the tolerance need
-        not be followed.
+        divides steps of high order: the error of its quadrature goes with the fourth power of a step, and a step with
+        no more than the eighth root of the tolerance. Torques that shake a gear by less than a share of the tolerance
+        need not be followed.
         """
         m = self.model
         s, first = m.scene, m.scene.error_weights_at
