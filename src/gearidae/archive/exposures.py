@@ -16,7 +16,7 @@ from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at
 
 FLANKS = ("drive", "coast")
-_POINTS = 16  # in each place, for means over it
+_POINTS = 64  # in each place, for means over it
 
 
 def flank_areas(scene: Scene) -> Floats:
