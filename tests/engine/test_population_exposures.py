@@ -90,7 +90,7 @@ def test_contacts_and_adhesion_are_those_of_the_events(coating):
 
 
 def shares_of_places(ds):
-    """Shares of the materials by quadrature over each place: midpoints, and all teeth of the gear that a tooth meets."""
+    """Shares of the materials by quadrature over each place, and all teeth of the gear that a tooth meets."""
     coating = ds.gearidae.scene.coating
     pinion, gear = (np.array(table) for table in coating.tables)
     at = (np.arange(PLACES * 200) + 0.5) / (PLACES * 200)
@@ -157,7 +157,9 @@ def test_sliding_work_and_pressure_are_those_of_the_samples():
         arc, height, radius = (LISTED[name][asperity] for name in ("arc", "height", "radius"))
         xi = phase[here] - pair * g.base_pitch
         overlaps = [contact.overlap(*one, arc, height)[0] for one in zip(xi, gap[here], strict=True)]
-        forces.setdefault(pair, np.zeros(time.size))[here] += Tip(scene.surface, radius).load(np.array(overlaps))
+        forces.setdefault(pair, np.zeros(time.size))[here] += Tip(scene.surface, radius).load(
+            np.array(overlaps)
+        )
     work, pressure = np.zeros((2, 19, PLACES))
     for pair, force in forces.items():
         inside = np.clip(phase - pair * g.base_pitch, 0.0, g.path_length)
