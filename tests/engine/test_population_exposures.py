@@ -175,3 +175,28 @@ def test_sliding_work_and_pressure_are_those_of_the_samples():
     np.testing.assert_allclose(ours, work, rtol=0, atol=1e-3 * work.max())
     largest = ds.largest_pressure.sel(flank="drive").values
     np.testing.assert_allclose(largest, pressure, rtol=0, atol=1e-2 * pressure.max())
+
+
+@pytest.mark.parametrize("energy", ["10 J/m^2", "1e-3 J/m^2"])
+def test_a_life_of_real_asperities(energy):
+    """By cycle jumps, or where coverage is lost too fast for that cycle by cycle, each with what the last has left."""
+    scene = GEARS.replace({"coating.sam_fraction": 0.9, "run.exposures": 0})
+    found = gd.studies.life(
+        scene,
+        gd.wear.loss_law("adhesion_work", energy=energy),
+        fraction=0.6,
+        cycles=1,
+        settle=1,
+        starts=1,
+        tolerance=0.1,
+        bracket=0.1,
+        frequency=False,
+        jobs=1,
+    )
+    coverage = found.coverage.values
+    assert found.attrs["ending"] == "coverage"
+    assert coverage[-1] < 0.6 + 1e-9 < coverage[0] == 0.9
+    assert (np.diff(coverage) < 0.0).all()
+    assert (found.attrs["mesh_cycles_direct"] > 0) == (energy != "10 J/m^2")
+    loss = found.coverage_loss.values[0, 0] * float(energy.split()[0])
+    assert abs(loss) == pytest.approx(0.9 * float(found.passage_adhesion_work.values[0, 0]), rel=1e-9)
