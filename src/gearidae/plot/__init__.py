@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gearidae.lazy import lazy_names
+from gearidae.plot.asperity_events import asperity_events as asperity_events
 from gearidae.plot.coating import coating_map as coating_map
 from gearidae.plot.coating import starting_torque as starting_torque
 from gearidae.plot.ensembles import sobol_indices as sobol_indices

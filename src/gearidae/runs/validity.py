@@ -107,7 +107,8 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
 def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rest = rest_of(scene)
     stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
-    rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
+    real = scene.contact.model == "population"
+    rows = [_asperities(rest, real), _density(rest.contact), *_merging(scene), *_tabor(scene)]
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
     rows += [_attraction(scene, rest, rest.gap, "attraction", "attraction across the gap")]
     if scene.gears is not None:
@@ -139,7 +140,8 @@ def _about(count: float) -> str:
     return f"{float(f'{count:.2g}'):,.0f}" if count < 1e9 else f"{count:.0e}"
 
 
-def _asperities(rest: Rest) -> ValidityRow:
+def _asperities(rest: Rest, real: bool) -> ValidityRow:
+    """Compare the asperities in contact with those that a mean law needs; `real` ones do without."""
     count = needed = math.nan
     limit = verdict = "-"
     if not math.isnan(rest.gap):
@@ -150,11 +152,13 @@ def _asperities(rest: Rest) -> ValidityRow:
         words = (
             "one pair's force is the mean to 10 %"
             if count >= needed
+            else "each asperity is followed: a run is one specimen, another contact.seed another"
+            if real
             else "the smooth law of force is an ensemble mean, not one pair of teeth"
         )
         verdict = f"{words} (gap {rest.gap / rest.contact.surface.roughness:.2f} roughnesses)"
     quantity = "expected asperities in contact"
-    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, count >= needed, verdict)
+    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, real or count >= needed, verdict)
 
 
 def _counts(rest: Rest) -> list[float]:
@@ -182,11 +186,13 @@ def _memory(scene: Scene, rest: Rest) -> ValidityRow:
         rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
         ratio = width / rolled
         laws = [law_of(contact.law, part.surface) for part in contact.parts]
-        forgets = all(law.detach == law.join for law in laws)
-        holds = forgets or ratio >= 1.0
+        forgets, real = all(law.detach == law.join for law in laws), scene.contact.model == "population"
+        holds = forgets or real or ratio >= 1.0
         words = (
             "asperities of this law have no memory"
             if forgets
+            else "each asperity remembers on its own, and passes through the contact"
+            if real
             else "the same asperities stay in contact while the pair is engaged"
             if holds
             else "asperities pass through the contact; here those that an impact joins stay with the pair"

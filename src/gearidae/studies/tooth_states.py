@@ -45,6 +45,9 @@ class ToothContact:
         By ``bare`` and ``coated``, as far as there are such parts: height above which asperities are joined [m].
     states : dict of str to ContactState
         State of either part.
+    asperities : tuple of int, optional
+        Joined asperities of a population, by their numbers on the pinion's flank; None of other models, and where the
+        record does not tell.
     """
 
     pair: int
@@ -55,6 +58,7 @@ class ToothContact:
     force: float
     joined: dict[str, float]
     states: dict[str, ContactState]
+    asperities: tuple[int, ...] | None = None
 
     @property
     def state(self) -> ContactState:

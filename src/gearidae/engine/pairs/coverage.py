@@ -31,7 +31,7 @@ class Fraction(NamedTuple):
 
 
 @compiled(inline=True)
-def _fraction(m: Model, side: int, coast: int, pair: int, inside: float) -> Fraction:
+def fraction_of(m: Model, side: int, coast: int, pair: int, inside: float) -> Fraction:
     """Covered fraction of a side's tooth, a smooth step from the middle of each place to that of the next one.
 
     On the coast flank the gear's tooth is the next one.
@@ -63,10 +63,10 @@ def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Share
     """
     if m.scene.by_place == 0:
         return WHOLE, NONE, NONE
-    f = _fraction(m, 0, coast, pair, inside)
+    f = fraction_of(m, 0, coast, pair, inside)
     if m.scene.patches != 0:
         return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
-    g = _fraction(m, 1, coast, pair, inside)
+    g = fraction_of(m, 1, coast, pair, inside)
     one, one_slope, one_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
     both, slope = f.value * g.value, f.slope * g.value + f.value * g.slope
     bend = f.bend * g.value + 2.0 * f.slope * g.slope + f.value * g.bend

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -134,9 +135,16 @@ def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
         return
     s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
     for own, table in zip(s.coverage, scene.coating.tables, strict=True):
-        own.teeth, own.places = len(table), len(table[0])
-        own.values_at = tables.add(np.array(table).ravel())
-        own.place_scale = len(table[0]) / float(s.contact_ratio)
+        add_fractions(own, tables, table, float(s.contact_ratio))
+
+
+def add_fractions(
+    own: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
+) -> None:
+    """Lay out a side's fractions by tooth and place; `own`, its ``COVERAGE``, is changed."""
+    own.teeth, own.places = len(table), len(table[0])
+    own.values_at = tables.add(np.array(table).ravel())
+    own.place_scale = len(table[0]) / contact_ratio
 
 
 def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:
