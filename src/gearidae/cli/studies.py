@@ -119,10 +119,11 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
         ((key, fractions),) = sweep_values([over]).items()
         if key != _FRACTION:
             raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
+    seeded = read_scene(case, request.settings or ()).contact.model == "population"
     return conduct(
         case,
         request,
-        "starting_torque",
+        "starting_torques" if seeded else "starting_torque",
         "Starting torque",
         gd.studies.starting_torque,
         fractions,

@@ -18,7 +18,8 @@ Vary = Annotated[
     list[str],
     Parameter(
         help="Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
-        "uniform(lowest, highest), lognormal(median, geometric deviation); repeatable.",
+        "uniform(lowest, highest), lognormal(median, geometric deviation); contact.seed=seeds numbers the seeds of a "
+        "population; repeatable.",
         consume_multiple=False,
         completer=completing.keys,
     ),
@@ -84,13 +85,20 @@ def starting_torque(
         float | None, Parameter(help="Lowest torque to try in N m. Default: 0.001 of the drive's own.")
     ] = None,
     tolerance: Annotated[float, Parameter(help="Relative width at which the search ends.")] = 0.1,
+    seeds: Annotated[
+        int | None, Parameter(help="Gears of a population, with seeds from contact.seed on. Default: 20.")
+    ] = None,
     request: Usual = USUAL,
 ) -> int:
-    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion."""
+    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
+
+    Of a population (contact.model = population): the distribution over its gears, whose torque rises slowly until each
+    has turned one pitch.
+    """
     from gearidae.cli.studies import search_starting_torque
 
     return search_starting_torque(
-        str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance
+        str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance, seeds=seeds
     )
 
 

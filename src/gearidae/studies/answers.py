@@ -10,25 +10,18 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
 from gearidae.analysis.verdict.codes import Outcome
 from gearidae.archive.select import scene_of
+from gearidae.archive.specimen import has_seeds
 from gearidae.scene import describe_key
 from gearidae.scene.prefixes import with_prefix
+from gearidae.studies.gear_answers import FIGURES, Rows, mean_rows, starts_rows, starts_sentence
 
-Rows: TypeAlias = Iterator[tuple[str, str, str]]
-
-_FIGURES: Final = (
-    "min_gear_speed",
-    "max_gear_speed",
-    "largest_mesh_force",
-    "smallest_mesh_force",
-    "stick_time",
-)
 _SHARES: Final = (0.9, 0.5, 0.1)
 """Of the gears that still turn, for which the passages are given."""
 _SIGNS: Final = {
@@ -148,7 +141,10 @@ def _ensemble_rows(ds: xr.Dataset) -> Rows:
             one = ds.sel(parameter=key)
             yield str(key), _uncertain(one, "total_order"), _uncertain(one, "first_order")
     yield from _counts(ds["verdict"])
-    for name in _FIGURES:
+    if has_seeds(ds):
+        yield from mean_rows(ds)
+        return
+    for name in FIGURES:
         if name in ds and np.isfinite(ds[name]).any():
             low, middle, high = np.nanquantile(ds[name].values, (0.05, 0.5, 0.95))
             unit = str(ds[name].attrs["units"])
@@ -393,5 +389,6 @@ _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Datase
     "pull_off": (_pull_off_sentence, _pull_off_rows),
     "posterior": (_posterior_sentence, _posterior_rows),
     "starting_torque": (_starting_sentence, _starting_rows),
+    "starting_torques": (starts_sentence, starts_rows),
     "sticking_threshold": (_threshold_sentence, _threshold_rows),
 }

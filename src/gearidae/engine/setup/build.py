@@ -148,18 +148,19 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     for shaft, law in ((DRIVE, drive), (LOAD, load)):
         if law.law is not None:
             model.work.torque_law[shaft] = law_address(law.law.name)
-    outside = start.mesh_phase - min(max(start.mesh_phase, 0.0), float(s.contact_ratio))
+    whole, phase = divmod(start.mesh_phase, 1.0)  # the solver's phase stays small: whole pitches are turns
+    outside = phase - min(phase, float(s.contact_ratio))
     relief = float(0.5 * s.relief_curvature * outside**2)
     u = float(s.half_backlash) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
-    model.state.first_place = start.mesh_phase
-    model.state.first_lead = u + static_error(model, u, start.mesh_phase)[1]
+    model.state.turns, model.state.first_place = whole, start.mesh_phase
+    model.state.first_lead = u + static_error(model, u, phase)[1]
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
         "dry_resistance": int(s.dry == 0),
     }
-    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], skipped)
+    return _begun(model, scene, [u, 0.0, phase, w], skipped)
 
 
 def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
