@@ -21,8 +21,9 @@ from gearidae.scene.coating import THICKEST
 from gearidae.scene.coating_table import MOST_PLACES
 from gearidae.scene.group import Group
 from gearidae.scene.quantity import Count, Quantity
+from gearidae.scene.strip import flank_strip
 
-__all__ = ["CORNER", "Extreme", "extreme_scene"]
+__all__ = ["CORNER", "Extreme", "extreme_population", "extreme_scene"]
 
 CORNER = 0.2
 """Probability of a corner value where a key is free: a limit of its range, the number next to it, or zero."""
@@ -94,6 +95,47 @@ def extreme_scene(seed: int, number: int, alive: Callable[[], None] | None = Non
         ):  # while drawing: what the gears' own limits leave does not fit together
             continue
     raise refused or SceneError("gears", "(drawn)", "no pair that can mesh was found")
+
+
+def extreme_population(seed: int, number: int, alive: Callable[[], None] | None = None) -> Extreme:
+    """Draw one scene of `extreme_scene`, and give it real asperities: drawn, or a list of 1 to 300.
+
+    Where they would be more than a population may have, there are fewer on each area.
+
+    Parameters
+    ----------
+    seed, number, alive
+        As for `extreme_scene`.
+
+    Raises
+    ------
+    SceneError
+        As `extreme_scene` does.
+    """
+    extreme, rng = extreme_scene(seed, number, alive), np.random.default_rng([seed, number, 18])
+    scene, sigma = extreme.scene, extreme.scene.surface.roughness
+    changes: dict[str, Any] = {
+        "contact.model": "population",
+        "contact.seed": int(rng.integers(0, 2**32)),
+        "run.asperity_events": bool(rng.random() < 0.7),
+    }
+    if rng.random() < 0.3:
+        count, (low, high) = int(rng.choice([1, 10, 300])), flank_strip(scene)
+        changes["contact.asperities"] = {
+            "x" if scene.roller is not None else "arc": rng.uniform(low, high, count).tolist(),
+            "height": (sigma * rng.uniform(-1.0, 9.0, count)).tolist(),
+            "radius": (scene.surface.asperity_radius * 10.0 ** rng.uniform(-2.0, 1.0, count)).tolist(),
+        }
+    elif rng.random() < 0.3:
+        changes["contact.radius_spread"] = float(rng.choice([1e-3, 0.3, 10.0]))
+    density = scene.surface.asperity_density
+    while True:
+        try:
+            return Extreme(scene.replace({**changes, "surface.asperity_density": density}), extreme.backend)
+        except SceneError as error:
+            if error.key != "surface.asperity_density" or density < _LEAST * 1e6:
+                raise
+            density *= 0.1
 
 
 class _Draw:

@@ -63,6 +63,7 @@ STUDIES = {
     "lives": lives,
     "operating_map": operating_map,
     "posterior": posterior,
+    "pull_off": lambda path, **more: gd.studies.pull_off(LOW, 5, archive=path, **more),
     "starting_torque": starting_torque,
     "starting_torques": starting_torques,
     "sticking_threshold": sticking_threshold,

@@ -99,7 +99,9 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
                 followers.event(m, t, y, yp, found)
                 count = take_event(m, t, y, found, events, count)
     if m.scene.population.flanks != 0:
-        restart |= flip_asperities(m, y)
+        if flip_asperities(m, y):
+            restart = True
+            followers.flips(m, y)
         count, too_many = record_flips(m, t, events, count)
         if too_many:
             driver.error = MANY_EVENTS

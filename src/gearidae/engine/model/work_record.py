@@ -168,6 +168,7 @@ NOTED: Final = record_type(  # a pair where its force was evaluated
     ("gap_rate", REAL),  # [sigma/tau]
     ("force", REAL),  # [F]
     ("slope", REAL),  # of the force in the gap [F/sigma]
+    ("drift", REAL),  # rate of the force at that gap, of a population [F/tau]
 )
 
 NOTES: Final = record_type(  # the last evaluation of all forces, in a run that keeps exposures

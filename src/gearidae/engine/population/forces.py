@@ -112,6 +112,14 @@ def roller_sum(m: Model, y: Floats) -> tuple[float, float]:
 
 
 @compiled_once(POPULATION)
+def pair_load(m: Model, y: Floats, coast: int, pair: int) -> tuple[float, float, float]:
+    """Force of a pair along the line of action, its slope in the gap, and its rate at that gap, scaled."""
+    now = pair_now(m, coast, pair, y)
+    sums = _sums(m, history_of(m, coast, pair), now)
+    return sums.load, -sums.stiffness, sums.stiffness_d * now.place_rate
+
+
+@compiled_once(POPULATION)
 def population_energy(m: Model, y: Floats) -> float:
     """Energy that all joined asperities store at a state, from free surfaces, scaled."""
     energy, reach = 0.0, pairs_near(m, y)
