@@ -32,6 +32,8 @@ ROWS = [
         "thermal_motion",
         "gas_damping",
         "net_adhesion",
+        "attraction",
+        "attraction_behind",
         "memory",
         "disc_drag",
         "inertia_pinion",

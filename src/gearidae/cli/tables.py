@@ -16,6 +16,7 @@ from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes, imbalance
 from gearidae.archive.run_summary import counted_over
 from gearidae.archive.select import scene_of, swept_dims
+from gearidae.archive.specimen import specimen_note
 from gearidae.cli.output import complain, say, show
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import ATTRIBUTE, holds_rows, mean_note, rows_from_json
@@ -61,6 +62,9 @@ def show_outcomes(ds: xr.Dataset) -> None:
         cells = _roller_cells(outcome) if isinstance(outcome, RollerOutcome) else _gear_cells(outcome, rtol)
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells)
     show(table)
+    if specimen := specimen_note(ds):
+        say(specimen)
+        return
     kept = ds.attrs.get(ATTRIBUTE)
     if isinstance(kept, str) and holds_rows(kept) and (note := mean_note(rows_from_json(kept))):
         say(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")

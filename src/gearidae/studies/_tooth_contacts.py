@@ -1,4 +1,4 @@
-"""What every pair of teeth did at chosen times, as far as a record tells.
+"""States of every pair of teeth at chosen times, as far as a record allows.
 
 The gap of every pair follows from the recorded motion, the history of its asperities from the gaps it went through, and
 from both the force of every pair and whether its asperities stretch. What is not recorded is how far the bodies gave
@@ -44,7 +44,7 @@ _JUST = 1e-6  # of the stretch limit: nearer to either end of the stretch is at 
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """What tells contacts from teeth apart, in SI units."""
+    """Limits that separate contact from separation, in SI units."""
 
     cutoff: float
     engage: float
@@ -75,7 +75,7 @@ class _Followed:
 
 
 def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
-    """Tell what the pairs of teeth did at some times of a run.
+    """Find the states of the pairs of teeth at some times of a run.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     Notes
     -----
     The force of a pair is found from its own history since it came near. The recorded force of all pairs has no part
-    in it and serves as the check. A turning point of a gap between two samples is known where an event tells its
+    in it and serves as the check. A turning point of a gap between two samples is known where an event gives its
     time; the gap there is interpolated with the recorded rates.
     """
     run = _one_run(ds)
@@ -344,7 +344,10 @@ def _force(
                 ]
             )
         )
-    return np.sqrt(2.0 * radius * sigma) * total
+    force = np.sqrt(2.0 * radius * sigma) * total
+    if scene.attracts:
+        force += sum(ratios[name] * law.attraction(gap, radius, scene) for name, law in laws.items())
+    return force
 
 
 def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, float]) -> ToothContact:
@@ -375,7 +378,7 @@ def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, floa
 
 
 def _untold(contact: ToothContact) -> ToothContact:
-    """Keep of a contact what the record tells: its gap, and whether it is open."""
+    """Keep of a contact what the record holds: its gap, and whether it is open."""
     states = {
         name: state if state == ContactState.OPEN else ContactState.UNTOLD
         for name, state in contact.states.items()

@@ -12,7 +12,7 @@ class ContactState(IntEnum):
     """State of the asperities in a pair of teeth."""
 
     UNTOLD = -1
-    """The record does not tell."""
+    """Not recoverable from the record."""
     OPEN = 0
     """Too far apart to count as contact."""
     LOADING = 1
@@ -40,7 +40,7 @@ class ToothContact:
     gap : float
         Gap along the line of action [m].
     force : float
-        Positive pushes apart [N]; NaN where the record does not tell.
+        Positive pushes apart [N]; NaN where it is not recoverable from the record.
     joined : dict of str to float
         By ``bare`` and ``coated``, as far as there are such parts: height above which asperities are joined [m].
     states : dict of str to ContactState

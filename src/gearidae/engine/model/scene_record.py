@@ -24,6 +24,7 @@ MATERIAL: Final = record_type(
     ("table_at", INT),  # force law among the tables [index]
     ("energy_at", INT),  # stored energy among the tables [index]
     ("number_at", INT),  # number of asperities above a height, among the tables [index]
+    ("attraction", REAL),  # across a gap of 1, with the material's share, per sqrt(radius / pb) [F]
 )
 
 COVERAGE: Final = record_type(  # of one side's flanks
@@ -186,4 +187,6 @@ SCENE: Final = record_type(
     ("step_parts", INT),  # into which it divides a step of high order [1]
     # last, so that what every step reads lies as close together as without it
     ("population", POPULATION),  # real asperities on the flanks
+    ("attracts", INT),  # 1 if flanks attract each other across the gap
+    ("attraction_floor", REAL),  # gap below which the attraction grows no further [sigma]
 )

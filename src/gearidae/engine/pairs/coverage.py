@@ -13,6 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import mixed_value
 from gearidae.contact.kernels.law import N_LOADING, loading_value
 from gearidae.engine.model.state import Model
+from gearidae.engine.pairs.attraction import attraction
 
 Shares: TypeAlias = tuple[float, float, float]
 """A number for each of bare, coated and mixed, the order of the materials."""
@@ -107,10 +108,29 @@ def weighed(shares: Shares, values: Shares) -> float:
 
 @compiled(inline=True)
 def loading_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
-    """Loading branch of all materials and its slope, scaled, for a contact of unit length."""
+    """Loading branch of all materials, with their attraction, and its slope, scaled, for a contact of unit length."""
     if m.scene.by_place == 0:
-        return loading_value(m.tables, m.scene.loading_at, gap)
-    return mixed_value(m.tables, m.scene.loading_at, gap, shares)
+        force, slope = loading_value(m.tables, m.scene.loading_at, gap)
+    else:
+        force, slope = mixed_value(m.tables, m.scene.loading_at, gap, shares)
+    if m.scene.attracts != 0:
+        pull, change = attraction_of(m, gap, shares)
+        return force + pull, slope + change
+    return force, slope
+
+
+@compiled
+def attraction_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
+    """Attraction of all materials across a gap and its slope, scaled, for a contact of unit length."""
+    a, b, c = attraction(m, 0, gap), attraction(m, 1, gap), attraction(m, 2, gap)
+    return weighed(shares, (a.force, b.force, c.force)), weighed(shares, (a.slope, b.slope, c.slope))
+
+
+@compiled
+def attraction_energies(m: Model, gap: float) -> tuple[Shares, Shares]:
+    """Energy of each material's attraction, scaled, per length and share, and its slopes in the gap."""
+    a, b, c = attraction(m, 0, gap), attraction(m, 1, gap), attraction(m, 2, gap)
+    return (a.energy, b.energy, c.energy), (-a.force, -b.force, -c.force)
 
 
 @compiled
@@ -123,16 +143,19 @@ def potential_of(m: Model, gap: float, shares: Shares) -> float:
 
 @compiled
 def potentials_of(m: Model, gap: float) -> tuple[Shares, Shares]:
-    """Potential of each material's loading branch, scaled, per length and share, and its slopes.
+    """Potential of each material's loading branch and attraction, scaled, per length and share, and its slopes.
 
-    Without tables the first is that of all materials together.
+    Without tables the first is that of the loading branches of all materials together.
     """
     first = m.scene.potential_at
     a, a1 = loading_value(m.tables, first, gap)
-    if m.scene.by_place == 0:
-        return (a, 0.0, 0.0), (a1, 0.0, 0.0)
-    b, b1 = loading_value(m.tables, first + 8 * N_LOADING, gap)
-    c, c1 = loading_value(m.tables, first + 16 * N_LOADING, gap)
+    b = b1 = c = c1 = 0.0
+    if m.scene.by_place != 0:
+        b, b1 = loading_value(m.tables, first + 8 * N_LOADING, gap)
+        c, c1 = loading_value(m.tables, first + 16 * N_LOADING, gap)
+    if m.scene.attracts != 0:
+        (e, f, g), (e1, f1, g1) = attraction_energies(m, gap)
+        return (a + e, b + f, c + g), (a1 + e1, b1 + f1, c1 + g1)
     return (a, b, c), (a1, b1, c1)
 
 

@@ -45,6 +45,8 @@ def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | 
     """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
     model = scene.contact.model
     s.lowest_gap = GAP_LOW  # where the tables of the force law end
+    if model == "auto" and scene.attracts:
+        model = "asperity"
     if model == "auto":
         lowest, enough = rigid_limit(scene, bounds)
         model = "asperity" if enough else "elastic"
@@ -88,12 +90,12 @@ def add_contact(
     widest : float
         Largest contact length.
     """
-    _add_coverage(s, tables, scene)
+    add_coverage(s, tables, scene)
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros((2, MATERIALS, 8 * N_LOADING))
     longest = 0
-    for material, (surface, share, offset, _) in enumerate(_parts(scene)):
+    for material, (surface, share, offset, _) in enumerate(parts_of(scene)):
         own, tip = s.material[material], asperity_of(surface)
         own.gap_offset = offset / surface.roughness
         law = law_of(scene.contact.asperity, surface)
@@ -120,14 +122,14 @@ def add_contact(
     s.branch_length, s.point_branch_length = (0, longest) if s.nodes > 0 else (longest, 0)
 
 
-def _parts(scene: Scene) -> tuple[Material, ...]:
+def parts_of(scene: Scene) -> tuple[Material, ...]:
     """Materials with the shares that their force scales hold: one each where shares change with tooth and place."""
     if not scene.coating.by_place:
         return scene.materials()
     return tuple(material._replace(share=1.0) for material in scene.materials())
 
 
-def _add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
+def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
     """Lay out the fractions by tooth and place, if there are any."""
     if not scene.coating.by_place:
         return

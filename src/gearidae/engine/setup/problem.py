@@ -57,7 +57,7 @@ class Problem:
     skipped : dict
         What this scene does not need.
     digest : tuple of four floats
-        Tells this scene's checkpoints from others.
+        Identifies this scene's checkpoints.
     depth : int
         0 for the asperity model, 1 and more for the layouts of the elastic model.
     elastic : callable, optional
