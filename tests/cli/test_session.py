@@ -13,9 +13,9 @@ import pytest
 
 import gearidae as gd
 from gearidae.cli import main
+from gearidae.cli.command_line import spread
 from gearidae.cli.examples import EXAMPLES
 from gearidae.cli.session import app
-from gearidae.cli.values import spread
 from gearidae.scene import dump_case
 
 SHORT = ["--set", "run.samples=51"]

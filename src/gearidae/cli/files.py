@@ -13,8 +13,8 @@ from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import archive_facts, product_facts, say_json
-from gearidae.cli.output import say
-from gearidae.cli.tables import show_account, show_outcomes, show_rows
+from gearidae.cli.output import say, show_rows
+from gearidae.cli.tables import show_account, show_outcomes
 from gearidae.cli.validity_table import show_validity
 from gearidae.errors import SceneError
 from gearidae.runs.kept_validity import validity_of

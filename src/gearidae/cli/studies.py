@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 import gearidae as gd
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import complain, is_quiet, say
+from gearidae.cli.output import complain, is_quiet, say, show_rows
 from gearidae.cli.request import Request
-from gearidae.cli.tables import name_failures, show_rows
+from gearidae.cli.tables import name_failures
 from gearidae.cli.values import assignments, default_output, sweep_values, texts
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs

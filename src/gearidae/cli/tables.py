@@ -10,13 +10,12 @@ from typing import Any
 import xarray as xr
 from rich import box
 from rich.table import Table
-from rich.text import Text
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.energy import balance_in_attributes, imbalance
 from gearidae.archive.run_summary import counted_over
 from gearidae.archive.select import scene_of, swept_dims
-from gearidae.cli.output import complain, say, show
+from gearidae.cli.output import complain, say, show, show_rows
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import ATTRIBUTE, holds_rows, mean_note, rows_from_json
 
@@ -121,20 +120,6 @@ def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, Row]]:
     yield row("time_adhering", "time trapped by adhesion", "s", "rocking within half a pitch")
     if told["largest_force"] is not None:
         yield row("largest_force", "largest force", "N", f"at {number('largest_force_time', 's')}")
-
-
-def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:
-    """Print names, values and remarks in three columns.
-
-    Parameters
-    ----------
-    rows : iterable of (str, str, str)
-        A row without a value is a heading.
-    """
-    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
-    for name, value, remark in rows:
-        table.add_row(Text(f"  {name}") if value else Text(name, style="bold"), Text(value), Text(remark))
-    show(table)
 
 
 def name_failures(ds: xr.Dataset) -> int:
