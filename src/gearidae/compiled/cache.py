@@ -65,7 +65,7 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
 def is_cached() -> bool:
     """Whether compiled code can be kept; if not, each process compiles its own, which is said.
 
-    Numba would keep it beside the sources instead, where nothing tells whether a function that it calls has changed.
+    Numba would keep it beside the sources instead, where a change of a function that it calls is not noticed.
     """
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
@@ -127,7 +127,7 @@ class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[m
         return self._stamp
 
     def get_disambiguator(self) -> str:
-        """What tells functions of one name in one module apart, and the forms of one function."""
+        """Part of the file name that differs for functions of one name in one module, and for forms of one function."""
         return self._which
 
     @classmethod

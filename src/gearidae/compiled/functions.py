@@ -18,9 +18,9 @@ F = TypeVar("F", bound=Callable[..., Any])
 class Function:
     """A compiled function in two forms: one for compiled callers, and one for Python, each compiled when first called.
 
-    Python's form is declared when Python calls it first, as most functions never need it. It has to take records and arrays out of Python's objects. Almost all functions are called from compiled
-    code alone, and a third of the compilation would go into unused wrappers. Where numba does not take the options for
-    that, both are the same.
+    Python's form has to take records and arrays out of Python's objects. Almost all functions are called from compiled
+    code alone, and a third of the compilation would go into unused wrappers; so that form is not even declared before
+    Python calls it. Where numba does not take the options for that, both are the same.
     """
 
     def __init__(self, function: Callable[..., Any], linked: Any, declare: Callable[[], Any]) -> None:
