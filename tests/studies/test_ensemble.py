@@ -263,5 +263,6 @@ def test_the_command(tmp_path, monkeypatch, capsys):
     assert main(["plot", target]) == 0
     assert (tmp_path / "teodorescu2009_low_speed_ensemble.png").exists()
     capsys.readouterr()
-    assert main([*command[:4], "--vary", "coating.sam_fraction=normal(0.9)", "--size", "4"]) == 2
+    wrong = ["--vary", "coating.sam_fraction=normal(0.9)", "--size", "4", "-o", "other.nc"]
+    assert main([*command[:4], *wrong]) == 2
     assert "normal(mean, standard deviation)" in capsys.readouterr().err

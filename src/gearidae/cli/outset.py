@@ -84,14 +84,17 @@ def announce_draws(title: str, scene: Scene, keys: Mapping[str, str], runs: int,
         If a key or a distribution is not allowed.
     """
     from gearidae.studies.distributions import read_distributions
+    from gearidae.studies.seeds import without_seeds
 
-    drawn = read_distributions(scene, keys)
+    own = without_seeds(scene, keys)
+    drawn = read_distributions(scene, own) if own or own is keys else ()
     quantiles = (np.arange(_TRIED) + 0.5) / _TRIED
     columns = {each.key: each.quantiles(quantiles).tolist() for each in drawn}
     scenes = [
         scene.replace(dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)
     ]
-    _announce_runs(title, " and ".join(f"{key} {text}" for key, text in keys.items()), scenes, runs, workers)
+    words = " and ".join(f"{key} {text}" for key, text in keys.items())
+    _announce_runs(title, words, scenes or [scene], runs, workers)
 
 
 def _announce_runs(title: str, over: str, tried: Sequence[Scene], runs: int, workers: int | None) -> None:

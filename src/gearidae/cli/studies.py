@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
+from gearidae.archive.specimen import SEED
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
@@ -186,7 +187,8 @@ def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any)
     keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
     size, of = drawn["size"], drawn.get("of")
     check_design(size, drawn["design"], drawn["seed"], indices=of is not None)
-    runs = size if of is None else size * (len(keys) + 2)  # the matrices of the Sobol' indices
+    drawn_keys = [key for key in keys if key != SEED]
+    runs = size if of is None else size * (len(drawn_keys) + 2)  # the matrices of the Sobol' indices
     drawn |= {"keys": keys, "members": size}
     return conduct(
         case,
