@@ -213,3 +213,17 @@ def test_a_pull_that_reaches_too_many_teeth_is_refused():
         gd.simulate(weak)
     assert caught.value.key == "surface.hamaker"
     assert math.isfinite(caught.value.value)
+
+
+@pytest.mark.parametrize("model", ["asperity", "population"])
+def test_a_run_goes_on_with_another_constant_and_books_the_change(model):
+    """What is stored more is the closed form of all pairs, but for what they would store at the cut-off: a twentieth."""
+    changes = {"run.duration": 2e-5, "run.samples": 21, "coating.sam_fraction": 1.0, "coating.thickness": 0.0}
+    scene = GEARS.replace({"contact.model": model} | changes)
+    first = gd.simulate(scene)
+    more = scene.replace({"coating.hamaker": 7e-20})
+    found = balance(gd.simulate(more, start=first))
+    phase = float(first.gear_angle[-1]) * scene.geometry.base_radius_gear / scene.geometry.base_pitch
+    stored = 2.5 * energy_of(scene, phase, float(first.transmission_error[-1]))
+    assert found["model_change"] == pytest.approx(stored, rel=0.06, abs=0)
+    assert abs(found["residual"]) < 0.1 * abs(stored)
