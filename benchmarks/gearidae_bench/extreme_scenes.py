@@ -21,7 +21,7 @@ from gearidae.scene.coating import THICKEST
 from gearidae.scene.coating_table import MOST_PLACES
 from gearidae.scene.group import Group
 from gearidae.scene.quantity import Count, Quantity
-from gearidae.scene.strip import flank_strip
+from gearidae.scene.strip import MOST, flank_strip
 
 __all__ = ["CORNER", "Extreme", "extreme_population", "extreme_scene"]
 
@@ -100,7 +100,8 @@ def extreme_scene(seed: int, number: int, alive: Callable[[], None] | None = Non
 def extreme_population(seed: int, number: int, alive: Callable[[], None] | None = None) -> Extreme:
     """Draw one scene of `extreme_scene`, and give it real asperities: drawn, or a list of 1 to 300.
 
-    Where they would be more than a population may have, there are fewer on each area.
+    There are fewer on each area where they would be more than a population may have, and often fewer still: 100 to
+    the most, log-uniformly.
 
     Parameters
     ----------
@@ -124,18 +125,23 @@ def extreme_population(seed: int, number: int, alive: Callable[[], None] | None 
         changes["contact.asperities"] = {
             "x" if scene.roller is not None else "arc": rng.uniform(low, high, count).tolist(),
             "height": (sigma * rng.uniform(-1.0, 9.0, count)).tolist(),
-            "radius": (scene.surface.asperity_radius * 10.0 ** rng.uniform(-2.0, 1.0, count)).tolist(),
+            "radius": np.clip(
+                scene.surface.asperity_radius * 10.0 ** rng.uniform(-2.0, 1.0, count), 1e-10, 0.1
+            ).tolist(),
         }
     elif rng.random() < 0.3:
         changes["contact.radius_spread"] = float(rng.choice([1e-3, 0.3, 10.0]))
-    density = scene.surface.asperity_density
-    while True:
-        try:
-            return Extreme(scene.replace({**changes, "surface.asperity_density": density}), extreme.backend)
-        except SceneError as error:
-            if error.key != "surface.asperity_density" or density < _LEAST * 1e6:
-                raise
-            density *= 0.1
+    density, most = (
+        scene.surface.asperity_density,
+        math.exp(rng.uniform(math.log(100.0), math.log(0.99 * MOST))),
+    )
+    low, high = flank_strip(scene)
+    flanks = (scene.roller.width, 1) if scene.roller else (0.0, 0)
+    if scene.gears is not None:
+        flanks = scene.gears.face_width, 2 * scene.gears.pinion_teeth
+    mean = density * flanks[0] * (high - low) * flanks[1]
+    changes["surface.asperity_density"] = density * min(most / mean, 1.0)
+    return Extreme(scene.replace(changes), extreme.backend)
 
 
 class _Draw:

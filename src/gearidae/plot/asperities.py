@@ -12,9 +12,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from gearidae.arrays import Floats
 from gearidae.plot.style import NEGATIVE, POSITIVE
@@ -86,7 +86,8 @@ def joined_asperities(scene: Scene, contact: ToothContact) -> float:
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
     materials = {one.name: one for one in scene.materials()}
     above = sum(
-        materials[part].share * float(np.sum(ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))
+        materials[part].share
+        * float(np.sum(scipy.special.ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))
         for part, joined in contact.joined.items()
     )
     area = scene.gears.face_width * math.sqrt(2.0 * contact.radius * sigma)
@@ -117,17 +118,15 @@ def _sampled_row(scene: Scene, contact: ToothContact) -> _Row:
 def _real_row(scene: Scene, contact: ToothContact) -> _Row:
     """Return the asperities of a population beside a contact."""
     flank = met_flank(scene, contact.pair, contact.flank)
-    x, overlap = (
-        flank.arc - contact_arc(scene, contact.place),
-        flank.overlaps(scene, contact.place, contact.gap),
-    )
-    joined = np.zeros(x.size, np.bool_)
+    joined = np.zeros(flank.arc.size, np.bool_)
     joined[list(contact.asperities or ())] = True
-    near = np.abs(x) < 1.1 * half_width(scene)
-    row = _Row(
-        x, flank.height, flank.radius, flank.material, joined & (overlap <= 0.0), joined & (overlap > 0.0)
+    near = np.abs(flank.arc - contact_arc(scene, contact.place)) < 1.1 * half_width(scene)
+    some, joined = flank.some(near), joined[near]
+    overlap = some.overlaps(scene, contact.place, contact.gap)
+    x = some.arc - contact_arc(scene, contact.place)
+    return _Row(
+        x, some.height, some.radius, some.material, joined & (overlap <= 0.0), joined & (overlap > 0.0)
     )
-    return _Row(*(column[near] for column in row))
 
 
 def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:

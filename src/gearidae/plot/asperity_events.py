@@ -65,9 +65,16 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ):
         at = _times(run, kind, start, end)
         height = np.interp(at, time, force)
-        style = {"markersize": 5.5, "markeredgecolor": "white", "markeredgewidth": 0.5, "linestyle": ""}
-        label = f"asperity {words} ({at.size})"
-        ax.plot(at * across.factor, height * up.factor, mark, color=colour, label=label, **style)
+        ax.plot(
+            at * across.factor,
+            height * up.factor,
+            mark,
+            color=colour,
+            label=f"asperity {words} ({at.size})",
+            markersize=5.5,
+            markeredgecolor="white",
+            markeredgewidth=0.5,
+        )
     tidy(ax)
     ax.set_xlabel(f"time ({across.unit})")
     ax.set_ylabel(f"force of the contacts ({up.unit})")

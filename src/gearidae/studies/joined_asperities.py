@@ -41,6 +41,10 @@ class MetFlank(NamedTuple):
     radius: Floats
     material: Integers
 
+    def some(self, which: Integers | NDArray[np.bool_]) -> MetFlank:
+        """Return some of them, by their numbers or by a mask."""
+        return MetFlank(self.arc[which], self.height[which], self.radius[which], self.material[which])
+
     def overlaps(self, scene: Scene, place: float, gap: float) -> Floats:
         """Overlap of each with the gear's flank [m], where the pair touches at a place on its path with a gap [m]."""
         x = self.arc - contact_arc(scene, place)
@@ -129,7 +133,7 @@ class JoinedAsperities:
     ) -> tuple[Floats, Floats, list[str]]:
         """Overlaps [m], loads [N] and names of the materials of joined asperities."""
         scene = self._scene
-        some = MetFlank(*(column[joined] for column in self._flank(pair, flank)))
+        some = self._flank(pair, flank).some(joined)
         overlaps, surfaces = (
             some.overlaps(scene, place, gap),
             {one.name: one.surface for one in scene.materials()},
