@@ -217,7 +217,7 @@ def test_a_pull_that_reaches_too_many_teeth_is_refused():
 
 @pytest.mark.parametrize("model", ["asperity", "population"])
 def test_a_run_goes_on_with_another_constant_and_books_the_change(model):
-    """What is stored more is the closed form of all pairs, but for what they would store at the cut-off: a twentieth."""
+    """What is stored more is the closed form of all pairs, but for what they would store at the cut-off: 5 %."""
     changes = {"run.duration": 2e-5, "run.samples": 21, "coating.sam_fraction": 1.0, "coating.thickness": 0.0}
     scene = GEARS.replace({"contact.model": model} | changes)
     first = gd.simulate(scene)
