@@ -22,7 +22,10 @@ app = App(
 app.meta.suppress_keyboard_interrupt = False
 
 Case = Annotated[
-    Path, Parameter(help="Case file (TOML), or the name of a preset.", completer=completing.cases)
+    Path,
+    Parameter(
+        help="Case file (TOML), or the name of a preset or a shipped case.", completer=completing.cases
+    ),
 ]
 Output = Annotated[
     Path | None, Parameter(name=["--output", "-o"], help="File to write. Default: named after the input.")

@@ -11,8 +11,7 @@ import numpy as np
 from gearidae.archive.variables import EVENTS, columns
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
-from gearidae.cli.output import say
-from gearidae.cli.tables import show_rows
+from gearidae.cli.output import say, show_rows
 from gearidae.cli.validity_table import show_validity
 from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts

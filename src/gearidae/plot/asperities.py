@@ -12,9 +12,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from gearidae.arrays import Floats
 from gearidae.plot.style import NEGATIVE, POSITIVE
@@ -86,7 +86,8 @@ def joined_asperities(scene: Scene, contact: ToothContact) -> float:
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
     materials = {one.name: one for one in scene.materials()}
     above = sum(
-        materials[part].share * float(np.sum(ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))
+        materials[part].share
+        * float(np.sum(scipy.special.ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))
         for part, joined in contact.joined.items()
     )
     area = scene.gears.face_width * math.sqrt(2.0 * contact.radius * sigma)

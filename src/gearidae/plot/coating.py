@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
-from gearidae.analysis.assessment import Assessment
 from gearidae.analysis.map_model import require_map
 from gearidae.errors import SceneError
 from gearidae.plot.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
 from gearidae.studies.products import require
+
+if TYPE_CHECKING:
+    from gearidae.analysis.assessment import Assessment
 
 _LATER = "0.6"
 

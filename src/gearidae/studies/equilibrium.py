@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of
@@ -224,7 +223,7 @@ def settled_gap(scene: Scene, balance: Callable[[float], float]) -> float:
     gaps = np.arange(_WIDEST, _DEEPEST, -0.25) * sigma
     for outer, inner in pairwise(gaps):
         if balance(float(inner)) > 0.0:
-            return float(brentq(balance, inner, outer, xtol=_GAP_ERROR * sigma))
+            return _between(balance, float(inner), float(outer), _GAP_ERROR * sigma)
     return _DEEPEST * sigma
 
 
@@ -249,6 +248,15 @@ def nearest_gap(scene: Scene, balance: Callable[[float], float], gap: float) -> 
     while _DEEPEST * sigma < near < _WIDEST * sigma:
         far = min(max(near + way * step, _DEEPEST * sigma), _WIDEST * sigma)
         if (balance(far) > 0.0) != (way > 0.0):
-            return float(brentq(balance, min(near, far), max(near, far), xtol=_GAP_ERROR * sigma))
+            return _between(balance, min(near, far), max(near, far), _GAP_ERROR * sigma)
         near, step = far, 1.6 * step
     return near
+
+
+def _between(balance: Callable[[float], float], inner: float, outer: float, error: float) -> float:
+    """Gap between two at which the force balance changes its sign, by bisection: SciPy's roots take long to load."""
+    carries = balance(inner) > 0.0
+    while outer - inner > error:
+        middle = 0.5 * (inner + outer)
+        inner, outer = (middle, outer) if (balance(middle) > 0.0) == carries else (inner, middle)
+    return 0.5 * (inner + outer)
