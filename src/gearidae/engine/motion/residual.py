@@ -183,7 +183,7 @@ def motion(
     if m.scene.friction.on != 0:
         drive -= (1.0 - e1) * force
         pinion, gear = rubbed_accelerations(m, t, y, turn, drive, force + relief)
-        out[V] = yp[V] + yp[W] - ((1.0 - e1) * pinion - e2 * turn * turn)
+        out[V] = yp[V] + yp[W] - (1.0 - e1) * pinion + e2 * turn * turn
         out[PHASE], out[W] = yp[PHASE] - m.scene.phase_rate * w, yp[W] - gear
         return force_u, force_phase, relief_u, relief_phase
     if m.scene.error_count == 0:
