@@ -134,8 +134,8 @@ MUTANTS = (
     Mutant(
         "SAM fraction taken for the bare one",
         "engine/setup/build_contact.py",
-        "enumerate(_parts(scene))",
-        "enumerate([one._replace(share=1.0 - one.share) for one in _parts(scene)])",
+        "enumerate(parts_of(scene))",
+        "enumerate([one._replace(share=1.0 - one.share) for one in parts_of(scene)])",
         IMPACT,
     ),
     Mutant(
@@ -507,8 +507,8 @@ MUTANTS = (
     Mutant(
         "flanks of a population drawn with tooth and flank exchanged",
         "populations/flanks.py",
-        "rng = np.random.default_rng([seed, tooth, flank])\n            n = int(rng.poisson(mean))",
-        "rng = np.random.default_rng([seed, flank, tooth])\n            n = int(rng.poisson(mean))",
+        "rng = np.random.default_rng(which)",
+        "rng = np.random.default_rng(which[::-1])",
         ("populations/test_flanks.py::test_the_preset_s_surface_is_the_one_that_a_prototype_drew",),
     ),
     Mutant(
