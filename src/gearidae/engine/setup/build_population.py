@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.asperities import AsperityLaw, law_of_tip
+from gearidae.asperities.area import ContactArea
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.layout import GAP_LOW
 from gearidae.contact.kernels.single import asperity_table
@@ -15,8 +17,10 @@ from gearidae.engine.model.state import Floats, Record
 from gearidae.engine.population.candidates import LEVELS
 from gearidae.engine.population.layout import (
     FIELDS,
+    K_AREA,
     K_DETACH,
     K_ENERGY,
+    K_FRICTION,
     K_JOIN,
     K_LOAD,
     K_MATERIAL,
@@ -31,6 +35,7 @@ from gearidae.errors import SceneError
 from gearidae.populations.flanks import FlankAsperities, flanks_digest, flanks_of
 from gearidae.populations.materials import materials_met
 from gearidae.scene import MATERIAL_NAMES, Scene, Surface
+from gearidae.scene.friction import friction_values
 
 Integers = NDArray[np.int64]
 
@@ -127,6 +132,7 @@ def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: 
     numbers, highest = np.empty((radii.size, KINDS)), float(s.population.highest) - GAP_LOW
     parts: list[tuple[Integers, list[AsperityLaw], Integers]] = []
     reach: dict[AsperityLaw, float] = {}
+    friction, shear = friction_values(scene), scene.contact.friction_law == "shear"
     for one in scene.materials():
         index = MATERIAL_NAMES.index(one.name)
         rows = np.flatnonzero(materials == index)
@@ -150,10 +156,18 @@ def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: 
         )
         numbers[rows, K_JOIN], numbers[rows, K_DETACH] = join, detach - RELEASED * (detach - join)
         numbers[rows, K_OFFSET], numbers[rows, K_MATERIAL] = one.gap_offset / sigma, index
+        # contact areas are in units of pi times radius times unit of length
+        numbers[rows, K_FRICTION] = friction[one.name] * (
+            math.pi * radii[rows] * units / force if shear else 1.0
+        )
         parts.append((rows, laws, which))
     places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
+    areas = {
+        law: tables.add(asperity_table(ContactArea(law), far)) if shear else 0 for law, far in reach.items()
+    }
     for rows, laws, which in parts:
         numbers[rows, K_TABLE] = np.array([places[law] for law in laws])[which]
+        numbers[rows, K_AREA] = np.array([areas[law] for law in laws])[which]
     return numbers
 
 
