@@ -518,4 +518,25 @@ MUTANTS = (
         "energy = law.energy(displacement)",
         ("contact/test_single.py::test_tables_have_the_load_and_the_energy_of_the_law",),
     ),
+    Mutant(
+        "friction of the flanks drives the pinion",
+        "engine/friction/forces.py",
+        "pinion -= friction * first",
+        "pinion += friction * first",
+        ("engine/test_friction.py::test_the_balance_closes_with_friction",),
+    ),
+    Mutant(
+        "what holds gears at rest counted for the last element alone",
+        "engine/friction/rest.py",
+        "held += other.limit * abs(x * other.pinion + y * other.gear)",
+        "held = other.limit * abs(x * other.pinion + y * other.gear)",
+        ("engine/test_friction.py::test_gears_stay_at_rest_inside_the_zonotope_and_move_outside",),
+    ),
+    Mutant(
+        "sliding of the flanks with levers that do not change along the path",
+        "engine/friction/pairs.py",
+        "rate = w * (m.scene.friction.pinion_bend * turn + m.scene.friction.gear_bend * w)",
+        "rate = 0.0 * w * turn",
+        ("engine/test_friction.py::test_the_balance_closes_with_friction",),
+    ),
 )

@@ -19,7 +19,7 @@ along the path of contact, and with it the number of asperities in touch, while 
 does no work for that: the model has no force for it (Teodorescu et al. 2009, Eqs. 4-6 and 13). It is named here, the
 work of the changing radius, and integrated like the others. So
 
-    drive + radius = drag + dry + damping + adhesion + stored + kinetic
+    drive + radius = drag + dry + friction + damping + adhesion + stored + kinetic
 
 but for the errors of integration, which is what the balance's residual measures.
 
@@ -146,7 +146,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
-    if m.scene.population.flanks != 0:  # forces jump
+    if m.scene.population.flanks != 0 or m.scene.friction.on != 0:  # forces jump
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
         return False

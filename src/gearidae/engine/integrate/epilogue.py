@@ -12,6 +12,7 @@ from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
+from gearidae.engine.events.sliding import record_sliding, settle_sliding
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
@@ -72,6 +73,9 @@ def finish_step(
             if keeps_checkpoint(m):
                 driver.since = CHECKPOINT_STEPS
             driver.events = pass_knot(m, t, events, driver.events)
+            if m.scene.friction.on != 0:
+                settle_sliding(m, t, y, False)
+                driver.events = record_sliding(m, t, events, driver.events)
             afresh = True
         else:
             driver.done = 1
@@ -105,9 +109,17 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
         count, too_many = record_flips(m, t, events, count)
         if too_many:
             driver.error = MANY_EVENTS
-        if m.scene.dry != 0 and m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0:
+        if (
+            m.scene.friction.on == 0
+            and m.scene.dry != 0
+            and m.state.slip == 0.0
+            and dry_guard(m, t, y) <= 0.0
+        ):
             # the force has jumped past what holds the gear, and no root would show it
             count = stick_or_slip(m, t, y, events, count)
+    if m.scene.friction.on != 0:
+        restart |= settle_sliding(m, t, y, False)
+        count = record_sliding(m, t, events, count)
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
     if chatters(m, t):

@@ -26,6 +26,7 @@ from gearidae.contact.kernels.law import (
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
 from gearidae.engine.model.state import MATERIALS, Record
+from gearidae.engine.setup.build_friction import Limits, rubs
 from gearidae.engine.setup.tables import Tables
 from gearidae.scene import Material, Scene
 
@@ -49,7 +50,8 @@ def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | 
         model = "asperity"
     if model == "auto":
         lowest, enough = rigid_limit(scene, bounds)
-        model = "asperity" if enough else "elastic"
+        # friction is not available with elastic contacts: where they would be needed, the run ends
+        model = "asperity" if enough or rubs(scene) else "elastic"
         s.lowest_gap = lowest
     if model in ("asperity", "population"):
         return None
@@ -94,6 +96,7 @@ def add_contact(
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros((2, MATERIALS, 8 * N_LOADING))
+    limits = Limits(scene, kernel)
     longest = 0
     for material, (surface, share, offset, _) in enumerate(parts_of(scene)):
         own, tip = s.material[material], asperity_of(surface)
@@ -112,12 +115,14 @@ def add_contact(
         if share > 0.0:
             push, stored = loading_pieces(law, kernel, float(own.gap_offset))
             loading[material], potential[material] = force * push, force * stored
+            limits.add(s, tables, material, surface, law)
             for floor, gap in reach.items():
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
                 reach[floor] = max(gap, widest_gap - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
     if s.by_place == 0:  # shares that never change are mixed once
         loading, potential = loading.sum(axis=0), potential.sum(axis=0)
+    limits.finish(s, tables)
     s.loading_at, s.potential_at = tables.add(loading.ravel()), tables.add(potential.ravel())
     s.branch_length, s.point_branch_length = (0, longest) if s.nodes > 0 else (longest, 0)
 
