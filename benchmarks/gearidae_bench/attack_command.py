@@ -8,8 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import say
-from gearidae.cli.tables import show_rows
+from gearidae.cli.output import say, show_rows
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae_bench.attack import Outcome, run_attack

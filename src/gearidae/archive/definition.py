@@ -45,11 +45,10 @@ def define(template: xr.Dataset, path: Path, sizes: Mapping[str, int], *, in_pla
         sample = Path(folder) / "template.nc"
         form: Form = "NETCDF3_64BIT_DATA" if in_place else "NETCDF4"
         with opened(sample, "x") as old, opened(path, "x", form) as new:
+            store: Any = xr.backends.NetCDF4DataStore(old)  # type: ignore[no-untyped-call]
+            # `to_netcdf` would load dask's scheduler, of which there is no use
             template.drop_encoding().dump_to_store(
-                xr.backends.NetCDF4DataStore(
-                    old
-                ),  # `to_netcdf` loads dask's scheduler, of which there is no use
-                encoding={name: {"_FillValue": None} for name in template.coords},
+                store, encoding={name: {"_FillValue": None} for name in template.coords}
             )
             lengths = {name: len(dimension) for name, dimension in old.dimensions.items()} | dict(sizes)
             new.setncatts({_ROOM: " " * _HEADER} if in_place else {})

@@ -151,7 +151,9 @@ def _ensemble_rows(ds: xr.Dataset) -> Rows:
     for name in _FIGURES:
         if name in ds and np.isfinite(ds[name]).any():
             low, middle, high = np.nanquantile(ds[name].values, (0.05, 0.5, 0.95))
-            low, middle, high = (_in_words(value, str(ds[name].attrs["units"])) for value in (low, middle, high))
+            low, middle, high = (
+                _in_words(value, str(ds[name].attrs["units"])) for value in (low, middle, high)
+            )
             yield name.replace("_", " "), middle, f"90 % between {low} and {high}"
 
 
