@@ -26,6 +26,10 @@ _BALANCE_ROWS: Final = (
     ("dry_loss", "lost"),
     ("damping_loss", "lost"),
     ("adhesion_loss", "lost"),
+    ("drive_friction_loss", "lost"),
+    ("coast_friction_loss", "lost"),
+    ("pinion_hub_loss", "lost"),
+    ("gear_hub_loss", "lost"),
     ("stored_change", "stored in contacts"),
     ("kinetic_change", "stored in motion"),
 )
@@ -82,7 +86,7 @@ def _summary_rows(kept: dict[str, Any]) -> Iterator[tuple[str, Row]]:
 def _balance_rows(kept: dict[str, float]) -> Iterator[tuple[str, Row]]:
     yield "", ("Energy balance", "", "")
     for name, remark in _BALANCE_ROWS:
-        if kept[name] != 0.0:
+        if kept.get(name, 0.0) != 0.0:
             yield name, (name.replace("_", " "), with_prefix(kept[name], "J", 5), remark)
     bound = with_prefix(kept["residual_bound"], "J", 2)
     out_by = imbalance(kept["residual"], kept["residual_bound"])

@@ -295,6 +295,9 @@ def surface(
     picture: Annotated[
         Path | None, Parameter(help="Image of the numbers against the cut-off to write.")
     ] = None,
+    asperities: Annotated[
+        Path | None, Parameter(help="List of the summits to write, for contact.asperities = {file = ...}.")
+    ] = None,
     overwrite: Overwrite = False,
 ) -> int:
     """Take roughness, density and tip radius of the asperities from a measured height map.
@@ -303,7 +306,8 @@ def surface(
     """
     from gearidae.cli.surface import Choices, analyse_scan
 
-    choices = Choices(size, unit, cutoff, by, both_flanks, align_rows, None if into is None else str(into))
+    case = None if into is None else str(into)
+    choices = Choices(size, unit, cutoff, by, both_flanks, align_rows, case, asperities)
     return analyse_scan(scan, choices, output, picture, overwrite=overwrite)
 
 

@@ -49,7 +49,9 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     show_rows(_rows(scene))
     rows = validity_rows(scene)
     show_validity(rows, about=contact_subject(roller=scene.roller is not None))
-    if note := mean_note(rows):
+    if scene.contact.model == "population":
+        say("A run is one specimen of this design: contact.seed numbers the others.")
+    elif note := mean_note(rows):
         say(f"Verdicts of runs are a {note}")
     for doubt in doubts(scene):
         say(f"Warning: {doubt}")

@@ -12,7 +12,7 @@ from gearidae.cli.output import complain, is_quiet, say, show_rows
 from gearidae.cli.outset import begin, draw_words, grid_words
 from gearidae.cli.request import Request
 from gearidae.cli.tables import name_failures
-from gearidae.cli.values import assignments, default_output, sweep_values, texts
+from gearidae.cli.values import assignments, default_output, quantity, sweep_values, texts
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.studies.answers import answer
@@ -130,15 +130,22 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
         ((key, fractions),) = sweep_values([over]).items()
         if key != _FRACTION:
             raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
+    seeded = read_scene(case, request.settings or ()).contact.model == "population"
     return conduct(
         case,
         request,
-        "starting_torque",
+        "starting_torques" if seeded else "starting_torque",
         "Starting torque",
         gd.studies.starting_torque,
         fractions,
         **options,
     )
+
+
+def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int:
+    """Part drawn pairs of a case, pressed with a force."""
+    force = None if load is None else quantity("--load", load, "N")
+    return conduct(case, request, "pull_off", "Pull-off", gd.studies.pull_off, seeds, load=force)
 
 
 def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:

@@ -12,6 +12,7 @@ from rich.table import Table
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.table import cells, headings
 from gearidae.archive.select import scene_of, swept_dims
+from gearidae.archive.specimen import specimen_note
 from gearidae.archive.summary_rows import summary_rows
 from gearidae.cli.output import complain, say, show, show_rows
 from gearidae.scene.validity_row import ATTRIBUTE, holds_rows, mean_note, rows_from_json
@@ -40,6 +41,9 @@ def show_outcomes(ds: xr.Dataset) -> None:
     for outcome in judged:
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells(outcome, rtol))
     show(table)
+    if specimen := specimen_note(ds):
+        say(specimen)
+        return
     kept = ds.attrs.get(ATTRIBUTE)
     if isinstance(kept, str) and holds_rows(kept) and (note := mean_note(rows_from_json(kept))):
         say(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")

@@ -28,10 +28,13 @@ from gearidae.engine.changeover import (
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
+from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
+from gearidae.engine.events.sliding import begin_sliding, settle_sliding
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
 from gearidae.engine.integrate.start import rebase
+from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
     EMPTY,
     ENERGY,
@@ -141,7 +144,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
 def knots_at_start(problem: Problem) -> Floats:
     """Return the event of a schedule that has a knot where a continued run begins; the run before ended just there.
 
-    A knot that the solver could not tell from the end has been left out there.
+    A knot that the solver could not distinguish from the end has been left out there.
 
     Returns
     -------
@@ -235,13 +238,16 @@ def _materials(m: Model) -> Floats:
         numbers += [own.teeth, *m.tables[own.values_at : own.values_at + own.teeth * own.places]]
     for own in m.scene.material:
         force = own.force_scale * m.scene.force_unit
-        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset]
+        pull = own.attraction * m.scene.force_unit
+        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset, pull]
     return np.array(numbers)
 
 
 def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:
     """Carry what contacts remember to the new materials and nodes, and book the change of the stored energy."""
     source, m = old.model, new.model
+    if changed and m.scene.attracts != 0:
+        accept(m, float(m.state.time), y)  # pairs that have not been within reach
     if m.scene.population.flanks > 0:
         take_joined(m, y, joined_asperities(source))
         if changed:
@@ -310,9 +316,17 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     s = m.state
     if m.scene.kind != GEARS:
         return
+    if m.scene.friction.on != 0:
+        s.stop_armed = 0
+        if source.scene.friction.on != 0:
+            settle_sliding(m, time, y, False)
+        else:
+            begin_sliding(m, time, y)
+        return
+    s.hold = FREE
     if m.scene.dry == 0:
         s.slip, s.slipping = 1.0, 0
-    elif source.scene.dry == 0:
+    elif source.scene.dry == 0 or source.scene.friction.on != 0:
         s.slip, s.slipping = float(np.sign(y[W])), int(abs(y[W]) > m.scene.rest_speed)
     s.stop_armed = 0
     if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:

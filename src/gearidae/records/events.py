@@ -24,6 +24,9 @@ class EventKind(IntEnum):
     SCHEDULE_KNOT = 9
     ASPERITY_ONSET = 10
     ASPERITY_DETACHMENT = 11
+    SLIDING_REVERSAL = 12
+    FLANK_STICK = 13
+    FLANK_SLIP = 14
 
 
 class Flank(IntEnum):
@@ -32,6 +35,17 @@ class Flank(IntEnum):
     NONE = -1
     DRIVE = 0
     COAST = 1
+
+
+class EventColumn(IntEnum):
+    """Column of an event in a driver's block of output, shape (n, 6)."""
+
+    TIME = 0
+    KIND = 1
+    PAIR = 2
+    FLANK = 3
+    GAP_RATE = 4
+    ASPERITY = 5
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ import xarray as xr
 from gearidae import plot
 from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import scene_of
+from gearidae.archive.specimen import specimen_note
 from gearidae.archive.target import whole_file
 from gearidae.plot.overview import usual_pictures
 from gearidae.report import html
@@ -62,7 +63,7 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     if kind != "runs":
         return _study_page(ds, kind)
     sections = (
-        html.section("outcome", "Outcome", outcome_table(ds), summary_tables(ds)),
+        html.section("outcome", "Outcome", _specimen(ds), outcome_table(ds), summary_tables(ds)),
         html.section("series", "Time series", _viewer(ds, most_values)),
         html.section("teeth", "Teeth in mesh", _teeth(ds)),
         html.section("pictures", "Pictures", pictures(ds)),
@@ -70,6 +71,12 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     )
     scripts = ("common.js", "save.js", "box.js", "viewer.js", "teeth.js")
     return _page(ds, headline(ds), sections, scripts)
+
+
+def _specimen(ds: xr.Dataset) -> str:
+    """Say of a run with real asperities that it is one specimen of its design."""
+    note = specimen_note(ds)
+    return html.paragraph(note) if note else ""
 
 
 def _study_page(ds: xr.Dataset, kind: str) -> str:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from gearidae.arrays import Floats
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of
+from gearidae.contact.attraction import attraction_force
 from gearidae.contact.line import line_force
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
@@ -73,6 +74,20 @@ class PairContact:
             stretched = np.asarray(stretch) + law_of(self.law, surface).join * surface.roughness
             own_gap = np.asarray(gap) + offset
             total = total + share * line_force(own_gap, stretched, self.radius, self.width, surface, self.law)
+        return total + self.attraction(gap) if self.attracts else total
+
+    @property
+    def attracts(self) -> bool:
+        """Whether the flanks attract each other across the gap."""
+        return any(part.surface.hamaker > 0.0 for part in self.parts)
+
+    def attraction(self, gap: ArrayLike, hamaker: float | None = None) -> Floats:
+        """Attraction across gaps [m], negative [N], with the materials' Hamaker constants or one for all [J]."""
+        total: Floats = np.zeros(np.shape(gap))
+        for surface, share, offset, _ in self.parts:
+            constant = surface.hamaker if hamaker is None else hamaker
+            own_gap = np.asarray(gap) + offset
+            total = total + share * attraction_force(own_gap, self.radius, self.width, constant)
         return total
 
     def resting_gap(self, load: float, error: float = 1e-12) -> float:

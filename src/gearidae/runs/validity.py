@@ -49,6 +49,10 @@ _SILICON: Final = 2330.0
 """Density of silicon [kg/m^3]: discs of base radius and face width are made of it."""
 _CLEARANCE: Final = 2e-6
 """Distance between gear and substrate that the drag of the air is estimated for [m]: a usual sacrificial layer."""
+_USUAL_HAMAKER: Final = 5e-20
+"""Hamaker constant [J] of flanks in a scene that has none: an assumption, to say what it leaves out."""
+_LITTLE_ATTRACTION: Final = 0.1
+"""Share of the force that presses below which the attraction may be left out."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
 
 
@@ -98,14 +102,21 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
     return list(_rows(scene))
 
 
-# Some 15 ms: an archive asks for them when it is begun and when it is finished.
+# Some 15 ms: an archive needs them at its beginning and at its end.
 @lru_cache(maxsize=16)
 def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rest = rest_of(scene)
     stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
-    rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
+    real = scene.contact.model == "population"
+    rows = [_asperities(rest, real), _density(rest.contact), *_merging(scene), *_tabor(scene)]
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
+    rows += [_attraction(scene, rest, rest.gap, "attraction", "attraction across the gap")]
     if scene.gears is not None:
+        assert scene.mesh is not None
+        behind = scene.mesh.backlash - rest.gap
+        rows += [
+            _attraction(scene, rest, behind, "attraction_behind", "attraction across the backlash behind")
+        ]
         rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene)]
     return tuple(rows)
 
@@ -129,7 +140,8 @@ def _about(count: float) -> str:
     return f"{float(f'{count:.2g}'):,.0f}" if count < 1e9 else f"{count:.0e}"
 
 
-def _asperities(rest: Rest) -> ValidityRow:
+def _asperities(rest: Rest, real: bool) -> ValidityRow:
+    """Compare the asperities in contact with those that a mean law needs; `real` ones do without."""
     count = needed = math.nan
     limit = verdict = "-"
     if not math.isnan(rest.gap):
@@ -140,11 +152,13 @@ def _asperities(rest: Rest) -> ValidityRow:
         words = (
             "one pair's force is the mean to 10 %"
             if count >= needed
+            else "each asperity is followed: a run is one specimen, another contact.seed another"
+            if real
             else "the smooth law of force is an ensemble mean, not one pair of teeth"
         )
         verdict = f"{words} (gap {rest.gap / rest.contact.surface.roughness:.2f} roughnesses)"
     quantity = "expected asperities in contact"
-    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, count >= needed, verdict)
+    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, real or count >= needed, verdict)
 
 
 def _counts(rest: Rest) -> list[float]:
@@ -172,11 +186,13 @@ def _memory(scene: Scene, rest: Rest) -> ValidityRow:
         rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
         ratio = width / rolled
         laws = [law_of(contact.law, part.surface) for part in contact.parts]
-        forgets = all(law.detach == law.join for law in laws)
-        holds = forgets or ratio >= 1.0
+        forgets, real = all(law.detach == law.join for law in laws), scene.contact.model == "population"
+        holds = forgets or real or ratio >= 1.0
         words = (
             "asperities of this law have no memory"
             if forgets
+            else "each asperity remembers on its own, and passes through the contact"
+            if real
             else "the same asperities stay in contact while the pair is engaged"
             if holds
             else "asperities pass through the contact; here those that an impact joins stay with the pair"
@@ -222,7 +238,7 @@ def _tabor(scene: Scene) -> Iterator[ValidityRow]:
     for surface, _, _, name in scene.materials():
         high, low = (tabor_parameter(surface, eps) for eps in _SPACINGS)
         limit, bound, holds, verdict = _tabor_verdict(law, low, high)
-        # the end of the range that is compared: the small one where the law asks for large parameters
+        # the end of the range that is compared: the small one where the law needs large parameters
         number = high if law == "dmt" else low
         yield ValidityRow(
             f"tabor_{name}",
@@ -303,6 +319,24 @@ def _adhesion(scene: Scene, rest: Rest) -> ValidityRow:
             )
     quantity = "net adhesion of the pair when it parts"
     return _row("net_adhesion", quantity, tension, "N", limit, rest.load, tension <= rest.load, verdict)
+
+
+def _attraction(scene: Scene, rest: Rest, gap: float, name: str, quantity: str) -> ValidityRow:
+    """Compare what flanks attract each other with across a gap with the force that presses, in the scene or not."""
+    pull, holds, verdict = math.nan, False, ""
+    driven = "the drive's force" if scene.roller is None else "the peak force, rigid bodies"
+    limit = driven
+    if not math.isnan(gap):
+        inside = rest.contact.attracts
+        pull = -float(rest.contact.attraction(gap, None if inside else _USUAL_HAMAKER))
+        holds = inside or pull <= _LITTLE_ATTRACTION * rest.load
+        limit = f"{with_prefix(rest.load, 'N')}, {driven}"
+        ratio = "" if rest.load == 0.0 else f", {_times(pull / rest.load)} that force"
+        across = f"over {with_prefix(gap, 'm')}{ratio}"
+        missing = f"with {_USUAL_HAMAKER:g} J, left out of the scene"
+        verdict = f"in the scene, {across}" if inside else f"{missing}, {across}"
+    bound = rest.load if rest.contact.attracts else _LITTLE_ATTRACTION * rest.load
+    return _row(name, quantity, pull, "N", limit, bound, holds, verdict)
 
 
 def _disc_drag(scene: Scene) -> ValidityRow:

@@ -19,7 +19,7 @@ along the path of contact, and with it the number of asperities in touch, while 
 does no work for that: the model has no force for it (Teodorescu et al. 2009, Eqs. 4-6 and 13). It is named here, the
 work of the changing radius, and integrated like the others. So
 
-    drive + radius = drag + dry + damping + adhesion + stored + kinetic
+    drive + radius = drag + dry + friction + damping + adhesion + stored + kinetic
 
 but for the errors of integration, which is what the balance's residual measures.
 
@@ -107,8 +107,8 @@ def step(
 ) -> None:
     """Add works and losses up to an accepted time; histories and mesh marks must still be those before it.
 
-    A turning point needs no sample. In free flight, where only torques and drag are integrated, formulas of high
-    order take steps that are too long for the quadrature; these steps are divided.
+    A turning point needs no sample. Formulas of high order take steps that are too long for the quadrature of drag and
+    damping; these steps are divided, and in free flight those of the torques with them.
 
     Parameters
     ----------
@@ -123,17 +123,18 @@ def step(
     """
     if at[1] and _can_wait(m, t, y):
         return
-    now = at[0] or m.state.bound_exceeded != 0
-    a, parts, start = m.work.adams, 1, m.work.quadrature.time
-    if a.order_used > ORDER and in_flight(m) and m.scene.kind == GEARS:
-        parts = m.scene.flight_parts
-        start = max(start, a.time - a.last_step)
-    for part in range(1, parts + 1):
-        time, state, rates = t, y, yp
-        if part < parts:
-            time, state, rates = start + (t - start) * part / parts, between[0], between[1]
-            adams.between(a, time, state, rates)
-        _accumulate(m, time, state, rates, now or part < parts)
+    a, parts, flying = m.work.adams, 1, in_flight(m)
+    start = max(m.work.resistance.time, a.time - a.last_step)
+    if a.order_used > ORDER and m.scene.kind == GEARS:
+        parts = m.scene.step_parts
+    for part in range(1, parts):
+        time = start + (t - start) * part / parts
+        adams.between(a, time, between[0], between[1])
+        if flying:
+            _accumulate(m, time, between[0], between[1], True)
+        else:
+            _accumulate_losses(m, time, between[0], between[1])
+    _accumulate(m, t, y, yp, at[0] or m.state.bound_exceeded != 0)
 
 
 @compiled
@@ -145,7 +146,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
-    if m.scene.population.flanks != 0:  # forces jump
+    if m.scene.population.flanks != 0 or m.scene.friction.on != 0:  # forces jump
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
         return False

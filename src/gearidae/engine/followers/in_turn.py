@@ -1,9 +1,10 @@
 """The followers of a run in their order, each called only if the scene wants it.
 
 A follower keeps sums or extremes of its own and changes nothing else. It is a module with `begin` at a start of the
-integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root, `resume`
-behind all events of a root, and `finish` before a restart, at the end and for a look in between. It leaves out what it
-does not need. Exposures use what joining and the balance have left at the same time.
+integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root, `flips`
+where asperities have joined or detached, `resume` behind all events of a root, and `finish` before a restart, at the
+end and for a look in between. It leaves out what it does not need. Exposures use what joining and the balance have left
+at the same time.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from gearidae.compiled import compiled
 from gearidae.engine.events.pair_events import PairEvent
 from gearidae.engine.followers import balance, joining
 from gearidae.engine.followers.exposures import follow as exposures
+from gearidae.engine.followers.exposures.asperities import add_flips
 from gearidae.engine.followers.extremes import follow as extremes
+from gearidae.engine.followers.rubbing import book_rubbing, note_rubbing
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import GEARS, Floats, Model, W
 
@@ -23,6 +26,8 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if m.scene.follow.balance != 0:
         joining.begin(m, t)
         balance.begin(m, t, y, yp)
+        if m.scene.friction.on != 0:
+            note_rubbing(m, t, y)
     if m.scene.follow.extremes != 0:
         extremes.begin(m, t, y, yp)
     if m.scene.follow.exposures != 0:
@@ -51,6 +56,8 @@ def step(
     if m.scene.follow.extremes != 0:
         extremes.step(m, t, y, yp, at[0], between[0])
     if m.scene.follow.balance != 0:
+        if m.scene.friction.on != 0:
+            book_rubbing(m, t, y, at[1], between[0], between[1])
         balance.step(m, t, y, yp, at, between)
     if m.scene.follow.exposures != 0:
         exposures.step(m, t, y, yp, at[1])
@@ -63,6 +70,13 @@ def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
         joining.event(m, y, found.coast, found.pair, found.k, found.gap)
     if m.scene.follow.exposures != 0:
         exposures.event(m, t, y, yp, found)
+
+
+@compiled
+def flips(m: Model, y: Floats) -> None:
+    """Take note of asperities that have joined or detached, before they are recorded."""
+    if m.scene.follow.exposures != 0:
+        add_flips(m, y)
 
 
 @compiled
@@ -82,6 +96,8 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
         if crossed:
             joining.resume(m, y)
         balance.resume(m, t, y, crossed, joined)
+        if m.scene.friction.on != 0:
+            note_rubbing(m, t, y)
     if m.scene.follow.extremes != 0:
         extremes.resume(m, t, y)
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.asperity_events import flip_asperities, record_flips
+from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
+from gearidae.engine.events.sliding import record_sliding, settle_sliding
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
@@ -71,6 +73,9 @@ def finish_step(
             if keeps_checkpoint(m):
                 driver.since = CHECKPOINT_STEPS
             driver.events = pass_knot(m, t, events, driver.events)
+            if m.scene.friction.on != 0:
+                settle_sliding(m, t, y, False)
+                driver.events = record_sliding(m, t, events, driver.events)
             afresh = True
         else:
             driver.done = 1
@@ -98,10 +103,23 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
                 followers.event(m, t, y, yp, found)
                 count = take_event(m, t, y, found, events, count)
     if m.scene.population.flanks != 0:
-        restart |= flip_asperities(m, y)
+        if flip_asperities(m, y):
+            restart = True
+            followers.flips(m, y)
         count, too_many = record_flips(m, t, events, count)
         if too_many:
             driver.error = MANY_EVENTS
+        if (
+            m.scene.friction.on == 0
+            and m.scene.dry != 0
+            and m.state.slip == 0.0
+            and dry_guard(m, t, y) <= 0.0
+        ):
+            # the force has jumped past what holds the gear, and no root would show it
+            count = stick_or_slip(m, t, y, events, count)
+    if m.scene.friction.on != 0:
+        restart |= settle_sliding(m, t, y, False)
+        count = record_sliding(m, t, events, count)
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
     if chatters(m, t):

@@ -2,23 +2,40 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.asperities import AsperityLaw, law_of_tip
+from gearidae.asperities.area import ContactArea
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.layout import GAP_LOW
 from gearidae.contact.kernels.single import asperity_table
 from gearidae.engine.model.state import Floats, Record
 from gearidae.engine.population.candidates import LEVELS
-from gearidae.engine.population.layout import FIELDS, K_DETACH, K_JOIN, KINDS
+from gearidae.engine.population.layout import (
+    FIELDS,
+    K_AREA,
+    K_DETACH,
+    K_ENERGY,
+    K_FRICTION,
+    K_JOIN,
+    K_LOAD,
+    K_MATERIAL,
+    K_OFFSET,
+    K_SCALE,
+    K_TABLE,
+    KINDS,
+)
+from gearidae.engine.setup.build_contact import add_fractions
 from gearidae.engine.setup.tables import Tables
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import FlankAsperities, flanks_digest, flanks_of
-from gearidae.populations.materials import materials_at
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.populations.materials import materials_met
+from gearidae.scene import MATERIAL_NAMES, Scene, Surface
+from gearidae.scene.friction import friction_values
 
 Integers = NDArray[np.int64]
 
@@ -62,7 +79,11 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     _add_levels(own, tables, heights, counts)
     numbers, kinds = _kinds(s, tables, scene, flanks)
     first = tables.add(numbers.ravel())
-    own.kinds_at = tables.add((first + KINDS * kinds).astype(np.float64))
+    own.kinds_at, *bare = (tables.add((first + KINDS * row).astype(np.float64)) for row in kinds)
+    if bare:
+        own.by_gear_tooth, (own.bare_kinds_at,) = 1, bare
+        own.gear_numbers_at = tables.add(np.concatenate([one.q2 for one in flanks]))
+        add_fractions(s.coverage[1], tables, scene.coating.gear_table, float(s.contact_ratio))
     own.join = float(numbers[:, K_JOIN].max())
     digest = flanks_digest(flanks)
     own.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
@@ -92,38 +113,84 @@ def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Integers) 
 def _kinds(
     s: Record, tables: Tables, scene: Scene, flanks: tuple[FlankAsperities, ...]
 ) -> tuple[Floats, Integers]:
-    """Numbers of each kind, and the kind of each asperity; a kind is a material with a radius."""
+    """Numbers of each kind, and the kind of each asperity in the rows of `materials_met`.
+
+    A kind is a material with a radius.
+    """
     radii, of_radius = np.unique(np.concatenate([one.radius for one in flanks]), return_inverse=True)
-    material = np.concatenate([materials_at(scene, one, one.tooth + one.flank) for one in flanks])
-    pairs, kinds = np.unique(len(MATERIAL_NAMES) * of_radius + material, return_inverse=True)
-    sigma, by_name = scene.surface.roughness, {one.name: one for one in scene.materials()}
-    highest = float(s.population.highest) - GAP_LOW
-    tips = []
+    material = np.concatenate([materials_met(scene, one) for one in flanks], axis=1)
+    both = len(MATERIAL_NAMES) * of_radius.ravel() + material
+    pairs, kinds = np.unique(both.ravel(), return_inverse=True)
+    return _numbers(
+        s, tables, scene, radii[pairs // len(MATERIAL_NAMES)], pairs % len(MATERIAL_NAMES)
+    ), kinds.reshape(both.shape)
+
+
+def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: Integers) -> Floats:
+    """Numbers of kinds that have these radii and materials; the tables of their laws are added."""
+    sigma, force = scene.surface.roughness, float(s.force_unit)
+    numbers, highest = np.empty((radii.size, KINDS)), float(s.population.highest) - GAP_LOW
+    parts: list[tuple[Integers, list[AsperityLaw], Integers]] = []
     reach: dict[AsperityLaw, float] = {}
-    for pair in pairs.tolist():
-        radius, one = radii[pair // len(MATERIAL_NAMES)], by_name[MATERIAL_NAMES[pair % len(MATERIAL_NAMES)]]
-        tip = asperity_of(one.surface.model_copy(update={"asperity_radius": float(radius)}))
-        unit = tip.stretch_limit if tip.stretch_limit > 0.0 else sigma
-        law = law_of_tip(scene.contact.asperity, tip, unit)
-        tips.append((law, tip.hertz_factor, unit, one.gap_offset))
-        reach[law] = max(reach.get(law, 0.0), highest * sigma / unit)
-        if len(reach) > MOST_LAWS:
-            raise SceneError(
-                "contact.asperity",
-                scene.contact.asperity,
-                f"has another law for each radius, of {radii.size}: there may be {MOST_LAWS} at most, or the law jkr",
-            )
-    places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
-    numbers = np.empty((pairs.size, KINDS))
-    for row, (law, factor, unit, offset) in enumerate(tips):
-        load, join, detach = factor * unit**1.5, law.join * unit / sigma, law.detach * unit / sigma
-        numbers[row] = (
-            places[law],
-            sigma / unit,
-            load / float(s.force_unit),
-            load * unit / (float(s.force_unit) * sigma),
-            join,
-            detach - RELEASED * (detach - join),
-            offset / sigma,
+    friction, shear = friction_values(scene), scene.contact.friction_law == "shear"
+    for one in scene.materials():
+        index = MATERIAL_NAMES.index(one.name)
+        rows = np.flatnonzero(materials == index)
+        if rows.size == 0:
+            continue
+        tip, ratio = asperity_of(one.surface), radii[rows] / one.surface.asperity_radius
+        units = tip.stretch_limit * np.cbrt(ratio) if tip.stretch_limit > 0.0 else np.full(rows.size, sigma)
+        laws, which = _laws(scene.contact.asperity, one.surface, radii[rows], sigma)
+        for number, law in enumerate(laws):
+            far = highest * sigma / float(units[which == number].min())
+            reach[law] = max(reach.get(law, 0.0), far)
+        load = tip.hertz_factor * np.sqrt(ratio) * units**1.5 / force
+        join, detach = (
+            np.array([getattr(law, name) for law in laws])[which] * units / sigma
+            for name in ("join", "detach")
         )
-    return numbers, kinds
+        numbers[rows, K_SCALE], numbers[rows, K_LOAD], numbers[rows, K_ENERGY] = (
+            sigma / units,
+            load,
+            load * units / sigma,
+        )
+        numbers[rows, K_JOIN], numbers[rows, K_DETACH] = join, detach - RELEASED * (detach - join)
+        numbers[rows, K_OFFSET], numbers[rows, K_MATERIAL] = one.gap_offset / sigma, index
+        # contact areas are in units of pi times radius times unit of length
+        numbers[rows, K_FRICTION] = friction[one.name] * (
+            math.pi * radii[rows] * units / force if shear else 1.0
+        )
+        parts.append((rows, laws, which))
+    places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
+    areas = {
+        law: tables.add(asperity_table(ContactArea(law), far)) if shear else 0 for law, far in reach.items()
+    }
+    for rows, laws, which in parts:
+        numbers[rows, K_TABLE] = np.array([places[law] for law in laws])[which]
+        numbers[rows, K_AREA] = np.array([areas[law] for law in laws])[which]
+    return numbers
+
+
+def _laws(name: str, surface: Surface, radii: Floats, sigma: float) -> tuple[list[AsperityLaw], Integers]:
+    """Laws of tips of different radii, and which each has; one if those of the smallest and the largest are the same.
+
+    Raises
+    ------
+    SceneError
+        If there are more than can be tabulated.
+    """
+
+    def law_at(radius: float) -> AsperityLaw:
+        tip = asperity_of(surface.model_copy(update={"asperity_radius": float(radius)}))
+        return law_of_tip(name, tip, tip.stretch_limit if tip.stretch_limit > 0.0 else sigma)
+
+    least, most = law_at(radii.min()), law_at(radii.max())
+    if least == most:
+        return [least], np.zeros(radii.size, np.int64)
+    if radii.size > MOST_LAWS:
+        raise SceneError(
+            "contact.asperity",
+            name,
+            f"has another law for each radius, of {radii.size}: there may be {MOST_LAWS} at most, or the law jkr",
+        )
+    return [law_at(radius) for radius in radii], np.arange(radii.size)

@@ -1,0 +1,144 @@
+"""Losses by friction of flanks and hubs, integrated over every step from powers and their rates at both ends."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import FRICTION
+from gearidae.engine.formulas import adams
+from gearidae.engine.formulas.quadrature import error_estimate, integral
+from gearidae.engine.friction.forces import Mesh, Shafts, solve_shafts
+from gearidae.engine.friction.pairs import direction, flank_of_history, lever_rate, levers
+from gearidae.engine.model.record_types import HELD_PAIR
+from gearidae.engine.model.state import COAST, Floats, Model, W
+from gearidae.engine.motion.shafts import forces_at_shafts
+
+_POWERS: Final = 4
+_OUTER: Final = 0.5 * math.sqrt(0.6)
+"""Distance of the outer points of the Gaussian rule from the middle of an interval of length 1."""
+
+
+@compiled_once(FRICTION)
+def note_rubbing(m: Model, t: float, y: Floats) -> None:
+    """Note the powers of friction and their rates, with the present directions of slip."""
+    turn, pinion, gear = forces_at_shafts(m, t, y)
+    found = solve_shafts(m, t, y, turn, pinion, gear)
+    r = m.work.rubbing
+    r.time = t
+    for which in range(_POWERS):
+        r.power[which] = r.power_rate[which] = 0.0
+    drive = coast = drive_friction = coast_friction = 0.0  # rates
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        flank = flank_of_history(m, noted.history)
+        first, second = levers(m, noted.position)
+        slip = direction(m, noted) if m.scene.friction.flanks != 0 else 0.0
+        friction, rate = slip * noted.limit, slip * noted.limit_rate
+        speed = first * turn - second * y[W]
+        speed_rate = first * found.pinion - second * found.gear + lever_rate(m, noted, turn, y[W])
+        r.power[flank] += friction * speed
+        r.power_rate[flank] += rate * speed + friction * speed_rate
+        if flank == COAST:
+            coast += noted.force_rate
+            coast_friction += rate
+        else:
+            drive += noted.force_rate
+            drive_friction += rate
+    if found.hubs > 0.0:
+        load_rate = _load_rate(m, found, Mesh(drive, coast, drive_friction, coast_friction))
+        own, slip = m.scene.friction, m.state.slip if m.scene.friction.gear_hub > 0.0 else 0.0
+        r.power[2] = own.pinion_hub * found.hubs * m.state.pinion_slip * turn
+        r.power_rate[2] = (
+            own.pinion_hub * m.state.pinion_slip * (load_rate * turn + found.hubs * found.pinion)
+        )
+        r.power[3] = own.gear_hub * found.hubs * slip * y[W]
+        r.power_rate[3] = own.gear_hub * slip * (load_rate * y[W] + found.hubs * found.gear)
+
+
+@compiled(inline=True)
+def _load_rate(m: Model, found: Shafts, rate: Mesh) -> float:
+    """Rate of the bearings' load, for the rates of the forces that it is the vector sum of."""
+    own, now = m.scene.friction, found.mesh
+    half = now.drive * rate.drive + now.coast * rate.coast
+    half += now.drive_friction * rate.drive_friction + now.coast_friction * rate.coast_friction
+    half -= own.cosine * (rate.drive * now.coast + now.drive * rate.coast)
+    half -= own.cosine * (rate.drive_friction * now.coast_friction + now.drive_friction * rate.coast_friction)
+    half += own.sine * (rate.drive * now.coast_friction + now.drive * rate.coast_friction)
+    half -= own.sine * (rate.drive_friction * now.coast + now.drive_friction * rate.coast)
+    return half / found.hubs
+
+
+@compiled_once(FRICTION)
+def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rates: Floats) -> None:
+    """Add the losses since the last call, and note the powers here.
+
+    The corrected trapezoidal rule is applied to the whole interval and to both halves, and extrapolated, where the
+    formula of the step gives the states in between. Rates are infinite before an asperity detaches, and not known of
+    the friction that holds a pair, on which that of hubs depends: there powers at three points inside the interval
+    are taken.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau.
+    y : ndarray, shape (n,)
+        State there.
+    root : bool
+        Whether something happens there.
+    between, rates : ndarray, shape (n,)
+        Work space.
+    """
+    r, a = m.work.rubbing, m.work.adams
+    h, start = t - r.time, r.time
+    if h == 0.0:
+        return
+    first = _powers(m)
+    hubs = m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0
+    no_rates = (root and m.scene.population.flanks != 0) or (hubs and m.state.hold == HELD_PAIR)
+    if no_rates and a.order_used > 0:
+        for point in range(3):
+            then = start + (0.5 + (point - 1) * _OUTER) * h
+            adams.between(a, then, between, rates)
+            note_rubbing(m, then, between)
+            for i in range(_POWERS):
+                _book(m, i, (8.0 if point == 1 else 5.0) / 18.0 * h * r.power[i], 0.0)
+        note_rubbing(m, t, y)
+        return
+    middle, halved = first, a.order_used > 0
+    if halved:
+        adams.between(a, start + 0.5 * h, between, rates)
+        note_rubbing(m, start + 0.5 * h, between)
+        middle = _powers(m)
+    note_rubbing(m, t, y)
+    last = _powers(m)
+    for i in range(_POWERS):
+        j = _POWERS + i
+        loss = integral(h, first[i], last[i], first[j], last[j])
+        error = error_estimate(h, first[i], last[i], first[j], last[j])
+        if halved:
+            parts = integral(0.5 * h, first[i], middle[i], first[j], middle[j])
+            parts += integral(0.5 * h, middle[i], last[i], middle[j], last[j])
+            error = min(error, abs(parts - loss) / 15.0)
+            loss = parts + (parts - loss) / 15.0
+        _book(m, i, loss, error)
+
+
+@compiled(inline=True)
+def _book(m: Model, i: int, loss: float, error: float) -> None:
+    """Add a loss of the i-th power, and its error."""
+    e = m.state.energy
+    if i < 2:
+        e.flank_loss[i] += loss
+    else:
+        e.hub_loss[i - 2] += loss
+    e.loss_error += error
+    e.throughput += abs(loss)
+
+
+@compiled(inline=True)
+def _powers(m: Model) -> tuple[float, float, float, float, float, float, float, float]:
+    """Powers that have been noted last, then their rates."""
+    p, r = m.work.rubbing.power, m.work.rubbing.power_rate
+    return p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3]
