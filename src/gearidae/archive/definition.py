@@ -43,13 +43,11 @@ def define(template: xr.Dataset, path: Path, sizes: Mapping[str, int], *, in_pla
     """
     with tempfile.TemporaryDirectory() as folder:
         sample = Path(folder) / "template.nc"
+        template.drop_encoding().to_netcdf(
+            sample, engine="netcdf4", encoding={name: {"_FillValue": None} for name in template.coords}
+        )
         form: Form = "NETCDF3_64BIT_DATA" if in_place else "NETCDF4"
-        with opened(sample, "x") as old, opened(path, "x", form) as new:
-            store: Any = xr.backends.NetCDF4DataStore(old)  # type: ignore[no-untyped-call]
-            # `to_netcdf` would load dask's scheduler, of which there is no use
-            template.drop_encoding().dump_to_store(
-                store, encoding={name: {"_FillValue": None} for name in template.coords}
-            )
+        with opened(sample) as old, opened(path, "x", form) as new:
             lengths = {name: len(dimension) for name, dimension in old.dimensions.items()} | dict(sizes)
             new.setncatts({_ROOM: " " * _HEADER} if in_place else {})
             for name, size in lengths.items():
