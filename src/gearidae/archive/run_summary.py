@@ -144,7 +144,7 @@ def account(ds: xr.Dataset) -> Account | None:
 
 
 def counted_over(name: str, attributes: Mapping[Hashable, Any]) -> str:
-    """Say what a row of the run summary or of the energy balance is counted over; nothing of a run with its own beginning.
+    """Say what a row of the run summary or energy balance is counted over; nothing of a run with its own beginning.
 
     Parameters
     ----------
