@@ -1,4 +1,4 @@
-"""The account of a run: how long it took to speed, stood still and adhered, what forces it met, where energy went.
+"""Run summary: time to speed, times at rest and trapped by adhesion, largest force, and energies of one run.
 
 Read from a dataset of any length in pieces; it stands beside the other readers of datasets, because the report needs it
 as well as the runs do. Times at rest come from the stick and slip events and are as exact as these. Extremes, the time
@@ -32,7 +32,7 @@ PIECE = 2**18
 AT_SPEED = 0.95
 """Share of its largest sampled speed from which a gear counts as up to speed."""
 OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "time_at_rest", "impacts"})
-"""Rows of the account that begin with a run that goes on from another; everything else goes on over the chain."""
+"""Rows of the run summary that begin with a run that goes on from another; everything else goes on over the chain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,17 +101,17 @@ class Account:
     residual_bound: float = math.nan
 
     def as_plain(self) -> dict[str, Any]:
-        """Return the account as data fit for JSON, which has no NaN."""
+        """Return the run summary as data fit for JSON, which has no NaN."""
         plain = asdict(self)
         return {name: None if isinstance(v, float) and math.isnan(v) else v for name, v in plain.items()}
 
     def as_json(self) -> str:
-        """Return the account as the dataset's attribute ``account`` holds it."""
+        """Return the run summary as the dataset's attribute ``account`` holds it."""
         return json.dumps(self.as_plain(), allow_nan=False)
 
 
 def account(ds: xr.Dataset) -> Account | None:
-    """Give an account of a run.
+    """Summarise a run.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def account(ds: xr.Dataset) -> Account | None:
 
 
 def counted_over(name: str, attributes: Mapping[Hashable, Any]) -> str:
-    """Say what a row of the account or of the energy balance is counted over; nothing of a run with its own beginning.
+    """Say what a row of the run summary or energy balance is counted over; nothing of a run with its own beginning.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def account_of(
     balance: Mapping[str, float] | None = None,
     extremes: Extremes | None = None,
 ) -> Account:
-    """Give an account of a run that is kept anywhere.
+    """Summarise a run whose samples and events are stored anywhere.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def _largest_force(extremes: Extremes) -> tuple[float, float]:
 
 
 def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
-    """Energies of the account from those of the energy balance; NaN without one."""
+    """Energies of the run summary from those of the energy balance; NaN without one."""
     own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
     parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
     if balance is None:
@@ -231,7 +231,7 @@ def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
 
 
 def with_account(ds: xr.Dataset) -> xr.Dataset:
-    """Add the account of a run, if it has one, to its dataset's attributes."""
+    """Add the run summary, if there is one, to its dataset's attributes."""
     found = account(ds)
     return ds if found is None else ds.assign_attrs(account=found.as_json())
 
