@@ -13,12 +13,13 @@ from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, load_cas
 CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
     "gears": "density pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
-    "face_width",
+    "face_width hub_friction pinion_hub_radius gear_hub_radius",
     "mesh": "backlash tip_relief_radius radius_force damping static_error static_error.order static_error.amplitude "
     "static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
     "provenance",
-    "coating": "sam_fraction energy pairing thickness pinion_fraction gear_fraction pinion_table gear_table",
+    "coating": "sam_fraction energy pairing thickness pinion_fraction gear_fraction pinion_table gear_table friction "
+    "shear_strength",
     "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
     "law.name law.parameters speed speed_gain",
     "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
@@ -26,7 +27,7 @@ CONTRACT = {
     "initial": "gear_speed gap mesh_phase",
     "run": "asperity_events balance exposures duration samples rtol method stop checkpoints",
     "roller": "radius mass width speed height",
-    "contact": "model asperity seed radius_spread asperities",
+    "contact": "model asperity seed radius_spread asperities friction friction_law shear_strength",
 }
 
 

@@ -31,7 +31,7 @@ from gearidae.errors import SceneError
 from gearidae.scene.coating_table import FractionTable, path_means
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Quantity
-from gearidae.scene.surface import Energy, Surface
+from gearidae.scene.surface import Energy, OptionalFriction, OptionalStrength, Surface
 
 MATERIAL_NAMES: Final = ("bare", "coated", "mixed")
 """Names of the materials that an interface may have, in the order of `Scene.materials`."""
@@ -90,6 +90,14 @@ class Coating(Group):
     )
     gear_table: FractionTable = Field(
         default=(), description="the same of the gear, its places along the path of contact as the pinion's"
+    )
+    friction: OptionalFriction = Field(
+        default=None,
+        description="coefficient of friction where the monolayer separates the flanks; contact.friction if not given",
+    )
+    shear_strength: OptionalStrength = Field(
+        default=None,
+        description="shear strength of asperities there; contact.shear_strength if not given",
     )
 
     @model_validator(mode="after")

@@ -10,10 +10,12 @@ from pydantic import Field, model_validator
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Count, Phase, Quantity, Switch
+from gearidae.scene.surface import Friction
 from gearidae.scene.tables import one_or_more
 
 Inertia = Annotated[float, Quantity(unit="kg m^2", at_least=1e-40, at_most=1)]
 # the disc of one atom's thickness and the smallest base radius has 1e-38 kg m^2
+HubRadius = Annotated[float, Quantity(unit="m", at_least=0, at_most=1, least=1e-10, shown=("um", -6))]
 Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]
 
 
@@ -46,6 +48,13 @@ class Gears(Group):
     )
     face_width: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = Field(
         description="width of the teeth along the axis, L"
+    )
+    hub_friction: Friction = Field(default=0.0, description="coefficient of friction of both hubs")
+    pinion_hub_radius: HubRadius = Field(
+        default=0.0, description="radius of the pinion's hub, 0 for one without friction"
+    )
+    gear_hub_radius: HubRadius = Field(
+        default=0.0, description="radius of the gear's hub, 0 for one without friction"
     )
 
     @model_validator(mode="before")

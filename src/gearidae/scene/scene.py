@@ -12,6 +12,7 @@ from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.asperity_list import check_asperities
 from gearidae.scene.coating import Coating, Material, materials_of
 from gearidae.scene.coating_table import check_tables
+from gearidae.scene.friction import check_friction, check_no_friction
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
@@ -117,6 +118,7 @@ class Scene(Group):
             if self.run.exposures != 0:
                 raise SceneError("run.exposures", self.run.exposures, "must be 0 in a scene with a roller")
             check_population(self)
+            check_no_friction(self)
             return self
         for table in ("gears", "mesh", "drive", "initial"):
             if table not in given:
@@ -169,6 +171,7 @@ class Scene(Group):
         check_gaps(self)
         check_reach(self)
         check_population(self)
+        check_friction(self)
 
     @property
     def geometry(self) -> Geometry:

@@ -15,6 +15,12 @@ from gearidae.scene.quantity import Count, Quantity
 
 _LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
+_FRICTION = Quantity(unit="1", at_least=0, at_most=2, least=1e-6)
+_STRENGTH = Quantity(unit="Pa", at_least=0, at_most=1e12, least=1.0, shown=("MPa", 6))
+Friction = Annotated[float, _FRICTION]
+Strength = Annotated[float, _STRENGTH]
+OptionalFriction = Annotated[float | None, _FRICTION]
+OptionalStrength = Annotated[float | None, _STRENGTH]
 
 
 def _line(value: object) -> str:
@@ -71,4 +77,15 @@ class Contact(Group):
     asperities: Listed = Field(
         default=ListedAsperities(),
         description="list of asperities in place of drawn ones: a CSV file, or columns",
+    )
+    friction: Friction = Field(
+        default=0.0, description="coefficient of friction of bare flanks, for friction_law = net"
+    )
+    friction_law: Literal["net", "shear"] = Field(
+        default="net",
+        description="limit of the friction of a pair of flanks: net: coefficient times the force that presses them "
+        "together; shear: shear strength times the area of the asperities in contact",
+    )
+    shear_strength: Strength = Field(
+        default=0.0, description="shear strength of bare asperities in contact, for friction_law = shear"
     )

@@ -1,0 +1,138 @@
+"""Friction of flanks and hubs: the values of each material, and what does not go together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from gearidae.errors import SceneError
+from gearidae.mesh.involute import curvature_radii
+
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
+
+_HUBS: Final = {"pinion_hub_radius": "pinion", "gear_hub_radius": "gear"}
+
+
+def friction_values(scene: Scene) -> dict[str, float]:
+    """Friction of each material: coefficients of the law ``net`` [1], shear strengths of the law ``shear`` [Pa].
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    dict of str to float
+        By the names of `gearidae.scene.coating.MATERIAL_NAMES`. A monolayer on one side separates the flanks like one
+        on both: the mixed material has the value of the coated one.
+    """
+    contact, coating = scene.contact, scene.coating
+    if contact.friction_law == "shear":
+        bare, coated = contact.shear_strength, coating.shear_strength
+    else:
+        bare, coated = contact.friction, coating.friction
+    if coated is None:
+        coated = bare
+    return {"bare": bare, "coated": coated, "mixed": coated}
+
+
+def has_flank_friction(scene: Scene) -> bool:
+    """Whether any material of a scene's flanks has friction."""
+    values = friction_values(scene)
+    return any(values[one.name] > 0.0 for one in scene.materials() if one.share > 0.0)
+
+
+def has_hub_friction(scene: Scene) -> bool:
+    """Whether a hub of a scene has friction."""
+    gears = scene.gears
+    return gears is not None and gears.hub_friction > 0.0 and any(getattr(gears, key) for key in _HUBS)
+
+
+def check_friction(scene: Scene) -> None:
+    """Refuse friction that a scene of gears cannot have.
+
+    Raises
+    ------
+    SceneError
+        Naming the key.
+    """
+    _check_law(scene)
+    _check_hubs(scene)
+    geometry, values = scene.geometry, friction_values(scene)
+    pinion, gear, _ = curvature_radii(geometry, (0.0, geometry.path_length))
+    lever = max(pinion.max() / geometry.base_radius_pinion, gear.max() / geometry.base_radius_gear)
+    for key, value in (("contact.friction", values["bare"]), ("coating.friction", values["coated"])):
+        if scene.contact.friction_law == "net" and value * lever >= 1.0:
+            raise SceneError(
+                key,
+                value,
+                f"must be below {1.0 / lever:.4g}: gears of this mesh lock themselves from there on",
+            )
+    if scene.contact.model == "elastic" and (has_flank_friction(scene) or has_hub_friction(scene)):
+        raise SceneError(
+            "contact.model",
+            scene.contact.model,
+            "friction is not available with elastic contacts: must be asperity or population",
+        )
+
+
+def check_no_friction(scene: Scene) -> None:
+    """Refuse friction of a roller, whose motion is normal to the flank.
+
+    Raises
+    ------
+    SceneError
+        Naming the key.
+    """
+    contact, coating = scene.contact, scene.coating
+    given = {
+        "contact.friction": contact.friction,
+        "contact.shear_strength": contact.shear_strength,
+        "coating.friction": coating.friction,
+        "coating.shear_strength": coating.shear_strength,
+    }
+    for key, value in given.items():
+        if value:
+            raise SceneError(key, value, "must be 0 in a scene with a roller, which does not slide")
+    if contact.friction_law != "net":
+        raise SceneError("contact.friction_law", contact.friction_law, "must be net in a scene with a roller")
+
+
+def _check_law(scene: Scene) -> None:
+    """Refuse a law without its values, and values of the other law."""
+    contact, coating = scene.contact, scene.coating
+    if contact.friction_law == "shear":
+        if contact.shear_strength == 0.0 and not coating.shear_strength:
+            raise SceneError(
+                "contact.shear_strength", 0.0, "must be above 0 with contact.friction_law = shear"
+            )
+        others = {"contact.friction": contact.friction, "coating.friction": coating.friction}
+        wanted = "net"
+    else:
+        others = {
+            "contact.shear_strength": contact.shear_strength,
+            "coating.shear_strength": coating.shear_strength,
+        }
+        wanted = "shear"
+    for key, value in others.items():
+        if value:
+            raise SceneError(key, value, f"must be 0 or left out, or contact.friction_law must be {wanted}")
+
+
+def _check_hubs(scene: Scene) -> None:
+    """Refuse hubs without a radius, and those that lock."""
+    gears = scene.gears
+    assert gears is not None
+    if gears.hub_friction == 0.0:
+        return
+    radii = {"pinion": scene.geometry.base_radius_pinion, "gear": scene.geometry.base_radius_gear}
+    if not has_hub_friction(scene):
+        raise SceneError("gears.pinion_hub_radius", 0.0, "a hub must have a radius with gears.hub_friction")
+    for key, name in _HUBS.items():
+        radius = getattr(gears, key)
+        if radius * gears.hub_friction >= radii[name]:
+            raise SceneError(
+                f"gears.{key}",
+                radius,
+                f"must be below {radii[name] / gears.hub_friction:.4g} m: the hub locks the {name} from there on",
+            )
