@@ -209,7 +209,7 @@ class RubbingGears:
         along = sum(p.side * p.along for p in pairs)
         scene = self.scene
         drive = scene.drive.torque + sum(
-            h.amplitude * math.cos(2 * math.pi * h.frequency * t + h.phase) for h in scene.drive.harmonic
+            h.amplitude * math.cos(2e-6 * math.pi * h.frequency * t + h.phase) for h in scene.drive.harmonic
         )
         mesh = force + scene.mesh.damping * y[1]
         q = np.array(
@@ -311,6 +311,13 @@ class RubbingGears:
             self.project(rows[here[stuck[0]]])
         self._at = None
 
+    def release(self, key):
+        """Let an element slip that has stuck up to its limit."""
+        state = self.evaluate(self.t, self.y)
+        if key in state["keys"]:
+            self.signs[key] = math.copysign(1.0, state["f"][state["keys"].index(key)])
+        self.stuck, self._at = (), None
+
     def project(self, row):
         """Take the small sliding velocity of an element that sticks away, from the rate of u (or the gear's speed)."""
         # J . w = (row0 / R1) u' + (row0 R2 / R1 + row1) w2
@@ -322,10 +329,11 @@ class RubbingGears:
     # -- integration -------------------------------------------------------------------------------------------------
 
     def rates(self, t, y):
+        """Derivatives; the integrator counts in microseconds, since scipy locates a root to 1e-15 of its unit."""
         state = self.evaluate(t, y)
         a, w = state["a"], state["w"]
         rubbed = state["f"] @ (state["rows"] @ w) if len(state["keys"]) else 0.0
-        return np.array(
+        return 1e-6 * np.array(
             [y[1], self.r1 * a[0] - self.r2 * a[1], w[1], a[1], rubbed, state["drive"] * w[0]]
         )
 
@@ -352,7 +360,7 @@ class RubbingGears:
         add(lambda t, y: (0.5 * self.g.base_pitch - self.r2 * abs(y[2] - centre)) / self.g.base_pitch)
         if isinstance(self.law, MeanLaw):
             for p in state["pairs"]:
-                if abs(p.load) > 1e-20:
+                if abs(p.load) > 1e-15:
                     add(lambda t, y, key=p.key: self.load(t, y, key), 0.0)
         else:
             for value in self.law.roots(self):
@@ -364,7 +372,7 @@ class RubbingGears:
         if key not in state["keys"]:
             return 1.0
         v = state["rows"][state["keys"].index(key)] @ state["w"]
-        return self.signs[key] * v * (self.r2 if isinstance(key, str) else 1.0)
+        return self.signs.get(key, math.copysign(1.0, v)) * v * (self.r2 if isinstance(key, str) else 1.0)
 
     def margin(self, t, y, key):
         state = self.evaluate(t, y)
@@ -381,37 +389,35 @@ class RubbingGears:
         xi = along - i * pitch if side > 0 else 2.0 * self.g.approach - along + (i + 0.5) * pitch
         return (xi - end) / pitch
 
-    def run(self, times, rtol=1e-10, on_event=None):
+    def run(self, times, rtol=1e-10):
         """State (u, u', angle, speed, friction work, drive work) at the given times, shape (6, n)."""
         sigma, speed = self.scene.surface.roughness, max(abs(self.y[3]), 1e-3)
         atol = rtol * np.array([sigma, 1e-2 * speed * self.r2, sigma / self.r2, 1e-2 * speed, 1e-16, 1e-14])
-        out = np.full((6, len(times)), np.nan)
+        times, out = 1e6 * np.asarray(times), np.full((6, len(times)), np.nan)
         if not isinstance(self.law, MeanLaw):
             self.law.begin(self)
         self.decide()
-        while True:
-            if len(self.stuck) > 1:  # rests for ever under constant torques
-                out[:, times >= self.t] = self.y[:, None]
-                return out
-            roots = self.roots()
-            leg = solve_ivp(
-                self.rates,
-                (self.t, times[-1]),
-                self.y,
-                "DOP853",
-                rtol=rtol,
-                atol=atol,
-                events=roots,
-                dense_output=True,
-            )
-            here = (times >= self.t) & (times <= leg.t[-1])
-            if here.any():
-                out[:, here] = leg.sol(times[here])
-            self.stick_time += (leg.t[-1] - self.t) * bool(self.stuck)
-            before = dict(self.signs)
-            self.t, self.y = leg.t[-1], leg.y[:, -1].copy()
-            if leg.status != 1:
-                return out
+        for k, time in enumerate(times):
+            while self.t < time:
+                self.advance(time, rtol, atol)
+            out[:, k] = self.y
+        return out
+
+    def advance(self, time, rtol, atol):
+        """Integrate to the next event, or to a time."""
+        if len(self.stuck) > 1:  # rests for ever under constant torques
+            self.t = time
+            return
+        leg = solve_ivp(
+            self.rates, (self.t, time), self.y, "DOP853", rtol=rtol, atol=atol, events=self.roots()
+        )
+        self.stick_time += (leg.t[-1] - self.t) * bool(self.stuck)
+        before = dict(self.signs)
+        self.t, self.y = leg.t[-1], leg.y[:, -1].copy()
+        if leg.status == 1:
+            if len(self.stuck) == 1 and self.margin(self.t, self.y, self.stuck[0]) < 1e-9:
+                self.release(self.stuck[0])
+                return
             if not isinstance(self.law, MeanLaw):
                 self.law.pass_events(self)
             self.decide()
@@ -492,11 +498,11 @@ class ListedAsperities:
         def net(key):
             return lambda t, y: gears.load(t, y, key) / 1e-9
 
-        loaded = [p.key for p in gears.evaluate(gears.t, gears.y)["pairs"] if abs(p.load) > 1e-20]
+        loaded = [p.key for p in gears.evaluate(gears.t, gears.y)["pairs"] if abs(p.load) > 1e-15]
         return [nearest, *(net(key) for key in loaded if self.strength == 0.0)]
 
     def pass_events(self, gears):
         """Asperities whose guard has been reached change sides."""
         for key, guards in self.guards(gears, gears.y).items():
-            for a in np.flatnonzero(guards <= 1e-12):
+            for a in np.flatnonzero(guards <= 1e-9):
                 self.joined.setdefault(key, set()).symmetric_difference_update({a})
