@@ -171,6 +171,27 @@ def adhesive_hold(geometry: Geometry, xi: ArrayLike, limits: ArrayLike) -> float
     return arm * float((np.asarray(limits, dtype=np.float64) * np.abs(beyond)).sum())
 
 
+def hub_share(geometry: Geometry, coefficient: float, hub_radii: tuple[float, float]) -> float:
+    """Share of the pinion's torque that reaches the gear past friction in the hubs, without that of the flanks.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Of the gear pair.
+    coefficient : float
+        Coefficient of friction mu of the hubs.
+    hub_radii : tuple of float
+        Radii of the hubs of pinion and gear [m].
+
+    Returns
+    -------
+    float
+        ``M2 R1 / (M1 R2) = (1 - mu r_h2/R2) / (1 + mu r_h1/R1)``; 0 where the gear's hub locks.
+    """
+    pinion = 1.0 + coefficient * hub_radii[0] / geometry.base_radius_pinion
+    return max(1.0 - coefficient * hub_radii[1] / geometry.base_radius_gear, 0.0) / pinion
+
+
 def hub_starting_torque(
     geometry: Geometry, resistance: float, coefficient: float, hub_radii: tuple[float, float]
 ) -> float:
@@ -182,20 +203,17 @@ def hub_starting_torque(
         Of the gear pair.
     resistance : float
         Torque that resists the gear [N m].
-    coefficient : float
-        Coefficient of friction of the hubs.
-    hub_radii : tuple of float
-        Radii of the hubs of pinion and gear [m].
+    coefficient, hub_radii
+        As for `hub_share`.
 
     Returns
     -------
     float
         ``M2 (R1 + mu r_h1) / (R2 - mu r_h2)`` [N m]; infinite where the gear's hub locks, ``mu r_h2 >= R2``.
     """
-    left = geometry.base_radius_gear - coefficient * hub_radii[1]
-    if left <= 0.0:
-        return math.inf
-    return resistance * (geometry.base_radius_pinion + coefficient * hub_radii[0]) / left
+    share = hub_share(geometry, coefficient, hub_radii)
+    unrubbed = resistance * geometry.base_radius_pinion / geometry.base_radius_gear
+    return unrubbed / share if share > 0.0 else math.inf
 
 
 def _over_pitch(

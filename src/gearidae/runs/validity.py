@@ -29,8 +29,10 @@ from gearidae.contact.surroundings import (
     film_damping,
     thermal_amplitude,
 )
+from gearidae.mesh.friction import locking_coefficients
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
 from gearidae.runs.pair_contact import PairContact
+from gearidae.scene.friction import friction_values, has_flank_friction, has_hub_friction
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 
@@ -49,6 +51,8 @@ _SILICON: Final = 2330.0
 """Density of silicon [kg/m^3]: discs of base radius and face width are made of it."""
 _CLEARANCE: Final = 2e-6
 """Distance between gear and substrate that the drag of the air is estimated for [m]: a usual sacrificial layer."""
+_NEAR_LOCKING: Final = 0.5
+"""Share of the coefficient that locks teeth or hubs, up to which friction changes forces by less than double."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
 
 
@@ -106,7 +110,7 @@ def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
     if scene.gears is not None:
-        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene)]
+        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene), *_locking(scene)]
     return tuple(rows)
 
 
@@ -346,3 +350,31 @@ def _inertia(scene: Scene) -> Iterator[ValidityRow]:
         limit = f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon"
         quantity = f"{name}: moment of inertia"
         yield _row(f"inertia_{name}", quantity, inertia, "kg m^2", limit, disc, holds, verdict)
+
+
+def _locking(scene: Scene) -> Iterator[ValidityRow]:
+    """Compare coefficients of friction with those that lock the teeth or a hub."""
+    assert scene.gears is not None
+    gears, geometry, values = scene.gears, scene.geometry, friction_values(scene)
+    where = max((values[one.name] for one in scene.materials() if one.share > 0.0), default=0.0)
+    if has_flank_friction(scene) and scene.contact.friction_law == "net":
+        locks = min(locking_coefficients(geometry))
+        yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")
+    if has_hub_friction(scene):
+        ratios = (
+            gears.pinion_hub_radius / geometry.base_radius_pinion,
+            gears.gear_hub_radius / geometry.base_radius_gear,
+        )
+        quantity, coefficient = "coefficient of friction of the hubs", gears.hub_friction
+        yield _near_locking("locking_hubs", quantity, coefficient, 1.0 / max(ratios), "hubs")
+
+
+def _near_locking(name: str, quantity: str, coefficient: float, locks: float, what: str) -> ValidityRow:
+    holds = coefficient <= _NEAR_LOCKING * locks
+    verdict = (
+        f"the {what} are far from locking"
+        if holds
+        else f"near self-locking: the {what} can carry {_times(1.0 / (1.0 - coefficient / locks))} their load"
+    )
+    limit = f"{_NEAR_LOCKING * locks:.3g}, half of that which can lock the {what}"
+    return _row(name, quantity, coefficient, "1", limit, _NEAR_LOCKING * locks, holds, verdict)
