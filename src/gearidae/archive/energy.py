@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from typing import Any, Final
 
 import xarray as xr
 
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.records import Solution
 from gearidae.scene import Scene
+
+_YOUNGER: Final = ("drive_friction_loss", "coast_friction_loss", "pinion_hub_loss", "gear_hub_loss")
+"""Losses that older archives do not have, as there was no friction."""
 
 
 def balance_numbers(scene: Scene, solution: Solution) -> dict[str, float]:
@@ -52,9 +55,10 @@ def balance_of(ds: xr.Dataset) -> dict[str, float] | None:
         By the names of `gearidae.archive.variables.ENERGY_BALANCE` [J]; None if there is none.
     """
     if numbers := balance_in_attributes(ds):
-        return {name: float(numbers[name]) for name in ENERGY_BALANCE}
-    if all(name in ds.variables and not ds[name].dims for name in ENERGY_BALANCE):
-        found = {name: float(ds[name]) for name in ENERGY_BALANCE}
+        return {name: float(numbers.get(name, 0.0)) for name in ENERGY_BALANCE}
+    known = [name for name in ENERGY_BALANCE if name in ds.variables or name not in _YOUNGER]
+    if all(name in ds.variables and not ds[name].dims for name in known):
+        found = dict.fromkeys(ENERGY_BALANCE, 0.0) | {name: float(ds[name]) for name in known}
         return None if any(map(math.isnan, found.values())) else found
     return None
 

@@ -34,6 +34,10 @@ _BALANCE_ROWS = (
     ("dry_loss", "lost"),
     ("damping_loss", "lost"),
     ("adhesion_loss", "lost"),
+    ("drive_friction_loss", "lost"),
+    ("coast_friction_loss", "lost"),
+    ("pinion_hub_loss", "lost"),
+    ("gear_hub_loss", "lost"),
     ("stored_change", "stored in contacts"),
     ("kinetic_change", "stored in motion"),
 )

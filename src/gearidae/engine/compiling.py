@@ -20,6 +20,7 @@ SOLVER: Final = "the solver"
 ELASTIC: Final = "elastic contacts"
 EXPOSURES: Final = "exposures"
 POPULATION: Final = "populations of asperities"
+FRICTION: Final = "friction"
 """Parts of the engine, each compiled with the first scene that needs it."""
 
 HOW_LONG: Final = {
@@ -27,6 +28,7 @@ HOW_LONG: Final = {
     ELASTIC: "some ten seconds",
     EXPOSURES: "some ten seconds",
     POPULATION: "some ten seconds",
+    FRICTION: "some ten seconds",
 }
 """How long that takes."""
 

@@ -29,9 +29,11 @@ from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
+from gearidae.engine.events.sliding import begin_sliding, settle_sliding
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
 from gearidae.engine.integrate.start import rebase
+from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
     EMPTY,
     ENERGY,
@@ -310,9 +312,17 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     s = m.state
     if m.scene.kind != GEARS:
         return
+    if m.scene.friction.on != 0:
+        s.stop_armed = 0
+        if source.scene.friction.on != 0:
+            settle_sliding(m, time, y, False)
+        else:
+            begin_sliding(m, time, y)
+        return
+    s.hold = FREE
     if m.scene.dry == 0:
         s.slip, s.slipping = 1.0, 0
-    elif source.scene.dry == 0:
+    elif source.scene.dry == 0 or source.scene.friction.on != 0:
         s.slip, s.slipping = float(np.sign(y[W])), int(abs(y[W]) > m.scene.rest_speed)
     s.stop_armed = 0
     if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:

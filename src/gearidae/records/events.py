@@ -24,6 +24,9 @@ class EventKind(IntEnum):
     SCHEDULE_KNOT = 9
     ASPERITY_ONSET = 10
     ASPERITY_DETACHMENT = 11
+    SLIDING_REVERSAL = 12
+    FLANK_STICK = 13
+    FLANK_SLIP = 14
 
 
 class Flank(IntEnum):

@@ -68,6 +68,10 @@ class EnergyBalance:
     torque_work : float
         Work of speed-dependent torques for a difference of the speed. A drive that holds
         its speed stiffly turns errors of the speed into work. 0 for a roller.
+    drive_friction_loss, coast_friction_loss : float
+        Losses by the friction of either flank.
+    pinion_hub_loss, gear_hub_loss : float
+        Losses by the friction of either hub.
     """
 
     time: float
@@ -86,12 +90,22 @@ class EnergyBalance:
     pitch_work: float = 0.0
     speed_work: float = 0.0
     torque_work: float = 0.0
+    drive_friction_loss: float = 0.0
+    coast_friction_loss: float = 0.0
+    pinion_hub_loss: float = 0.0
+    gear_hub_loss: float = 0.0
+
+    @property
+    def friction_loss(self) -> float:
+        """Losses by friction of flanks and hubs [J]."""
+        flanks = self.drive_friction_loss + self.coast_friction_loss
+        return flanks + self.pinion_hub_loss + self.gear_hub_loss
 
     @property
     def residual(self) -> float:
         """Works minus losses and changes of the energies [J]."""
         given = self.drive_work + self.radius_work + self.model_change
-        lost = self.drag_loss + self.dry_loss + self.damping_loss + self.adhesion_loss
+        lost = self.drag_loss + self.dry_loss + self.damping_loss + self.adhesion_loss + self.friction_loss
         return given - lost - self.stored_change - self.kinetic_change
 
     @property

@@ -18,6 +18,7 @@ from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import pair_guard
 from gearidae.engine.events.run_stop import stop_guard
+from gearidae.engine.events.sliding import REVERSALS_HIGH, sliding_guard
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
@@ -50,7 +51,9 @@ def guard(m: Model, t: float, y: Floats) -> float:
         least = mark_guard(m, y)
         if m.scene.stop != 0:
             least = min(least, stop_guard(m, y))
-        if m.scene.dry != 0:
+        if m.scene.friction.on != 0:
+            least = min(least, sliding_guard(m, t, y))
+        elif m.scene.dry != 0:
             least = min(least, dry_guard(m, t, y))
         if m.state.near[COAST] == 0:
             least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
@@ -100,12 +103,12 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
     restart, crossed = False, crossed_mark(m, y)
     if crossed:
         count = cross_mark(m, t, y, events, count)
-        m.state.cycle_events = 0
+        m.state.cycle_events = m.state.reversals = 0
         if m.scene.nodes > 0 and _light(m):
             m.state.light = 1
         # the force of a pair there jumps, or it would part unseen
         restart = not in_flight(m) and (m.scene.radius_force != 0 or outruns_relief(m, t, y))
-    if m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0:
+    if m.scene.friction.on == 0 and m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0:
         restart = True
         count = stick_or_slip(m, t, y, events, count)
     return count, crossed, restart
@@ -126,4 +129,4 @@ def chatters(m: Model, t: float) -> bool:
         s.roots = 0
     s.last_root = t
     s.roots += 1
-    return bool(s.roots > m.scene.root_limit)
+    return bool(s.roots > m.scene.root_limit or s.reversals > REVERSALS_HIGH)

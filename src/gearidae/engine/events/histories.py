@@ -12,6 +12,7 @@ from gearidae.engine.events.dry_resistance import dry_guard, note_slip, stick_or
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import arm_stop
+from gearidae.engine.events.sliding import begin_sliding
 from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
@@ -84,6 +85,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
             h.adhered_energy[material] = 0.0
         h.fully_stretched[material] = 0
     h.direction = h.lag = h.lag_power = h.lag_rate = 0.0
+    h.slide = 0
     m.work.exposing.pair[k].known = 0
 
 
@@ -97,7 +99,9 @@ def begin(m: Model, t: float, y: Floats) -> None:
         set_marks(m, y[PHASE])
     if m.scene.population.flanks != 0:
         join_at_start(m, y)
-    if (
+    if m.scene.friction.on != 0:
+        begin_sliding(m, t, y)
+    elif (
         m.scene.dry != 0 and m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0
     ):  # nothing holds it from the start
         stick_or_slip(m, t, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)

@@ -19,7 +19,7 @@ along the path of contact, and with it the number of asperities in touch, while 
 does no work for that: the model has no force for it (Teodorescu et al. 2009, Eqs. 4-6 and 13). It is named here, the
 work of the changing radius, and integrated like the others. So
 
-    drive + radius = drag + dry + damping + adhesion + stored + kinetic
+    drive + radius = drag + dry + friction + damping + adhesion + stored + kinetic
 
 but for the errors of integration, which is what the balance's residual measures.
 
@@ -40,6 +40,7 @@ from gearidae.engine.events.dry_resistance import dry_guard
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.followers.joining import joining_lag
+from gearidae.engine.followers.rubbing import book_rubbing, note_rubbing
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import (
     Ends,
@@ -99,6 +100,8 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q.drive, q.drive_rate = _torque(m, DRIVE, t, y, q.pinion_speed, q.pinion_acceleration)
     q.load, q.load_rate = _torque(m, LOAD, t, y, y[W], yp[W])
     _sample_radius_power(m, t, y)
+    if m.scene.friction.on != 0:
+        note_rubbing(m, t, y)
 
 
 @compiled(inline=True)
@@ -145,7 +148,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
-    if m.scene.population.flanks != 0:  # forces jump
+    if m.scene.population.flanks != 0 or m.scene.friction.on != 0:  # forces jump
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
         return False
@@ -181,6 +184,8 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
     q = m.work.quadrature
     if m.scene.dry != 0 and q.time == t:
         m.state.energy.dry_loss += q.kinetic - kinetic_energy(m, y)
+    if m.scene.friction.on != 0:
+        note_rubbing(m, t, y)
     if crossed or (joined and m.scene.nodes > 0 and m.scene.kind == GEARS):
         _sample_radius_power(m, t, y)
 
@@ -204,6 +209,8 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     q = m.work.quadrature
     if m.scene.kind == GEARS:
         _accumulate_losses(m, t, y, yp)
+        if m.scene.friction.on != 0:
+            book_rubbing(m, t, y)
     q.steps += 1
     h = t - q.time
     if h == 0.0 or not (now or in_flight(m) or _closes_interval(m, h)):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import is_stuck, motion
+from gearidae.engine.motion.residual import is_stuck, motion, slopes_with_friction
 
 
 @compiled(inline=True)
@@ -37,6 +37,8 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
         delta[U] = (delta[V] - of_u) * step
         return abs(slope)
     of_phase, of_w = delta[PHASE], delta[W]
+    if m.scene.friction.on != 0:
+        return _correct_with_friction(m, cj, y, delta, (force_u, force_phase, relief_u, relief_phase))
     a1, turning, damping = m.scene.pinion_inverse_mass, m.scene.phase_rate, m.scene.damping
     a2 = 0.0 if is_stuck(m) else m.scene.gear_inverse_mass
     torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase
@@ -56,3 +58,24 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     delta[PHASE] = (turning * delta[W] - of_phase) * step
     slowing = 2.0 * ((a1 + a2) * damping + a2 * drag + gain)
     return a1 * abs(force_u) + a2 * abs(torque_u) + slowing * slowing
+
+
+@compiled
+def _correct_with_friction(
+    m: Model, cj: float, y: Floats, delta: Floats, slopes: tuple[float, float, float, float]
+) -> float:
+    """Solve the same equations with friction; `delta` has the residual, and `slopes` are those of the forces."""
+    s = slopes_with_friction(m, y, slopes[0], slopes[1], slopes[2], slopes[3])
+    step, turning = 1.0 / cj, m.scene.phase_rate
+    of_u, of_v, of_phase, of_w = delta[U], delta[V], delta[PHASE], delta[W]
+    v_v, v_w = cj - s.pinion_v - s.pinion_u * step, cj - s.pinion_w - s.pinion_phase * turning * step
+    w_v, w_w = -s.gear_v - s.gear_u * step, cj - s.gear_w - s.gear_phase * turning * step
+    right_v = -(s.pinion_u * of_u + s.pinion_phase * of_phase) * step - of_v
+    right_w = -(s.gear_u * of_u + s.gear_phase * of_phase) * step - of_w
+    share = 1.0 / (v_v * w_w - v_w * w_v)
+    delta[V] = (right_v * w_w - v_w * right_w) * share
+    delta[W] = (v_v * right_w - w_v * right_v) * share
+    delta[U] = (delta[V] - of_u) * step
+    delta[PHASE] = (turning * delta[W] - of_phase) * step
+    slowing = 2.0 * (abs(s.pinion_v) + abs(s.gear_v) + abs(s.pinion_w) + abs(s.gear_w))
+    return abs(s.pinion_u) + abs(s.gear_u) + slowing * slowing

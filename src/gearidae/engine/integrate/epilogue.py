@@ -11,6 +11,7 @@ from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
+from gearidae.engine.events.sliding import record_sliding, settle_sliding
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
@@ -71,6 +72,9 @@ def finish_step(
             if keeps_checkpoint(m):
                 driver.since = CHECKPOINT_STEPS
             driver.events = pass_knot(m, t, events, driver.events)
+            if m.scene.friction.on != 0:
+                settle_sliding(m, t, y, False)
+                driver.events = record_sliding(m, t, events, driver.events)
             afresh = True
         else:
             driver.done = 1
@@ -102,6 +106,9 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
         count, too_many = record_flips(m, t, events, count)
         if too_many:
             driver.error = MANY_EVENTS
+    if m.scene.friction.on != 0:
+        restart |= settle_sliding(m, t, y, False)
+        count = record_sliding(m, t, events, count)
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
     if chatters(m, t):

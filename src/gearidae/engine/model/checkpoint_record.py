@@ -29,6 +29,7 @@ HISTORY: Final = record_type(
     ("length", REAL),  # contact length of an elastic contact at its last evaluation [sqrt(pb)]
     ("loaded", INT),  # 1 if that evaluation found it within reach
     ("stretched", INT),  # 1 if asperities of it were stretched at the last turning point
+    ("slide", INT),  # direction of sliding, -1 or 1; `STUCK`, or 0 while nothing rubs: see `record_types`
 )
 
 ENERGY: Final = record_type(  # sums over the run
@@ -45,6 +46,8 @@ ENERGY: Final = record_type(  # sums over the run
     ("quadrature_error", REAL),  # about how far quadratures over gathered steps may be out [F sigma]
     ("loss_error", REAL),  # the same of drag and damping, which do not decide how many are gathered [F sigma]
     ("peak_kinetic", REAL),  # largest energy of motion [F sigma]
+    ("flank_loss", REAL, (2,)),  # loss by friction of the drive and the coast flank [F sigma]
+    ("hub_loss", REAL, (2,)),  # loss by friction of the pinion's and the gear's hub [F sigma]
 )
 
 PROGRESS: Final = record_type(  # of a driver
@@ -124,4 +127,8 @@ STATE: Final = record_type(
     ("asperity_onsets", INT),  # asperities of a population that have joined so far [1]
     ("asperity_detachments", INT),  # those that have detached [1]
     ("cycle_events", INT),  # both since the last mesh mark [1]
+    ("hold", INT),  # what friction holds at rest: see `record_types`
+    ("held_pair", INT),  # history of the pair that rolls, if that is held [index]
+    ("pinion_slip", REAL),  # direction in which the pinion turns in its hub, -1 or +1; 0 while it is held
+    ("reversals", INT),  # changes of sliding of the flanks since the last mesh mark [1]
 )

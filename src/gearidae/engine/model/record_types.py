@@ -39,6 +39,16 @@ EMPTY: Final = -(2**62)
 MOST_ORDERS: Final = 8
 """Highest number of former rates that a formula uses."""
 
+STUCK: Final = 2
+"""Value of ``slide`` of a pair that rolls without sliding."""
+
+FREE: Final = 0
+HELD_PAIR: Final = 1
+HELD_GEAR: Final = 2
+HELD_PINION: Final = 3
+AT_REST: Final = 4
+"""What friction holds: nothing; the sliding of one pair, which rolls; the gear; the pinion; or both gears."""
+
 # -- the state vector ------------------------------------------------------------------------------------------------
 U: Final = 0  # dynamic transmission error (a roller's height) / sigma
 V: Final = 1  # its rate

@@ -76,6 +76,25 @@ POPULATION: Final = record_type(
     ("digest", REAL, (4,)),  # of all asperities [1]
 )
 
+FRICTION: Final = record_type(  # of flanks and hubs
+    ("on", INT),  # 1 if anything has friction
+    ("flanks", INT),  # 1 if flanks have
+    ("even", REAL),  # coefficient of all materials; 0 where they differ, or the law is another [1]
+    ("scale", REAL, (MATERIALS,)),  # limits of the materials' friction, as `force_scale` [F]
+    ("table_at", INT, (MATERIALS,)),  # laws of the limits among the tables [index]
+    ("loading_at", INT),  # their loading branch among the tables, as that of the forces [index]
+    ("shear", INT),  # 1 where limits are shear strengths times areas
+    ("pinion_lever", REAL),  # base pitch over the pinion's base radius [1]
+    ("gear_lever", REAL),  # base pitch over the gear's base radius [1]
+    ("radii", REAL),  # sum of both radii of curvature [pb]
+    ("pinion_bend", REAL),  # sigma over the pinion's base radius [1]
+    ("gear_bend", REAL),  # sigma over the gear's base radius [1]
+    ("pinion_hub", REAL),  # coefficient times radius of the pinion's hub over its base radius [1]
+    ("gear_hub", REAL),  # the same of the gear [1]
+    ("cosine", REAL),  # of twice the pressure angle [1]
+    ("sine", REAL),  # of twice the pressure angle [1]
+)
+
 FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
     ("balance", INT),  # energy balance, and joining for it
     ("extremes", INT),  # extremes of the run
@@ -183,4 +202,6 @@ SCENE: Final = record_type(
     ("flight_parts", INT),  # into which it divides a step in flight [1]
     # last, so that what every step reads lies as close together as without it
     ("population", POPULATION),  # real asperities on the flanks
+    ("friction", FRICTION),  # of flanks and hubs
+    ("noting", INT),  # 1 where the forces of single pairs are noted, for exposures or friction
 )

@@ -168,6 +168,10 @@ NOTED: Final = record_type(  # a pair where its force was evaluated
     ("gap_rate", REAL),  # [sigma/tau]
     ("force", REAL),  # [F]
     ("slope", REAL),  # of the force in the gap [F/sigma]
+    ("limit", REAL),  # of its friction; below zero where nothing rubs [F]
+    ("limit_slope", REAL),  # in the gap [F/sigma]
+    ("limit_rate", REAL),  # [F/tau]
+    ("force_rate", REAL),  # [F/tau]
 )
 
 NOTES: Final = record_type(  # the last evaluation of all forces, in a run that keeps exposures
@@ -190,6 +194,30 @@ SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminat
     ("before_time", REAL),  # [tau]
     ("before_gap", REAL),  # [sigma]
     ("before_rate", REAL),  # of the gap [sigma/tau]
+)
+
+ELEMENT: Final = record_type(  # that dry friction may hold at rest
+    ("pinion", REAL),  # its speed per surface velocity of the pinion [1]
+    ("gear", REAL),  # and of the gear [1]
+    ("limit", REAL),  # of its friction [F]
+    ("hold", INT),  # `HELD_PAIR`, `HELD_GEAR` or `HELD_PINION`
+    ("history", INT),  # of a pair [index]
+    ("before", REAL),  # direction in which it slipped before a decision
+)
+
+HAPPENED: Final = record_type(  # to an element
+    ("kind", REAL),  # of the event
+    ("history", INT),  # of a pair [index]
+)
+
+RUBBING: Final = record_type(  # friction
+    ("count", INT),  # elements at rest [1]
+    ("element", ELEMENT, (2 * SLOTS_HIGH + 2,)),
+    ("happened", INT),  # events at the present root that are to be recorded [1]
+    ("event", HAPPENED, (2 * SLOTS_HIGH + 2,)),
+    ("time", REAL),  # of the powers [tau]
+    ("power", REAL, (4,)),  # of the drive and the coast flank and of both hubs [F sigma/tau]
+    ("power_rate", REAL, (4,)),  # [F sigma/tau^2]
 )
 
 CONTACT: Final = record_type(  # of a population: the candidates of a pair
@@ -228,4 +256,5 @@ WORK: Final = record_type(
     ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins [index]
     ("torque_law", INT, (2,)),  # where the compiled torque law of either shaft lies; 0 without one [address]
     ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
+    ("rubbing", RUBBING),  # of friction
 )

@@ -14,12 +14,16 @@ contact adds the deflections at its nodes, which have no rates: the system is th
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.elimination import FINISH, PREDICT, SETTLE, pair_deflections, settle_pair
 from gearidae.engine.elastic.nodes import mark_out_of_reach, node_force, node_residual
 from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.energy.radius import radius_force
+from gearidae.engine.friction.forces import friction_slopes, rubbed_accelerations
+from gearidae.engine.friction.pairs import set_limits
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import WHOLE, note_shares, path_position, shares_of
 from gearidae.engine.pairs.shaft_angle import torque_angle
@@ -87,7 +91,7 @@ def mesh_forces(
     elastic = m.scene.nodes > 0
     if elastic:
         mark_out_of_reach(m)
-    if m.scene.bins > 0:
+    if m.scene.noting != 0:
         begin_notes(m, t, u)
     full = with_deflections(m, y) if elastic and settling else y
     reach = pairs_touching(m, y)
@@ -109,7 +113,7 @@ def mesh_forces(
         else:
             shares = shares_of(m, coast, pair, inside)
             load, stiffness = pair_force(m, k, known, t, gap, rate, inside, shares)
-            if m.scene.bins > 0:
+            if m.scene.noting != 0:
                 note_force(m, k, pair, inside, (gap, rate), (load, stiffness))
         load *= sign
         # the gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair
@@ -195,6 +199,12 @@ def motion(
         _, _, e1, e2 = static_error(m, u, phase)
         turn = (v + w) / (1.0 - e1)
     drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
+    if m.scene.friction.on != 0:
+        drive -= (1.0 - e1) * force
+        pinion, gear = rubbed_accelerations(m, t, y, turn, drive, force + relief)
+        out[V] = yp[V] + yp[W] - ((1.0 - e1) * pinion - e2 * turn * turn)
+        out[PHASE], out[W] = yp[PHASE] - m.scene.phase_rate * w, yp[W] - gear
+        return force_u, force_phase, relief_u, relief_phase
     if m.scene.error_count == 0:
         pinion = m.scene.pinion_inverse_mass * (drive - force)
     else:
@@ -300,6 +310,15 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
         return
     w = y[W]
     _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y, False)
+    if m.scene.friction.on != 0:
+        set_limits(m, t, w)
+        s = slopes_with_friction(m, y, force_u, force_phase, relief_u, relief_phase)
+        out[:16] = 0.0
+        out[0], out[1], out[3] = cj, -s.pinion_u, -s.gear_u
+        out[4], out[5], out[7] = -1.0, cj - s.pinion_v, -s.gear_v
+        out[9], out[10], out[11] = -s.pinion_phase, cj, -s.gear_phase
+        out[13], out[14], out[15] = cj - s.pinion_w, -m.scene.phase_rate, cj - s.gear_w
+        return
     a1, a2, damping = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, m.scene.damping
     out[:16] = 0.0
     out[0], out[1] = cj, a1 * force_u
@@ -312,3 +331,39 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
         out[7] = -a2 * damping
         out[11] = -a2 * (force_phase + relief_phase)
         out[15] += a2 * (m.scene.drag * 2.0 * abs(w) + m.scene.viscous)
+
+
+class AccelerationSlopes(NamedTuple):
+    """Partial derivatives of the accelerations of both base circles in u, v, phase and w."""
+
+    pinion_u: float
+    pinion_v: float
+    pinion_phase: float
+    pinion_w: float
+    gear_u: float
+    gear_v: float
+    gear_phase: float
+    gear_w: float
+
+
+@compiled
+def slopes_with_friction(
+    m: Model, y: Floats, force_u: float, force_phase: float, relief_u: float, relief_phase: float
+) -> AccelerationSlopes:
+    """Slopes of the accelerations with friction, from those of the forces that `mesh_forces` has just summed."""
+    f = friction_slopes(m, y)
+    drag = 2.0 * m.scene.drag * abs(y[W]) + m.scene.viscous
+    gain, damping = m.scene.speed_gain, m.scene.damping
+    on_pinion = (f.pinion_u - force_u, -damping - gain, f.pinion_phase - force_phase, -gain)
+    on_gear = (f.gear_u + force_u + relief_u, damping, f.gear_phase + force_phase + relief_phase, -drag)
+    a, b, c = f.by_pinion, f.by_both, f.by_gear
+    return AccelerationSlopes(
+        a * on_pinion[0] + b * on_gear[0],
+        a * on_pinion[1] + b * on_gear[1] + f.pinion_v,
+        a * on_pinion[2] + b * on_gear[2],
+        a * on_pinion[3] + b * on_gear[3] + f.pinion_w,
+        b * on_pinion[0] + c * on_gear[0],
+        b * on_pinion[1] + c * on_gear[1] + f.gear_v,
+        b * on_pinion[2] + c * on_gear[2],
+        b * on_pinion[3] + c * on_gear[3] + f.gear_w,
+    )

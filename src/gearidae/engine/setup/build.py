@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from gearidae.contact.kernels.law import GAP_LOW
-from gearidae.engine.compiling import ELASTIC, EXPOSURES, POPULATION, SOLVER, make_part_ready
+from gearidae.engine.compiling import ELASTIC, EXPOSURES, FRICTION, POPULATION, SOLVER, make_part_ready
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
@@ -30,6 +30,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
 from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
+from gearidae.engine.setup.build_friction import add_friction, rubs
 from gearidae.engine.setup.build_population import add_population, population_rows
 from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop
 from gearidae.engine.setup.checkpoint import scene_digest
@@ -92,7 +93,7 @@ def make_problem(
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
             problem.deeper = lambda: make_problem(scene, deeper, *same, light_gap)
-    elif scene.contact.model == "auto":
+    elif scene.contact.model == "auto" and not rubs(scene):
         bodies, light = scene.replace({"contact.model": "elastic"}), lowest + LIGHTER
         problem.elastic = lambda: make_problem(bodies, None, *same, light)
     return problem
@@ -131,6 +132,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     else:
         add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
+    add_friction(s, scene, gears, geometry)
+    s.noting = int(scene.run.exposures > 0 or s.friction.on != 0)
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
     set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
@@ -313,6 +316,8 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         make_part_ready(EXPOSURES)
     if s.population.flanks > 0:
         make_part_ready(POPULATION)
+    if s.friction.on != 0:
+        make_part_ready(FRICTION)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
     if s.follow.balance != 0:

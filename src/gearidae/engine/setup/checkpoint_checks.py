@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearidae.engine.model.record_types import AT_REST, FREE, STUCK
 from gearidae.engine.model.state import EMPTY, GEARS, PHASE, STATE, Floats, Model, Record
 from gearidae.errors import SceneError
 
@@ -78,6 +79,9 @@ def _bounds(m: Model) -> dict[str, tuple[int, int]]:
         "roots": (0, int(m.scene.root_limit)),
         "deep_exits": (-1, _COUNT_HIGH),
         "last_flank": (-1, 1),
+        "slide": (-1, STUCK),
+        "hold": (FREE, AT_REST),
+        "held_pair": (0, int(m.scene.histories) - 1),
     }
     return pairs | places | dict.fromkeys(_FLAGS, (0, 1))
 

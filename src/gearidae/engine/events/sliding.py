@@ -1,0 +1,308 @@
+"""Events of friction: a flank begins to rub or ends, sliding turns round, sticks and slips, and gears come to rest.
+
+The directions of slip are part of the state. Each element that slips has its speed for a guard, and what is held the
+distance of its friction from the limit. A guard that has fallen is dealt with by one decision: alone, an element is
+held if its friction needs to be no larger than its limit; where both gears stand still, all elements are decided on at
+once (`gearidae.engine.friction.rest`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import FRICTION
+from gearidae.engine.events.record import record
+from gearidae.engine.friction.forces import has_gear_element, solve_shafts
+from gearidae.engine.friction.pairs import flank_of_history, levers
+from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
+from gearidae.engine.model.record_types import (
+    AT_REST,
+    FREE,
+    HELD_GEAR,
+    HELD_PAIR,
+    HELD_PINION,
+    STUCK,
+)
+from gearidae.engine.model.state import Floats, Model, Record, V, W
+from gearidae.engine.motion.dry_limit import NO_FORCE
+from gearidae.engine.motion.shafts import forces_at_shafts, pinion_speed
+from gearidae.records import EventKind, Flank
+
+_REVERSAL, _STICK = float(EventKind.SLIDING_REVERSAL), float(EventKind.FLANK_STICK)
+_SLIP, _GEAR_STICK = float(EventKind.FLANK_SLIP), float(EventKind.STICK)
+_GEAR_SLIP, _NO_FLANK = float(EventKind.SLIP), float(Flank.NONE)
+
+RUBS: Final = 1e-8
+"""Of the reference load: friction with a smaller limit is none, and has no direction to watch."""
+STILL: Final = 1e-10
+"""Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
+AT_ONCE: Final = 1e-7
+"""Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest."""
+REVERSALS_HIGH: Final = 100_000
+"""Changes of sliding from one mesh mark to the next, beyond which they are too many to follow."""
+
+
+@compiled(inline=True)
+def _sliding_speed(m: Model, noted: Record, turn: float, w: float) -> float:
+    first, second = levers(m, noted.position)
+    return first * turn - second * w
+
+
+@compiled(inline=True)
+def _is_known(m: Model, noted: Record) -> bool:
+    return bool(m.state.history[noted.history].pair == noted.pair)
+
+
+@compiled_once(FRICTION)
+def sliding_guard(m: Model, t: float, y: Floats) -> float:
+    """Least guard of all that has friction."""
+    turn, pinion, gear = forces_at_shafts(m, t, y)
+    least, state, w = math.inf, m.state, y[W]
+    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.notes.pair[i]
+        if not _is_known(m, noted):
+            continue
+        slide, limit = state.history[noted.history].slide, noted.limit
+        if slide == 0:  # a pair far away is no measure of how near the crossing is
+            least = min(least, 1.0 if abs(limit) <= RUBS else RUBS - limit)
+            continue
+        least = min(least, limit - 0.5 * RUBS)
+        if slide != STUCK:
+            least = min(least, slide * _sliding_speed(m, noted, turn, w) + STILL)
+    if state.hold == AT_REST:
+        list_elements(m, t, y)
+        return min(least, rest_margin(m, pinion, gear) + 2.0 * NO_FORCE)
+    if state.hold != FREE:
+        least = min(least, solve_shafts(m, t, y, turn, pinion, gear).margin + 2.0 * NO_FORCE)
+    if has_gear_element(m) and state.slip != 0.0:
+        least = min(least, state.slip * w + STILL)
+    if m.scene.friction.pinion_hub > 0.0 and state.pinion_slip != 0.0:
+        least = min(least, state.pinion_slip * turn + STILL)
+    return least
+
+
+@compiled_once(FRICTION)
+def begin_sliding(m: Model, t: float, y: Floats) -> None:
+    """Set all directions of slip from the speeds of a start, and decide on what stands still there."""
+    state = m.state
+    state.hold, state.held_pair, state.reversals = FREE, 0, 0
+    for k in range(m.scene.histories):
+        state.history[k].slide = 0
+    state.pinion_slip, state.slip = _sign(pinion_speed(m, y)[0]), _sign(y[W])
+    settle_sliding(m, t, y, True)
+
+
+@compiled_once(FRICTION)
+def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
+    """Deal with all guards of friction that have fallen, for `record_sliding` to record.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau; `accept` has been there.
+    y : ndarray, shape (n,)
+        State; speeds of what comes to rest are set to that.
+    fresh : bool
+        Whether directions of slip have just been guessed from speeds, so that all that stands still is decided on.
+
+    Returns
+    -------
+    bool
+        Whether forces have jumped, so that the integration must begin anew.
+    """
+    turn, pinion, gear = forces_at_shafts(m, t, y)
+    state, w, happened = m.state, y[W], m.work.rubbing
+    happened.happened = 0
+    jumped = _drop_unloaded(m)
+    kind, history = FREE, 0
+    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.notes.pair[i]
+        h = state.history[noted.history]
+        if not _is_known(m, noted):
+            continue
+        speed = _sliding_speed(m, noted, turn, w)
+        if h.slide == 0 and noted.limit > RUBS:
+            h.slide = STUCK if state.hold == AT_REST else int(_sign(speed))
+            jumped = True  # the rest of the step has been made without it
+        if h.slide != 0 and h.slide != STUCK and _has_fallen(float(h.slide), speed, fresh):
+            if kind == HELD_PAIR:  # it has the same levers, or both gears come to rest
+                h.slide = -h.slide
+            else:
+                kind, history = HELD_PAIR, noted.history
+    if has_gear_element(m) and state.slip != 0.0 and _has_fallen(state.slip, w, fresh):
+        kind = HELD_GEAR
+    hub = m.scene.friction.pinion_hub > 0.0 and state.pinion_slip != 0.0
+    if hub and _has_fallen(state.pinion_slip, turn, fresh):
+        kind = HELD_PINION
+    if state.hold == AT_REST:
+        list_elements(m, t, y)
+        if rest_margin(m, pinion, gear) < -1.5 * NO_FORCE:
+            _decide_at_rest(m, t, y)
+            return True
+        return jumped
+    if kind == FREE and state.hold != FREE:
+        if solve_shafts(m, t, y, turn, pinion, gear).margin >= -1.5 * NO_FORCE:
+            return jumped
+        kind, history = state.hold, state.held_pair
+    if kind == FREE:
+        return jumped
+    _decide(m, t, y, kind, history)
+    return True
+
+
+@compiled(inline=True)
+def _has_fallen(slip: float, speed: float, fresh: bool) -> bool:
+    """Whether the guard of an element that slips has fallen."""
+    return bool(slip * speed + STILL <= 0.0 or (fresh and abs(speed) <= STILL))
+
+
+@compiled
+def _drop_unloaded(m: Model) -> bool:
+    """Forget the directions of pairs that rub no longer; whether there are any."""
+    jumped = False
+    for k in range(m.scene.histories):
+        h, rubs = m.state.history[k], False
+        for i in range(m.work.notes.count if h.slide != 0 else 0):
+            noted = m.work.notes.pair[i]
+            rubs |= noted.history == k and noted.pair == h.pair and noted.limit >= 0.5 * RUBS
+        if h.slide != 0 and not rubs:
+            h.slide, jumped = 0, True
+    if m.state.hold == HELD_PAIR and m.state.history[m.state.held_pair].slide != STUCK:
+        m.state.hold = FREE
+        jumped = True
+    return jumped
+
+
+@compiled
+def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
+    """Decide on an element that has come to rest, or is held no longer."""
+    state, a1, a2 = m.state, m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
+    state.reversals += 1
+    turn, e1 = pinion_speed(m, y)
+    first, second = _levers_of(m, kind, history)
+    excess = (first * turn + second * y[W]) / (a1 * first**2 + a2 * second**2)
+    turn -= a1 * first * excess
+    w = y[W] - a2 * second * excess
+    if max(abs(turn), abs(w)) <= AT_ONCE:
+        _decide_at_rest(m, t, y)
+        return
+    y[W], y[V] = w, turn * (1.0 - e1) - w
+    before = _slip_of(m, kind, history)
+    if state.hold != FREE and (state.hold != kind or state.held_pair != history):
+        _set_slip(m, state.hold, state.held_pair, 1.0)  # it has the same levers
+    state.hold, state.held_pair = kind, history
+    _set_slip(m, kind, history, 0.0)
+    turn, pinion, gear = forces_at_shafts(m, t, y)
+    found = solve_shafts(m, t, y, turn, pinion, gear)
+    if found.margin < -NO_FORCE:
+        state.hold = FREE
+        _set_slip(m, kind, history, _sign(found.held))
+    _note_event(m, kind, history, before)
+
+
+@compiled
+def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
+    """Decide on all elements at once, where both gears stand still."""
+    state, found = m.state, m.work.rubbing
+    state.reversals += 1
+    y[W] = y[V] = 0.0
+    _, pinion, gear = forces_at_shafts(m, t, y)
+    list_elements(m, t, y)
+    for i in range(found.count):
+        one = found.element[i]
+        one.before = _slip_of(m, one.hold, one.history)
+    if rest_margin(m, pinion, gear) >= -NO_FORCE:
+        state.hold = AT_REST
+        for i in range(found.count):
+            _set_slip(m, found.element[i].hold, found.element[i].history, 0.0)
+    else:
+        way = way_from_rest(m, pinion, gear)
+        state.hold = FREE
+        for i in range(found.count):
+            one = found.element[i]
+            slip = _sign(one.pinion * way.pinion + one.gear * way.gear)
+            if i == way.element:
+                state.hold, slip = one.hold, 0.0
+                if one.hold == HELD_PAIR:
+                    state.held_pair = one.history
+            _set_slip(m, one.hold, one.history, slip)
+    for i in range(found.count):
+        one = found.element[i]
+        _note_event(m, one.hold, one.history, one.before)
+
+
+@compiled
+def _levers_of(m: Model, kind: int, history: int) -> tuple[float, float]:
+    """Speed of an element per surface velocity of the pinion and of the gear."""
+    if kind == HELD_GEAR:
+        return 0.0, 1.0
+    if kind == HELD_PINION:
+        return 1.0, 0.0
+    for i in range(m.work.notes.count):
+        if m.work.notes.pair[i].history == history:
+            first, second = levers(m, m.work.notes.pair[i].position)
+            return first, -second
+    return 1.0, 0.0
+
+
+@compiled
+def _slip_of(m: Model, kind: int, history: int) -> float:
+    """Direction in which an element slips, 0 while it is held."""
+    if kind == HELD_GEAR:
+        return m.state.slip
+    if kind == HELD_PINION:
+        return m.state.pinion_slip
+    slide = m.state.history[history].slide
+    return 0.0 if slide == STUCK else float(slide)
+
+
+@compiled
+def _set_slip(m: Model, kind: int, history: int, slip: float) -> None:
+    """Set that direction."""
+    if kind == HELD_GEAR:
+        m.state.slip = slip
+    elif kind == HELD_PINION:
+        m.state.pinion_slip = slip
+    else:
+        m.state.history[history].slide = STUCK if slip == 0.0 else int(slip)
+
+
+@compiled
+def _note_event(m: Model, kind: int, history: int, before: float) -> None:
+    """Note what has become of an element, if its direction has changed."""
+    found, after = m.work.rubbing, _slip_of(m, kind, history)
+    if after == before or kind == HELD_PINION:
+        return
+    event = found.event[found.happened]
+    event.history = history
+    if kind == HELD_GEAR:
+        event.kind = _GEAR_STICK if after == 0.0 else _GEAR_SLIP
+        if before != 0.0 and after != 0.0:
+            return
+    elif after == 0.0:
+        event.kind = _STICK
+    else:
+        event.kind = _SLIP if before == 0.0 else _REVERSAL
+    found.happened += 1
+
+
+@compiled
+def record_sliding(m: Model, t: float, events: Floats, count: int) -> int:
+    """Record what `settle_sliding` has found, and return the new number of events."""
+    found = m.work.rubbing
+    for i in range(found.happened):
+        kind, k = found.event[i].kind, found.event[i].history
+        if kind == _GEAR_STICK or kind == _GEAR_SLIP:  # noqa: PLR1714  # compiled
+            count = record(m, events, count, t, kind, 0, _NO_FLANK, 0.0)
+        else:
+            h = m.state.history[k]
+            count = record(m, events, count, t, kind, h.pair, flank_of_history(m, k), h.gap_rate)
+    found.happened = 0
+    return count
+
+
+@compiled(inline=True)
+def _sign(speed: float) -> float:
+    return 1.0 if speed > 0.0 else -1.0

@@ -1,0 +1,259 @@
+"""Accelerations of both shafts with dry friction, and how far it is from letting go of what it holds.
+
+Friction of flanks, hubs and the gear's dry resistance is set-valued: each is an element with a direction of slip, or
+holds at rest what it can. Between events the directions are constants, so that all forces are smooth. An element k has
+the speed ``J_k . (turn, w)`` with the surface velocities of both base circles; a force of friction f takes
+``J_k f`` from the forces at the base circles.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import FRICTION
+from gearidae.engine.friction.pairs import (
+    direction,
+    flank_of_history,
+    lever_rate,
+    levers,
+    set_limits,
+)
+from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR, HELD_PINION
+from gearidae.engine.model.state import COAST, LOAD, PHASE, Floats, Model, U, V, W
+from gearidae.engine.pairs.shaft_angle import torque_angle
+from gearidae.engine.pairs.tooth_pairs import pair_gap
+from gearidae.engine.torques.torque import torque_force
+
+RETURN: Final = 0.05
+"""Rate at which the sliding that errors have brought about in a pair that rolls is taken out again, over 1/tau."""
+_PASSES: Final = 3
+"""Of the fixed point for the friction of hubs, which depends on that of a pair that is held."""
+
+
+class Mesh(NamedTuple):
+    """Sums of the pairs' forces along the line of action and of their friction, of the drive and the coast flank."""
+
+    drive: float
+    coast: float
+    drive_friction: float
+    coast_friction: float
+
+
+@compiled(inline=True)
+def bearing_load(m: Model, mesh: Mesh) -> float:
+    """Load of either bearing: the vector sum of the mesh forces."""
+    own = m.scene.friction
+    square = mesh.drive**2 + mesh.drive_friction**2 + mesh.coast**2 + mesh.coast_friction**2
+    square -= 2.0 * own.cosine * (mesh.drive * mesh.coast + mesh.drive_friction * mesh.coast_friction)
+    square += 2.0 * own.sine * (mesh.drive * mesh.coast_friction - mesh.drive_friction * mesh.coast)
+    return math.sqrt(max(square, 0.0))
+
+
+@compiled(inline=True)
+def has_gear_element(m: Model) -> bool:
+    """Whether dry resistance or a hub may hold the gear."""
+    return bool(m.scene.dry != 0 or m.scene.friction.gear_hub > 0.0)
+
+
+@compiled
+def dry_force(m: Model, t: float, y: Floats) -> float:
+    """Dry resistance at the gear, over its base radius."""
+    if m.scene.dry == 0:
+        return 0.0
+    return max(torque_force(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W]), 0.0)
+
+
+class Shafts(NamedTuple):
+    """What two shafts do with friction.
+
+    Attributes
+    ----------
+    pinion, gear : float
+        Accelerations of the base circles.
+    held : float
+        Friction of the element that is held; 0 if none is, or both gears are.
+    margin : float
+        How far that is below its limit; infinite if nothing is held, and of no use if both gears are.
+    mesh : Mesh
+    hubs : float
+        Load of the bearings.
+    """
+
+    pinion: float
+    gear: float
+    held: float
+    margin: float
+    mesh: Mesh
+    hubs: float
+
+
+@compiled(inline=True)
+def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear: float) -> Shafts:
+    """Accelerations with the present directions of slip.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau; the forces of the pairs have been noted there, with their limits.
+    y : ndarray, shape (n,)
+        State.
+    turn : float
+        Surface velocity of the pinion.
+    pinion, gear : float
+        Forces at the base circles without friction and dry resistance.
+    """
+    own, state, w = m.scene.friction, m.state, y[W]
+    drive = coast = drive_friction = coast_friction = 0.0
+    pinion_lever = gear_lever = limit = bend = 0.0
+    coast_held = False
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        on_coast = flank_of_history(m, noted.history) == COAST
+        if on_coast:
+            coast += noted.force
+        else:
+            drive += noted.force
+        if own.flanks == 0:
+            continue
+        first, second = levers(m, noted.position)
+        friction = direction(m, noted) * noted.limit
+        pinion -= friction * first
+        gear += friction * second
+        if on_coast:
+            coast_friction += friction
+        else:
+            drive_friction += friction
+        if state.hold == HELD_PAIR and noted.history == state.held_pair:
+            pinion_lever, gear_lever, limit, coast_held = first, second, noted.limit, on_coast
+            bend = lever_rate(m, noted, turn, w) + RETURN * (first * turn - second * w)
+    mesh = Mesh(drive, coast, drive_friction, coast_friction)
+    load = 0.0
+    if own.pinion_hub > 0.0 or own.gear_hub > 0.0:
+        load = bearing_load(m, mesh)
+    if state.hold == AT_REST:
+        return Shafts(0.0, 0.0, 0.0, 0.0, mesh, load)
+    a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, dry_force(m, t, y)
+    held = 0.0
+    if state.hold == HELD_PAIR:
+        inertia = a1 * pinion_lever**2 + a2 * gear_lever**2
+        for _ in range(1 if load == 0.0 else _PASSES):
+            on_pinion = pinion - state.pinion_slip * own.pinion_hub * load
+            on_gear = gear - _gear_slip(m) * (dry + own.gear_hub * load)
+            held = (a1 * pinion_lever * on_pinion - a2 * gear_lever * on_gear + bend) / max(inertia, 1e-300)
+            if load > 0.0:
+                if coast_held:
+                    mesh = Mesh(drive, coast, drive_friction, coast_friction + held)
+                else:
+                    mesh = Mesh(drive, coast, drive_friction + held, coast_friction)
+                load = bearing_load(m, mesh)
+        on_pinion -= held * pinion_lever
+        on_gear += held * gear_lever
+        return Shafts(a1 * on_pinion, a2 * on_gear, held, limit - abs(held), mesh, load)
+    on_pinion = pinion - state.pinion_slip * own.pinion_hub * load
+    on_gear = gear - _gear_slip(m) * (dry + own.gear_hub * load)
+    if state.hold == HELD_GEAR:
+        return Shafts(a1 * on_pinion, 0.0, gear, dry + own.gear_hub * load - abs(gear), mesh, load)
+    if state.hold == HELD_PINION:
+        return Shafts(0.0, a2 * on_gear, pinion, own.pinion_hub * load - abs(pinion), mesh, load)
+    return Shafts(a1 * on_pinion, a2 * on_gear, 0.0, math.inf, mesh, load)
+
+
+@compiled(inline=True)
+def _gear_slip(m: Model) -> float:
+    """Direction in which the gear slips, 0 without anything that might hold it."""
+    return m.state.slip if has_gear_element(m) else 0.0
+
+
+@compiled(inline=True)
+def without_drag(m: Model, gear: float, w: float) -> float:
+    """Force at the gear less both drags."""
+    return gear - m.scene.drag * w * abs(w) - m.scene.viscous * w
+
+
+@compiled_once(FRICTION)
+def rubbed_accelerations(
+    m: Model, t: float, y: Floats, turn: float, pinion: float, gear: float
+) -> tuple[float, float]:
+    """Accelerations of both base circles; see `solve_shafts`. The gear's force is that with the drags."""
+    set_limits(m, t, y[W])
+    found = solve_shafts(m, t, y, turn, pinion, without_drag(m, gear, y[W]))
+    return found.pinion, found.gear
+
+
+class Slopes(NamedTuple):
+    """What an acceleration changes by with forces and states.
+
+    Attributes
+    ----------
+    by_pinion, by_both, by_gear : float
+        Inverse mass matrix of what is free to move: entries of the pinion, off the diagonal, and of the gear.
+    pinion_u, pinion_phase, gear_u, gear_phase : float
+        Slopes of the friction of flanks in the forces at the base circles.
+    pinion_v, pinion_w, gear_v, gear_w : float
+        Slopes of the accelerations in the speeds, of a pair that rolls.
+    """
+
+    by_pinion: float
+    by_both: float
+    by_gear: float
+    pinion_u: float
+    pinion_phase: float
+    gear_u: float
+    gear_phase: float
+    pinion_v: float
+    pinion_w: float
+    gear_v: float
+    gear_w: float
+
+
+@compiled(inline=True)
+def friction_slopes(m: Model, y: Floats) -> Slopes:
+    """Slopes for the forces that have been noted last."""
+    state, a1, a2 = m.state, m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
+    by_pinion, by_both, by_gear = a1, 0.0, a2
+    pinion_u = pinion_phase = gear_u = gear_phase = pinion_v = pinion_w = gear_v = gear_w = 0.0
+    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.notes.pair[i]
+        coast = flank_of_history(m, noted.history)
+        first, second = levers(m, noted.position)
+        if state.hold == HELD_PAIR and noted.history == state.held_pair:
+            inertia = max(a1 * first**2 + a2 * second**2, 1e-300)
+            by_pinion -= (a1 * first) ** 2 / inertia
+            by_both = a1 * first * a2 * second / inertia
+            by_gear -= (a2 * second) ** 2 / inertia
+            back, forth = a1 * first * RETURN / inertia, a2 * second * RETURN / inertia
+            pinion_v, pinion_w = -back * first, -back * (first - second)
+            gear_v, gear_w = forth * first, forth * (first - second)
+        by_gap = direction(m, noted) * noted.limit_slope
+        if by_gap == 0.0:
+            continue
+        slope = pair_gap(m, coast, noted.pair, y[U], y[V], y[PHASE], y[W])[2]
+        gap_u = 2.0 * coast - 1.0
+        gap_phase = -gap_u * slope / m.scene.phase_rate
+        pinion_u -= by_gap * gap_u * first
+        pinion_phase -= by_gap * gap_phase * first
+        gear_u += by_gap * gap_u * second
+        gear_phase += by_gap * gap_phase * second
+    if state.hold == AT_REST:
+        by_pinion = by_gear = 0.0
+    elif state.hold == HELD_GEAR:
+        by_gear = 0.0
+    elif state.hold == HELD_PINION:
+        by_pinion = 0.0
+    return Slopes(
+        by_pinion,
+        by_both,
+        by_gear,
+        pinion_u,
+        pinion_phase,
+        gear_u,
+        gear_phase,
+        pinion_v,
+        pinion_w,
+        gear_v,
+        gear_w,
+    )
+
+

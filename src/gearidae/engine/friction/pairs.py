@@ -1,0 +1,121 @@
+"""Sliding of a tooth pair, and the limit of its friction.
+
+A pair touches at the distances r1 and r2 from the points where the line of action touches the base circles. Along the
+flanks the pinion slides over the gear at ``v = r1 w1 - r2 w2``, on both flanks of a tooth with r1 and r2 of the own
+pair. With surface velocities of the base circles, ``turn = R1 w1`` and ``w = R2 w2``, that is
+``(r1/R1) turn - (r2/R2) w``: the two ratios are the pair's levers, by which friction acts on the shafts, too.
+"""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.contact.history import extreme_gap, joined_height
+from gearidae.contact.kernels.evaluate import mixed_value
+from gearidae.contact.kernels.law import loading_value, stretched_value
+from gearidae.engine.compiling import FRICTION
+from gearidae.engine.model.record_types import STUCK
+from gearidae.engine.model.state import COAST, DRIVE, MATERIALS, Model, Record
+from gearidae.engine.pairs.coverage import shares_of
+
+
+@compiled(inline=True)
+def flank_of_history(m: Model, k: int) -> int:
+    """Flank of the pair with the k-th history."""
+    return COAST if k >= m.scene.slots else DRIVE
+
+
+@compiled(inline=True)
+def levers(m: Model, inside: float) -> tuple[float, float]:
+    """Levers r1/R1 and r2/R2 of a pair at a place along the path of contact."""
+    own, radius = m.scene.friction, m.scene.start_radius + inside
+    return own.pinion_lever * radius, own.gear_lever * (own.radii - radius)
+
+
+@compiled(inline=True)
+def lever_rate(m: Model, noted: Record, turn: float, w: float) -> float:
+    """Rate of the sliding speed of a pair whose shafts keep their speeds: the levers change along the path."""
+    if not 0.0 < noted.position < m.scene.contact_ratio:
+        return 0.0
+    rate = w * (m.scene.friction.pinion_bend * turn + m.scene.friction.gear_bend * w)
+    return -rate if flank_of_history(m, noted.history) == COAST else rate
+
+
+@compiled(inline=True)
+def direction(m: Model, noted: Record) -> float:
+    """Direction in which a pair slides, -1 or 1; 0 while it rolls or nothing rubs."""
+    h = m.state.history[noted.history]
+    return 0.0 if h.slide == STUCK or h.pair != noted.pair else float(h.slide)
+
+
+@compiled(inline=True)
+def set_limits(m: Model, t: float, w: float) -> None:
+    """Set the limits of friction of all pairs whose forces have been noted, with their rates; see `levers`.
+
+    A population has noted its own.
+
+    Parameters
+    ----------
+    t : float
+        Time of the notes, over tau.
+    w : float
+        Surface velocity of the gear, which carries a pair along the path of contact.
+    """
+    own = m.scene.friction
+    if m.scene.population.flanks != 0:
+        return
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        longer = _length_rate(m, noted, w)
+        noted.force_rate = noted.slope * noted.gap_rate + longer * noted.force
+        if own.even > 0.0 or own.flanks == 0:
+            noted.limit, noted.limit_slope = own.even * noted.force, own.even * noted.slope
+        else:
+            noted.limit, noted.limit_slope = _limit_of_materials(m, t, i)
+        noted.limit_rate = noted.limit_slope * noted.gap_rate + longer * noted.limit
+
+
+@compiled(inline=True)
+def _length_rate(m: Model, noted: Record, w: float) -> float:
+    """Rate of the contact length of a pair, over that length."""
+    if not 0.0 < noted.position < m.scene.contact_ratio:
+        return 0.0
+    radius = m.scene.start_radius + noted.position
+    bend = radius * m.scene.sum_curvature
+    rate = 0.5 * (1.0 - 2.0 * bend) / (radius * (1.0 - bend)) * m.scene.phase_rate * w
+    return -rate if flank_of_history(m, noted.history) == COAST else rate
+
+
+@compiled_once(FRICTION)
+def _limit_of_materials(m: Model, t: float, i: int) -> tuple[float, float]:
+    """Limit of the i-th pair of the notes and its slope in the gap, as its force is computed, with other laws."""
+    noted = m.work.notes.pair[i]
+    own, k, gap = m.scene.friction, noted.history, noted.gap
+    h = m.state.history[k]
+    shares = shares_of(m, flank_of_history(m, k), noted.pair, noted.position)
+    if m.scene.by_place == 0:
+        limit, slope = loading_value(m.tables, own.loading_at, gap)
+    else:
+        limit, slope = mixed_value(m.tables, own.loading_at, gap, shares)
+    if h.pair == noted.pair:
+        turned = h.direction * noted.gap_rate < 0.0
+        turning_gap = gap
+        if turned:
+            turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, noted.gap_rate)
+        for material in range(MATERIALS):
+            stretch_limit, offset = (
+                m.scene.material[material].stretch_limit,
+                m.scene.material[material].gap_offset,
+            )
+            if stretch_limit == 0.0 or own.scale[material] == 0.0:
+                continue
+            joined = h.joined[material]
+            if turned:
+                joined = joined_height(joined, turning_gap, stretch_limit)
+            if gap > joined:
+                table = m.tables[own.table_at[material] :]
+                q, dq = stretched_value(table, gap + offset, joined + offset)
+                limit += own.scale[material] * shares[material] * q
+                slope += own.scale[material] * shares[material] * dq
+    radius = m.scene.start_radius + noted.position
+    length = (radius - radius * radius * m.scene.sum_curvature) ** 0.5
+    return limit * length, slope * length
