@@ -15,12 +15,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import make_interp_spline
+from scipy.optimize import brentq
 
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
 
 _RESTS = 1e-11
 """Sliding velocities below this are zero [m/s]; rounding leaves 1e-14, and a flip passes in 1e-15 s."""
+_RUBS = 1e-15
+"""Friction with a limit up to this is none, and has no direction [N]; one that begins has twice this."""
 
 
 def least_constraint(inertia, force, rows, drift, limits):
@@ -100,11 +103,10 @@ class MeanLaw:
     def __init__(self, scene):
         self.scene = scene
         self.parts = [(one.surface, one.share) for one in scene.materials() if one.share > 0.0]
-        contact, coating = scene.contact, scene.coating
-        names = {one.name: one for one in scene.materials()}
+        contact, coated = scene.contact, scene.coating.friction
+        coated = contact.friction if coated is None else coated
         self.coefficients = [
-            coating.friction if name != "surface" and coating.friction is not None else contact.friction
-            for name in (n for n, one in names.items() if one.share > 0.0)
+            contact.friction if one.name == "bare" else coated for one in scene.materials() if one.share > 0.0
         ]
         self.sigma = scene.surface.roughness
         places = np.arange(-2.0, 14.0, 0.02)
@@ -120,7 +122,7 @@ class MeanLaw:
         ]
 
     def touching(self, gap, radius):
-        """Force and friction limit of a pair, and what else a root is sought for."""
+        """Force and friction limit of a pair; the limit is below zero where adhesion exceeds the load."""
         at = gap / self.sigma
         if at > 13.9:
             return 0.0, 0.0
@@ -155,7 +157,7 @@ class RubbingGears:
         phase = start.mesh_phase * pitch
         u = 0.5 * scene.mesh.backlash - start.gap
         self.t, self.y = 0.0, np.array([u, 0.0, phase / self.r2, start.gear_speed, 0.0, 0.0])
-        self.signs, self.stuck, self.flips, self.sticks, self.stick_time = {}, (), 0, 0, 0.0
+        self.known, self.signs, self.stuck, self.flips, self.sticks, self.stick_time = set(), {}, (), 0, 0, 0.0
         self._at = None
 
     # -- geometry and forces -----------------------------------------------------------------------------------------
@@ -188,7 +190,7 @@ class RubbingGears:
                 continue
             slope = load * outside / relief + (along[0] if along else 0.0)
             drift = side * self.r2 if outside == 0.0 else 0.0
-            found.append(Touch((side, i), load, slope, max(limit, 0.0), np.array([a1, -a2]), drift))
+            found.append(Touch((side, i), load, slope, limit, np.array([a1, -a2]), drift))
         return found
 
     def law_at(self, side, i, xi, gap, a1, a2, inside):
@@ -208,9 +210,7 @@ class RubbingGears:
         force = sum(p.side * p.load for p in pairs)
         along = sum(p.side * p.along for p in pairs)
         scene = self.scene
-        drive = scene.drive.torque + sum(
-            h.amplitude * math.cos(2e-6 * math.pi * h.frequency * t + h.phase) for h in scene.drive.harmonic
-        )
+        drive = self.drive(t)
         mesh = force + scene.mesh.damping * y[1]
         q = np.array(
             [
@@ -231,7 +231,7 @@ class RubbingGears:
         normal = self.bearing(pairs, friction) if any(self.hub_arms) else 0.0
         keys, rows, drifts, limits = [], [], [], []
         for p in pairs:
-            if p.limit > 0.0:
+            if p.key in self.known and p.limit > 0.0:
                 keys.append(p.key)
                 rows.append(p.row)
                 drifts.append(p.drift)
@@ -286,30 +286,61 @@ class RubbingGears:
         """Signs of what slips, and what of the elements at rest sticks."""
         self._at, self.stuck = None, ()
         w = self.speeds(self.y)
-        self.signs = {}
+        self.known = {p.key for p in self.touches(self.y[0], self.y[2]) if p.limit > 1.5 * _RUBS}
+        self.signs, friction = {}, {}
         state = self.evaluate(self.t, self.y)
-        keys, rows, limits = state["keys"], state["rows"], state["limits"]
-        v = rows @ w
-        scale = np.where([isinstance(k, str) for k in keys], self.r2, 1.0) if keys else np.zeros(0)
-        rest = np.abs(v) * scale < _RESTS
-        self.signs = {k: math.copysign(1.0, each) for k, each in zip(keys, v, strict=True)}
-        if not rest.any():
-            self._at = None
-            return
-        slips = ~rest
-        q = state["q"] - (np.sign(v[slips]) * limits[slips]) @ rows[slips]
-        a, stuck = least_constraint(self.inertia, q, rows[rest], state["drift"][rest], limits[rest])
-        here = np.flatnonzero(rest)
-        for k in here:
-            self.signs[keys[k]] = math.copysign(1.0, rows[k] @ a + state["drift"][k])
-        if len(stuck) == 2:
+        for _ in range(60 if any(self.hub_arms) else 1):  # a hub's limit depends on the frictions
+            keys, rows, drifts, limits = self.elements(state["pairs"], friction)
+            v = rows @ w
+            scale = np.array([self.r2 if isinstance(k, str) else 1.0 for k in keys])
+            here = np.flatnonzero(np.abs(v) * scale < _RESTS)
+            f = np.sign(v) * limits
+            f[here] = 0.0
+            q, drift = state["q"] - f @ rows, drifts * w[1] * w.sum()
+            a, stuck = least_constraint(self.inertia, q, rows[here], drift[here], limits[here])
+            stuck = here[list(stuck)]
+            others = np.setdiff1d(here, stuck)
+            f[others] = np.sign(rows[others] @ a + drift[others]) * limits[others]
+            left = state["q"] - f @ rows - self.inertia * a
+            f[stuck] = np.linalg.lstsq(rows[stuck].T, left, rcond=None)[0] if stuck.size else 0.0
+            friction = dict(zip(keys, f, strict=True))
+        way = np.where(np.isin(np.arange(len(keys)), here), rows @ a + drift, v)
+        self.signs = {k: math.copysign(1.0, each) for k, each in zip(keys, way, strict=True)}
+        if stuck.size == 2:
             self.stuck = tuple(keys[k] for k in here)  # the train rests: all that could slip
             self.y[1] = self.y[3] = 0.0
-        elif stuck:
-            self.stuck = (keys[here[stuck[0]]],)
+        elif stuck.size:
+            self.stuck = (keys[stuck[0]],)
             self.sticks += 1
-            self.project(rows[here[stuck[0]]])
+            self.project(rows[stuck[0]])
         self._at = None
+
+    def rest(self, time):
+        """Stay at rest until the drive's torque leaves the zonotope of the frictions, or to a time."""
+        state = self.evaluate(self.t, self.y)
+        rows, limits, q = state["rows"], state["limits"], state["q"]
+        across = np.column_stack([-rows[:, 1], rows[:, 0]])
+        bounds, first = np.abs(across @ rows.T) @ limits, self.drive(self.t)
+
+        def margin(t):
+            now = np.array([q[0] + self.drive(t) - first, q[1]])
+            return (1.0 - np.abs(across @ now) / bounds).min()
+
+        fastest = max((h.frequency for h in self.scene.drive.harmonic if h.amplitude != 0.0), default=0.0)
+        grid = np.linspace(self.t, time, 2 + int(400e-6 * fastest * (time - self.t)))
+        leaves = np.flatnonzero([margin(t) < 0.0 for t in grid])
+        if not leaves.size:
+            self.t = time
+            return
+        k = max(int(leaves[0]), 1)
+        self.t = brentq(margin, grid[k - 1], grid[k], xtol=1e-15) + 1e-10
+        self.decide()
+
+    def drive(self, t):
+        return self.scene.drive.torque + sum(
+            h.amplitude * math.cos(2e-6 * math.pi * h.frequency * t + h.phase)
+            for h in self.scene.drive.harmonic
+        )
 
     def release(self, key):
         """Let an element slip that has stuck up to its limit."""
@@ -358,13 +389,10 @@ class RubbingGears:
                     add(lambda t, y, s=side, i=i, end=end: self.end(y, s, i, end), 0.0)
         centre = self.y[2]
         add(lambda t, y: (0.5 * self.g.base_pitch - self.r2 * abs(y[2] - centre)) / self.g.base_pitch)
-        if isinstance(self.law, MeanLaw):
-            for p in state["pairs"]:
-                if abs(p.load) > 1e-15:
-                    add(lambda t, y, key=p.key: self.load(t, y, key), 0.0)
-        else:
-            for value in self.law.roots(self):
-                add(value)
+        for side, i, _ in self.places(self.y[2]):
+            add(lambda t, y, key=(side, i): self.rubs(t, y, key))
+        if not isinstance(self.law, MeanLaw):
+            add(self.law.roots(self))
         return found
 
     def sliding(self, t, y, key):
@@ -372,7 +400,8 @@ class RubbingGears:
         if key not in state["keys"]:
             return 1.0
         v = state["rows"][state["keys"].index(key)] @ state["w"]
-        return self.signs.get(key, math.copysign(1.0, v)) * v * (self.r2 if isinstance(key, str) else 1.0)
+        v = self.signs.get(key, math.copysign(1.0, v)) * v * (self.r2 if isinstance(key, str) else 1.0)
+        return v + 0.1 * _RESTS  # one that has just begun to slip is above its root
 
     def margin(self, t, y, key):
         state = self.evaluate(t, y)
@@ -381,8 +410,9 @@ class RubbingGears:
         k = state["keys"].index(key)
         return 1.0 - abs(state["f"][k]) / state["limits"][k]
 
-    def load(self, t, y, key):
-        return next((p.load for p in self.evaluate(t, y)["pairs"] if p.key == key), 0.0)
+    def rubs(self, t, y, key):
+        limit = next((p.limit for p in self.evaluate(t, y)["pairs"] if p.key == key), 0.0)
+        return (limit - _RUBS if key in self.known else 2.0 * _RUBS - limit) / 1e-9
 
     def end(self, y, side, i, end):
         along, pitch = self.r2 * y[2], self.g.base_pitch
@@ -405,11 +435,18 @@ class RubbingGears:
 
     def advance(self, time, rtol, atol):
         """Integrate to the next event, or to a time."""
-        if len(self.stuck) > 1:  # rests for ever under constant torques
-            self.t = time
+        if len(self.stuck) > 1:
+            self.rest(time)
             return
         leg = solve_ivp(
-            self.rates, (self.t, time), self.y, "DOP853", rtol=rtol, atol=atol, events=self.roots()
+            self.rates,
+            (self.t, time),
+            self.y,
+            "DOP853",
+            rtol=rtol,
+            atol=atol,
+            events=self.roots(),
+            max_step=0.02,  # a tenth of a contact's period: no two roots in a step
         )
         self.stick_time += (leg.t[-1] - self.t) * bool(self.stuck)
         before = dict(self.signs)
@@ -495,11 +532,7 @@ class ListedAsperities:
             guards = self.guards(gears, y)
             return min((float(guards[k].min()) for k in keys if k in guards), default=1.0)
 
-        def net(key):
-            return lambda t, y: gears.load(t, y, key) / 1e-9
-
-        loaded = [p.key for p in gears.evaluate(gears.t, gears.y)["pairs"] if abs(p.load) > 1e-15]
-        return [nearest, *(net(key) for key in loaded if self.strength == 0.0)]
+        return nearest
 
     def pass_events(self, gears):
         """Asperities whose guard has been reached change sides."""
