@@ -26,6 +26,7 @@ from gearidae.engine.friction.forces import friction_slopes, rubbed_acceleration
 from gearidae.engine.friction.pairs import set_limits
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import WHOLE, note_shares, path_position, shares_of
+from gearidae.engine.pairs.notes import begin_notes, note_force
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
@@ -134,26 +135,6 @@ def mesh_forces(
             relief_u += by_u
             relief_phase += by_phase
     return force, relief, force_u, force_phase, relief_u, relief_phase
-
-
-@compiled(inline=True)
-def begin_notes(m: Model, t: float, travel: float) -> None:
-    """Note that all forces are evaluated at a time and a transmission error, for exposures; so far of no pair."""
-    notes = m.work.notes
-    notes.time, notes.travel, notes.count = t, travel, 0
-
-
-@compiled(inline=True)
-def note_force(
-    m: Model, k: int, pair: int, position: float, gap: tuple[float, float], force: tuple[float, float]
-) -> None:
-    """Note a pair with the k-th history: path position, gap with its rate, force with its slope in the gap."""
-    notes = m.work.notes
-    noted = notes.pair[notes.count]
-    noted.history, noted.pair, noted.position = k, pair, position
-    noted.gap, noted.gap_rate = gap
-    noted.force, noted.slope = force
-    notes.count += 1
 
 
 @compiled

@@ -13,12 +13,14 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.single import asperity_energy, asperity_value
 from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.pairs.notes import note_force
 from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pairs_near
 from gearidae.engine.population.layout import (
     ARC,
     HEIGHT,
     JOINED,
     K_ENERGY,
+    K_FRICTION,
     K_LOAD,
     K_SCALE,
     K_TABLE,
@@ -29,7 +31,10 @@ from gearidae.engine.population.spots import Pair, overlap_slopes, pair_now, spo
 
 
 class Sums(NamedTuple):
-    """Sums over the joined asperities of a pair: loads P and stiffnesses K, alone and with D, its square and slope."""
+    """Sums over the joined asperities of a pair: loads P and stiffnesses K, alone and with D, its square and slope.
+
+    The last are limits of friction and their stiffnesses, alone and with D.
+    """
 
     load: float
     load_d: float
@@ -37,6 +42,9 @@ class Sums(NamedTuple):
     stiffness: float
     stiffness_d: float
     stiffness_dd: float
+    limit: float
+    limit_stiffness: float
+    limit_stiffness_d: float
 
 
 @compiled(inline=True)
@@ -59,13 +67,16 @@ def candidate_energy(m: Model, kind: int, overlap: float) -> float:
 def _sums(m: Model, k: int, now: Pair) -> Sums:
     """Sum over the joined asperities of the pair with the k-th history."""
     load = load_d = load_slope = stiffness = stiffness_d = stiffness_dd = 0.0
+    limit = limit_stiffness = limit_stiffness_d = 0.0
+    rubs = m.scene.friction.flanks != 0
     at, joined = spot_at(m, now.place, now.moves), column(m, k, JOINED)
     arcs, heights, kinds = column(m, k, ARC), column(m, k, HEIGHT), column(m, k, KIND)
     bend = 0.5 * m.scene.population.steepness / at.radius
     for i in range(m.work.contact[k].joined):
         j = int(m.rows[joined + i])
         x = m.rows[arcs + j] - at.arc
-        p, s = candidate_load(m, int(m.rows[kinds + j]), m.rows[heights + j] - now.gap - bend * x * x)
+        overlap = m.rows[heights + j] - now.gap - bend * x * x
+        p, s = candidate_load(m, int(m.rows[kinds + j]), overlap)
         load += p
         stiffness += s
         if now.moves:
@@ -74,7 +85,40 @@ def _sums(m: Model, k: int, now: Pair) -> Sums:
             load_slope += p * slope
             stiffness_d += s * d
             stiffness_dd += s * d * d
-    return Sums(load, load_d, load_slope, stiffness, stiffness_d, stiffness_dd)
+        if rubs:
+            p, s = candidate_limit(m, int(m.rows[kinds + j]), p, s)
+            limit += p
+            limit_stiffness += s
+            if now.moves:
+                limit_stiffness_d += s * overlap_slopes(m, at, x)[0]
+    return Sums(
+        load,
+        load_d,
+        load_slope,
+        stiffness,
+        stiffness_d,
+        stiffness_dd,
+        limit,
+        limit_stiffness,
+        limit_stiffness_d,
+    )
+
+
+@compiled(inline=True)
+def candidate_limit(m: Model, kind: int, load: float, stiffness: float) -> tuple[float, float]:
+    """Limit of the friction of a joined asperity and its stiffness: of its load, the coefficient of its kind."""
+    share = m.tables[kind + K_FRICTION]
+    return share * load, share * stiffness
+
+
+@compiled(inline=True)
+def _note_sums(m: Model, k: int, pair: int, now: Pair, sums: Sums) -> None:
+    """Note force and limit of friction of a pair, with their rates."""
+    noted = m.work.notes.pair[m.work.notes.count]
+    note_force(m, k, pair, now.place, (now.gap, now.rate), (sums.load, -sums.stiffness))
+    noted.force_rate = sums.stiffness_d * now.place_rate - sums.stiffness * now.rate
+    noted.limit, noted.limit_slope = sums.limit, -sums.limit_stiffness
+    noted.limit_rate = sums.limit_stiffness_d * now.place_rate - sums.limit_stiffness * now.rate
 
 
 @compiled_once(POPULATION)
@@ -82,6 +126,7 @@ def mesh_sums(m: Model, y: Floats) -> tuple[float, float, float, float, float, f
     """Forces F and Fs of a population, with their slopes in u and phase; see `mesh_forces` of the residual."""
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
     turn = m.scene.phase_rate
+    m.work.notes.count = 0
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -90,6 +135,8 @@ def mesh_sums(m: Model, y: Floats) -> tuple[float, float, float, float, float, f
             continue
         sign, now = 1.0 - 2.0 * coast, pair_now(m, coast, pair, y)
         sums, slope = _sums(m, k, now), now.slope
+        if m.scene.friction.on != 0:
+            _note_sums(m, k, pair, now, sums)
         force += sign * sums.load
         force_u += sums.stiffness
         force_phase += sums.stiffness_d - sums.stiffness * slope / turn

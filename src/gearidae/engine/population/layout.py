@@ -33,7 +33,8 @@ K_ENERGY: Final = 3
 K_JOIN: Final = 4  # distances of joining and detachment, over the roughness
 K_DETACH: Final = 5
 K_OFFSET: Final = 6  # recess of its material
-KINDS: Final = 7
+K_FRICTION: Final = 7  # coefficient of friction, or shear strength over `K_AREA`'s unit, for its limit
+KINDS: Final = 8
 
 
 @compiled(inline=True)

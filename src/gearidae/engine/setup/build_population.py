@@ -19,6 +19,7 @@ from gearidae.errors import SceneError
 from gearidae.populations.flanks import FlankAsperities, flanks_digest, flanks_of
 from gearidae.populations.materials import materials_at
 from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene.friction import friction_values
 
 Integers = NDArray[np.int64]
 
@@ -98,14 +99,14 @@ def _kinds(
     pairs, kinds = np.unique(len(MATERIAL_NAMES) * of_radius + material, return_inverse=True)
     sigma, by_name = scene.surface.roughness, {one.name: one for one in scene.materials()}
     highest = float(s.population.highest) - GAP_LOW
-    tips = []
+    tips, friction = [], friction_values(scene)
     reach: dict[AsperityLaw, float] = {}
     for pair in pairs.tolist():
         radius, one = radii[pair // len(MATERIAL_NAMES)], by_name[MATERIAL_NAMES[pair % len(MATERIAL_NAMES)]]
         tip = asperity_of(one.surface.model_copy(update={"asperity_radius": float(radius)}))
         unit = tip.stretch_limit if tip.stretch_limit > 0.0 else sigma
         law = law_of_tip(scene.contact.asperity, tip, unit)
-        tips.append((law, tip.hertz_factor, unit, one.gap_offset))
+        tips.append((law, tip.hertz_factor, unit, one.gap_offset, friction[one.name]))
         reach[law] = max(reach.get(law, 0.0), highest * sigma / unit)
         if len(reach) > MOST_LAWS:
             raise SceneError(
@@ -115,7 +116,7 @@ def _kinds(
             )
     places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
     numbers = np.empty((pairs.size, KINDS))
-    for row, (law, factor, unit, offset) in enumerate(tips):
+    for row, (law, factor, unit, offset, value) in enumerate(tips):
         load, join, detach = factor * unit**1.5, law.join * unit / sigma, law.detach * unit / sigma
         numbers[row] = (
             places[law],
@@ -125,5 +126,6 @@ def _kinds(
             join,
             detach - RELEASED * (detach - join),
             offset / sigma,
+            value,
         )
     return numbers, kinds

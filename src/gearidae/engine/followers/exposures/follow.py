@@ -47,8 +47,8 @@ from gearidae.engine.followers.exposures.sliding import (
     time_to_zero,
 )
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import begin_notes, note_force
 from gearidae.engine.pairs.coverage import note_shares, path_position, shares_of
+from gearidae.engine.pairs.notes import begin_notes, note_force
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
     history_of,
