@@ -126,6 +126,8 @@ def step(
     """
     if at[1] and _can_wait(m, t, y):
         return
+    if m.scene.friction.on != 0:
+        book_rubbing(m, t, y, at[1], between[0], between[1])
     now = at[0] or m.state.bound_exceeded != 0
     a, parts, start = m.work.adams, 1, m.work.quadrature.time
     if a.order_used > ORDER and in_flight(m) and m.scene.kind == GEARS:
@@ -209,8 +211,6 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     q = m.work.quadrature
     if m.scene.kind == GEARS:
         _accumulate_losses(m, t, y, yp)
-        if m.scene.friction.on != 0:
-            book_rubbing(m, t, y)
     q.steps += 1
     h = t - q.time
     if h == 0.0 or not (now or in_flight(m) or _closes_interval(m, h)):

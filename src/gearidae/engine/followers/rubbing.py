@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
+from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral
 from gearidae.engine.friction.forces import Mesh, Shafts, solve_shafts
 from gearidae.engine.friction.pairs import direction, flank_of_history, lever_rate, levers
@@ -13,6 +15,8 @@ from gearidae.engine.model.state import COAST, Floats, Model, W
 from gearidae.engine.motion.shafts import forces_at_shafts
 
 _POWERS: Final = 4
+_OUTER: Final = 0.5 * math.sqrt(0.6)
+"""Distance of the outer points of the Gaussian rule from the middle of an interval of length 1."""
 
 
 @compiled_once(FRICTION)
@@ -64,21 +68,71 @@ def _load_rate(m: Model, found: Shafts, rate: Mesh) -> float:
 
 
 @compiled_once(FRICTION)
-def book_rubbing(m: Model, t: float, y: Floats) -> None:
-    """Add the losses since the last call, and note the powers here."""
-    r, e = m.work.rubbing, m.state.energy
-    h = t - r.time
+def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rates: Floats) -> None:
+    """Add the losses since the last call, and note the powers here.
+
+    The corrected trapezoidal rule is applied to the whole interval and to both halves, and extrapolated, where the
+    formula of the step gives the states in between. Before an asperity detaches, its load has an infinite rate: there
+    the powers at three points inside the interval are taken.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau.
+    y : ndarray, shape (n,)
+        State there.
+    root : bool
+        Whether something happens there.
+    between, rates : ndarray, shape (n,)
+        Work space.
+    """
+    r, a = m.work.rubbing, m.work.adams
+    h, start = t - r.time, r.time
     if h == 0.0:
         return
-    before = (r.power[0], r.power[1], r.power[2], r.power[3])
-    rates = (r.power_rate[0], r.power_rate[1], r.power_rate[2], r.power_rate[3])
+    first = _powers(m)
+    if root and a.order_used > 0 and m.scene.population.flanks != 0:
+        for point in range(3):
+            then = start + (0.5 + (point - 1) * _OUTER) * h
+            adams.between(a, then, between, rates)
+            note_rubbing(m, then, between)
+            for i in range(_POWERS):
+                _book(m, i, (8.0 if point == 1 else 5.0) / 18.0 * h * r.power[i], 0.0)
+        note_rubbing(m, t, y)
+        return
+    middle, halved = first, a.order_used > 0
+    if halved:
+        adams.between(a, start + 0.5 * h, between, rates)
+        note_rubbing(m, start + 0.5 * h, between)
+        middle = _powers(m)
     note_rubbing(m, t, y)
-    for which in range(_POWERS):
-        power, rate = r.power[which], r.power_rate[which]
-        loss = integral(h, before[which], power, rates[which], rate)
-        if which < 2:
-            e.flank_loss[which] += loss
-        else:
-            e.hub_loss[which - 2] += loss
-        e.loss_error += error_estimate(h, before[which], power, rates[which], rate)
-        e.throughput += abs(loss)
+    last = _powers(m)
+    for i in range(_POWERS):
+        j = _POWERS + i
+        loss = integral(h, first[i], last[i], first[j], last[j])
+        error = error_estimate(h, first[i], last[i], first[j], last[j])
+        if halved:
+            parts = integral(0.5 * h, first[i], middle[i], first[j], middle[j])
+            parts += integral(0.5 * h, middle[i], last[i], middle[j], last[j])
+            error = min(error, abs(parts - loss) / 15.0)
+            loss = parts + (parts - loss) / 15.0
+        _book(m, i, loss, error)
+
+
+@compiled(inline=True)
+def _book(m: Model, i: int, loss: float, error: float) -> None:
+    """Add a loss of the i-th power, and its error."""
+    e = m.state.energy
+    if i < 2:
+        e.flank_loss[i] += loss
+    else:
+        e.hub_loss[i - 2] += loss
+    e.loss_error += error
+    e.throughput += abs(loss)
+
+
+@compiled(inline=True)
+def _powers(m: Model) -> tuple[float, float, float, float, float, float, float, float]:
+    """Powers that have been noted last, then their rates."""
+    p, r = m.work.rubbing.power, m.work.rubbing.power_rate
+    return p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3]
