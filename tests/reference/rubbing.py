@@ -76,7 +76,7 @@ def jkr(overlap):
         slope = 4.0 * 12 ** (1 / 3) * s**3 - 4.0 / 3.0 * 18 ** (1 / 6)
         step = (12 ** (1 / 3) * s**4 - 4.0 / 3.0 * 18 ** (1 / 6) * s - d) / np.where(slope > 0, slope, 1.0)
         s = s - np.where(slope > 0, step, 0.0)
-        if np.all(np.abs(step) < 1e-15 * s):
+        if np.all(np.abs(step) < 1e-14 * s):
             break
     return s**6
 
