@@ -120,11 +120,14 @@ def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, Row]]:
     yield row("time_to_speed", "time to speed", "s", "first sample with 95 % of the largest")
     held = f"held by {told['held_by']} at the end" if told["held_by"] else ""
     times = "once" if told["sticks"] == 1 else f"{told['sticks']} times"
-    stuck = f"held by dry resistance, stuck {times}; {held}".rstrip("; ")
+    holder = "dry resistance or friction" if told.get("friction_loss") else "dry resistance"
+    stuck = f"held by {holder}, stuck {times}; {held}".rstrip("; ")
     yield row("time_at_rest", "time at rest", "s", stuck)
     yield row("time_adhering", "time trapped by adhesion", "s", "rocking within half a pitch")
     if told["largest_force"] is not None:
         yield row("largest_force", "largest force", "N", f"at {number('largest_force_time', 's')}")
+    if told.get("friction_loss"):
+        yield "efficiency", ("efficiency", f"{100.0 * told['efficiency']:.4g} %", "drag and dry resistance over all losses")
 
 
 def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:

@@ -55,7 +55,7 @@ _PROVENANCE = (
 _ACCOUNT = (
     ("top_speed", "highest speed of the gear", "rad/s"),
     ("time_to_speed", "first sample with 95 % of the largest", "s"),
-    ("time_at_rest", "held by dry resistance", "s"),
+    ("time_at_rest", "held at rest by dry resistance or friction", "s"),
     ("time_adhering", "trapped by adhesion", "s"),
     ("held_by", "held at the end by", ""),
     ("largest_force", "largest force", "N"),
@@ -164,6 +164,9 @@ def account_table(ds: xr.Dataset) -> str:
         for name, words, unit in _ACCOUNT
         if told.get(name) not in (None, "")
     ]
+    if told.get("friction_loss"):
+        words = "efficiency: drag and dry resistance over all losses"
+        rows.append((_with_reach(ds, "efficiency", words), _measure(100.0 * told["efficiency"], "%")))
     rows += [
         (_with_reach(ds, name, words), _measure(kept[name], unit))
         for name, words, unit in _ENERGY_BALANCE
