@@ -110,7 +110,13 @@ class Reference:
 
 _YOUNGER: Final[dict[str, dict[str, Any]]] = {
     "run": {"method": "auto", "stop": "time", "exposures": 0, "balance": True, "asperity_events": True},
-    "contact": {"seed": 0, "radius_spread": 0.0, "friction": 0.0, "friction_law": "net", "shear_strength": 0.0},
+    "contact": {
+        "seed": 0,
+        "radius_spread": 0.0,
+        "friction": 0.0,
+        "friction_law": "net",
+        "shear_strength": 0.0,
+    },
     "gears": {"hub_friction": 0.0, "pinion_hub_radius": 0.0, "gear_hub_radius": 0.0},
     "mesh": {"radius_force": False},
     "surface": {"provenance": ""},

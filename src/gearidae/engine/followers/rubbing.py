@@ -49,7 +49,9 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         load_rate = _load_rate(m, found, Mesh(drive, coast, drive_friction, coast_friction))
         own, slip = m.scene.friction, m.state.slip if m.scene.friction.gear_hub > 0.0 else 0.0
         r.power[2] = own.pinion_hub * found.hubs * m.state.pinion_slip * turn
-        r.power_rate[2] = own.pinion_hub * m.state.pinion_slip * (load_rate * turn + found.hubs * found.pinion)
+        r.power_rate[2] = (
+            own.pinion_hub * m.state.pinion_slip * (load_rate * turn + found.hubs * found.pinion)
+        )
         r.power[3] = own.gear_hub * found.hubs * slip * y[W]
         r.power_rate[3] = own.gear_hub * slip * (load_rate * y[W] + found.hubs * found.gear)
 

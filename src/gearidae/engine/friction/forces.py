@@ -255,5 +255,3 @@ def friction_slopes(m: Model, y: Floats) -> Slopes:
         gear_v,
         gear_w,
     )
-
-

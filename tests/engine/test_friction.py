@@ -1,0 +1,445 @@
+"""Friction of flanks and hubs in the engine: closed forms, rest, events, energy, and runs that go on."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from gearidae.engine.backend import follow, solve
+from gearidae.engine.continuing import end_of
+from gearidae.engine.events.histories import accept
+from gearidae.engine.events.sliding import begin_sliding
+from gearidae.engine.followers.rubbing import note_rubbing
+from gearidae.engine.integrate.start import set_rates
+from gearidae.engine.model.record_types import AT_REST
+from gearidae.engine.model.state import PHASE, U, V, W
+from gearidae.engine.motion.shafts import forces_at_shafts
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.start import Start
+from gearidae.records import EventKind
+from gearidae.scene import preset
+from reference.population import NUMBERS
+
+HIGH = preset("teodorescu2009")
+GEOMETRY = HIGH.geometry
+R1, R2 = GEOMETRY.base_radius_pinion, GEOMETRY.base_radius_gear
+POPULATION = HIGH.replace({"contact.model": "population"})
+HUBS = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
+
+
+@cache
+def run(scene, backend="native"):
+    return solve(scene, backend=backend)
+
+
+def kinds(solution):
+    return [EventKind(one) for one in solution.events.kind.tolist()]
+
+
+def friction_loss(balance):
+    return balance.drive_friction_loss + balance.coast_friction_loss
+
+
+# -- losses and speeds -----------------------------------------------------------------------------------------------
+
+
+def test_loss_per_pitch_is_the_closed_form():
+    """A share 0.145249 mu of the drive's work with the load shares of the mean law, at constant load.
+
+    Six whole pitches of the run whose speed is constant to a per cent, which is allowed twice over.
+    """
+    scene = HIGH.replace(
+        {"contact.friction": 0.1, "mesh.damping": 7e-6, "drive.harmonic": None, "run.samples": "off"}
+    )
+    pitch = GEOMETRY.base_pitch / (R2 * 2867.67)
+    first, second = (
+        run(scene.replace({"run.duration": duration})).balance for duration in (8 * pitch, 14 * pitch)
+    )
+    work = second.drive_work - first.drive_work
+    lost = friction_loss(second) - friction_loss(first)
+    assert lost / work == pytest.approx(0.0145249, rel=0.02)
+    assert second.coast_friction_loss == 0.0
+
+
+LISTED = dict(
+    zip(
+        ("arc", "height", "radius"),
+        (
+            [one * unit for one in column]
+            for column, unit in zip(
+                zip(*NUMBERS["gear_explicit"]["list_arc_um_height_nm_radius_nm"], strict=True),
+                (1e-6, 1e-9, 1e-9),
+                strict=True,
+            )
+        ),
+        strict=True,
+    )
+)
+
+
+def test_ten_listed_asperities_with_friction():
+    """Speeds of a prototype that locates all events and uses nothing of this package, to a few of its tolerances."""
+    scene = POPULATION.replace(
+        {
+            "contact.asperities": LISTED,
+            "contact.friction": 0.3,
+            "run.duration": 20e-6,
+            "run.samples": 6,
+            "run.rtol": 1e-12,
+        }
+    )
+    solution = run(scene)
+    speeds = solution.samples["gear_speed"]
+    told = {1: 2865.448535, 2: 2978.889511, 4: 2998.071011, 5: 3062.433161}
+    for sample, speed in told.items():
+        assert speeds[sample] == pytest.approx(speed, rel=0, abs=2e-6)
+    assert solution.samples["transmission_error"][5] == pytest.approx(8.846217969e-8, rel=2e-9, abs=0)
+    assert abs(solution.balance.residual) < 1e-9 * solution.balance.drive_work
+
+
+@pytest.mark.parametrize("changes", [{}, {"coating.sam_fraction": 0.0}, {"contact.model": "population"}])
+def test_the_balance_closes_with_friction(changes):
+    """To 1e-10 of the drive's work, at a tolerance of 1e-10; of populations to some times the error of located roots."""
+    scene = HIGH.replace(
+        {"contact.friction": 0.3, "run.duration": 50e-6, "run.samples": "off", "run.rtol": 1e-10, **changes}
+    )
+    balance = run(scene).balance
+    allowed = 1e-8 if "contact.model" in changes else 1e-10
+    assert abs(balance.residual) < allowed * balance.drive_work
+    assert friction_loss(balance) > 0.01 * balance.drive_work
+
+
+MATERIALS = {"coating.sam_fraction": 0.5, "contact.friction": 0.3, "coating.friction": 0.1}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"contact.friction": 0.3}, MATERIALS, {**HUBS, "contact.friction": 0.3}],
+    ids=["flanks", "materials", "hubs"],
+)
+def test_both_drivers_agree(changes):
+    """With the same formulas to the last bit; other formulas differ by some tolerances over 10,000 steps."""
+    scene = HIGH.replace({"run.duration": 20e-6, "run.samples": 3, "run.rtol": 1e-8, **changes})
+    native = run(scene)
+    ida, portable = run(scene.replace({"run.method": "bdf"})), run(scene, "sksundae")
+    assert ida.samples["gear_speed"][-1] == portable.samples["gear_speed"][-1]
+    np.testing.assert_allclose(ida.samples["gear_speed"], portable.samples["gear_speed"], rtol=1e-9)
+    assert kinds(ida) == kinds(portable)
+    np.testing.assert_allclose(native.samples["gear_speed"], ida.samples["gear_speed"], rtol=1e-6)
+    balance = native.balance
+    assert abs(balance.residual) < balance.bound(1e-8, roller=False)
+    assert (
+        (balance.pinion_hub_loss > 0.0) == (balance.gear_hub_loss > 0.0) == ("gears.hub_friction" in changes)
+    )
+
+
+def test_materials_of_equal_friction_are_one():
+    """The limit of several materials is computed by tables of its own, that of equal ones from the force."""
+    scene = HIGH.replace(
+        {"coating.sam_fraction": 0.5, "run.duration": 20e-6, "run.samples": 3, "run.rtol": 1e-9}
+    )
+    same = run(scene.replace({"contact.friction": 0.3}))
+    nearly = run(scene.replace({"contact.friction": 0.3, "coating.friction": 0.3 * (1.0 + 1e-12)}))
+    np.testing.assert_allclose(nearly.samples["gear_speed"], same.samples["gear_speed"], rtol=1e-8)
+
+
+def test_sliding_turns_round_or_rolls_once_a_pitch():
+    scene = HIGH.replace({"contact.friction": 0.1, "mesh.damping": 7e-6, "run.samples": "off"})
+    solution = run(scene.replace({"run.duration": 200e-6}))
+    found = [one for one, flank in zip(kinds(solution), solution.events.flank, strict=True) if flank == 0]
+    exits = found.count(EventKind.MESH_EXIT)
+    begun = found.count(EventKind.FLANK_STICK) + found.count(EventKind.SLIDING_REVERSAL)
+    assert 6 <= exits <= 7
+    assert exits - 1 <= begun <= exits + 1
+    assert abs(found.count(EventKind.FLANK_SLIP) - found.count(EventKind.FLANK_STICK)) <= 1
+
+
+# -- rest ------------------------------------------------------------------------------------------------------------
+
+
+def standing(changes, gap=10e-9, phase=0.3):
+    """A model of gears that stand still, and its state."""
+    scene = HIGH.replace(
+        {
+            "initial.gear_speed": 0.0,
+            "initial.gap": gap,
+            "initial.mesh_phase": phase,
+            "coating.sam_fraction": 0.0,
+        }
+    ).replace(changes)
+    problem = make_problem(scene)
+    return problem.model, problem.start
+
+
+def acceleration(m, y, torques):
+    """Accelerations of u and of the gear at rest under torques on pinion and gear, and whether friction holds both."""
+    for shaft, torque in enumerate(torques):
+        m.scene.torque[shaft].constant = torque
+    state, rates = y.copy(), np.zeros_like(y)
+    begin_sliding(m, 0.0, state)
+    set_rates(m, 0.0, state, rates)
+    return rates, int(m.state.hold) == AT_REST
+
+
+def margins(m, y, mu, hub):
+    """Distances from the bounds of rest of the written inequalities: two pairs, dry resistance and the pinion's hub.
+
+    Times radii, in the unit of force of the scene.
+    """
+    _, q1, q2 = forces_at_shafts(m, 0.0, y)
+    s = m.scene
+    c = 1.0 / float(s.sum_curvature)
+    noted = m.work.notes.pair[: m.work.notes.count]
+    # levers in base pitches: torques over base radii times radii
+    a, b = float(s.pinion_radius / s.base_pitch), float(s.gear_radius / s.base_pitch)
+    place = [float(one["position"]) for one in noted]
+    limit = [mu * float(one["force"]) for one in noted]
+    r1 = [float(s.start_radius) + one for one in place]
+    dry = float(s.torque[1].constant) * b
+    h1 = hub * math.hypot(sum(one["force"] for one in noted), 0.0) * a
+    q1, q2 = float(q1) * a, float(q2) * b
+    found = []
+    for i in range(len(place)):
+        held = sum(limit[j] * abs(place[j] - place[i]) for j in range(len(place)))
+        found.append(c * held + r1[i] * dry + (c - r1[i]) * h1 - abs((c - r1[i]) * q1 + r1[i] * q2))
+    found.append(sum(one * r for one, r in zip(limit, r1, strict=True)) + h1 - abs(q1))
+    if hub > 0.0:
+        found.append(sum(one * (c - r) for one, r in zip(limit, r1, strict=True)) + dry - abs(q2))
+    return found
+
+
+@pytest.mark.parametrize("hub", [0.0, 0.02])
+def test_gears_stay_at_rest_inside_the_zonotope_and_move_outside(hub):
+    """1,000 random torques against the inequalities as they are written for pairs, dry resistance and a hub."""
+    mu, inside = 0.3, 0
+    changes = {"contact.friction": mu}
+    if hub > 0.0:
+        changes |= {"gears.hub_friction": 0.5, "gears.pinion_hub_radius": hub / 0.5 * R1}
+    m, y = standing(changes)
+    forces_at_shafts(m, 0.0, y)
+    load = float(sum(one["force"] for one in m.work.notes.pair[: m.work.notes.count]))
+    assert m.work.notes.count >= 2
+    rng = np.random.default_rng(1)
+    for _ in range(1000):
+        dry = load * rng.uniform(0.8, 1.1)
+        rates, held = acceleration(m, y, (load * rng.uniform(0.8, 1.2), dry))
+        worst = min(margins(m, y, mu, hub))
+        if abs(worst) < 1e-9 * load:
+            continue
+        inside += worst > 0.0
+        assert held == (worst > 0.0)
+        assert (not rates.any()) == (worst > 0.0)
+    assert 100 < inside < 900
+
+
+def test_what_begins_to_move_from_rest_meets_gauss_principle():
+    """The constraint of the accelerations found is no larger than that of accelerations around them."""
+    mu = 0.3
+    m, y = standing({"contact.friction": mu})
+    forces_at_shafts(m, 0.0, y)
+    load = float(sum(one["force"] for one in m.work.notes.pair[: m.work.notes.count]))
+    a1, a2 = float(m.scene.pinion_inverse_mass), float(m.scene.gear_inverse_mass)
+    rng = np.random.default_rng(2)
+    for _ in range(200):
+        dry = load * rng.uniform(0.0, 0.5)
+        rates, _ = acceleration(m, y, (load * rng.uniform(-1.0, 3.0), dry))
+        _, q1, q2 = forces_at_shafts(m, 0.0, y)
+        noted = m.work.notes.pair[: m.work.notes.count]
+        r1 = [float(m.scene.start_radius + one["position"]) for one in noted]
+        own = m.scene.friction
+        elements = [
+            (own.pinion_lever * r, -own.gear_lever * (own.radii - r), mu * float(one["force"]))
+            for r, one in zip(r1, noted, strict=True)
+        ] + [(0.0, 1.0, dry)]
+
+        def constraint(pinion, gear, q1=q1, q2=q2, elements=elements):
+            held = sum(limit * abs(x * pinion + z * gear) for x, z, limit in elements)
+            return 0.5 * (pinion - a1 * q1) ** 2 / a1 + 0.5 * (gear - a2 * q2) ** 2 / a2 + held
+
+        pinion, gear = rates[V] + rates[W], rates[W]
+        least = constraint(pinion, gear)
+        for angle in np.linspace(0.0, 2.0 * np.pi, 24):
+            for far in (1e-3, 1e-1):
+                other = constraint(pinion + far * load * np.cos(angle), gear + far * load * np.sin(angle))
+                assert other >= least - 1e-12 * load * load
+
+
+def test_a_train_held_by_friction_does_not_move_at_all():
+    """Pairs on both sides of the pitch point hold half the torque that balances, to the last bit; with the whole they slip."""
+    m, y = standing({"contact.friction": 0.5})
+    forces_at_shafts(m, 0.0, y)
+    load = float(sum(one["force"] for one in m.work.notes.pair[: m.work.notes.count]))
+    balanced = load * float(m.scene.force_unit)
+    scene = HIGH.replace(
+        {
+            "initial.gear_speed": 0.0,
+            "initial.gap": 10e-9,
+            "coating.sam_fraction": 0.0,
+            "contact.friction": 0.5,
+            "contact.model": "asperity",
+            "drive.harmonic": None,
+            "load.torque": balanced * R2 * 0.98,
+            "drive.torque": balanced * R1,
+            "run.duration": 20e-6,
+            "run.samples": 21,
+        }
+    )
+    held = run(scene)
+    for name in ("gear_speed", "pinion_speed"):
+        assert not held.samples[name].any()
+    assert np.unique(held.samples["transmission_error"]).size == 1
+    assert held.statistics.steps < 100
+    moved = run(scene.replace({"drive.torque": 2.0 * balanced * R1}))
+    assert abs(moved.samples["gear_speed"][-1]) > 0.0
+
+
+def test_hubs_bound_the_torque_that_starts_a_gear():
+    """M1 = M2 (R1 + mu r1) / (R2 - mu r2), 7.7955e-12 N m: under a slow ramp, at the slip of the gear.
+
+    The ramp lasts some 100 times as long as the damped vibration; 1e-3 is what it leaves.
+    """
+    start = 7.7955e-12
+    scene = HIGH.replace(
+        {
+            **HUBS,
+            "initial.gear_speed": 0.0,
+            "initial.gap": 25e-9,
+            "mesh.damping": 1e-4,
+            "drive.harmonic": None,
+            "drive.torque": 0.0,
+            "drive.schedule": {"time": [0.0, 2e-5, 4e-4], "value": [0.5 * start, 0.98 * start, 1.02 * start]},
+            "load.drag": 0.0,
+            "run.duration": 4e-4,
+            "run.samples": 3,
+        }
+    )
+    solution = run(scene)
+    slips = solution.events.time[solution.events.kind == EventKind.SLIP]
+    assert slips.size
+    torque = np.interp(slips[-1], [2e-5, 4e-4], [0.98 * start, 1.02 * start])
+    assert torque == pytest.approx(start, rel=1e-3, abs=0)
+
+
+# -- properties ------------------------------------------------------------------------------------------------------
+
+
+@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    gap=st.floats(-6e-9, 30e-9),
+    phase=st.floats(0.0, 1.0),
+    v=st.floats(-5.0, 5.0),
+    w=st.floats(-20.0, 20.0),
+    coast=st.booleans(),
+)
+def test_friction_never_gives_power(gap, phase, v, w, coast):
+    """At any state, of each flank and hub, with the directions of slip that belong to it."""
+    m, start = _POWERS
+    y = start.copy()
+    y[U] = float(m.scene.half_backlash) - gap / float(m.scene.length_unit)
+    if coast:
+        y[U] = -y[U]
+    y[PHASE], y[V], y[W] = phase, v, w
+    for history in m.state.history:
+        history["pair"] = -(2**62)
+    m.state.near[:] = 0
+    _accept(m, y)
+    begin_sliding(m, 0.0, y)
+    note_rubbing(m, 0.0, y)
+    assert (m.work.rubbing.power >= -1e-12).all()
+    flank = 1 if coast else 0
+    assert m.work.rubbing.power[1 - flank] == 0.0
+
+
+def _accept(m, y):
+    accept(m, 0.0, y)
+
+
+_POWERS = standing({**HUBS, "contact.friction": 0.4})
+
+
+@settings(deadline=None, max_examples=12, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    mu=st.floats(0.01, 1.2),
+    hub=st.floats(0.0, 0.5),
+    f=st.floats(0.0, 1.0),
+    speed=st.sampled_from([0.0, 30.0, 2898.0, -500.0]),
+    gap=st.floats(5e-9, 150e-9),
+    population=st.booleans(),
+)
+def test_random_scenes_close_their_balance(mu, hub, f, speed, gap, population):
+    changes = {
+        "contact.friction": mu,
+        "coating.sam_fraction": f,
+        "initial.gear_speed": speed,
+        "initial.gap": gap,
+        "run.duration": 10e-6,
+        "run.samples": "off",
+        "contact.model": "population" if population else "asperity",
+    }
+    if hub > 1e-3:
+        changes |= {**HUBS, "gears.hub_friction": hub}
+    solution = solve(HIGH.replace(changes), backend="native")
+    balance = solution.balance
+    assert solution.status == "finished"
+    assert abs(balance.residual) <= balance.bound(1e-6, roller=False)
+    for name in ("drive_friction_loss", "coast_friction_loss", "pinion_hub_loss", "gear_hub_loss"):
+        assert getattr(balance, name) >= -1e-12 * balance.throughput
+
+
+# -- runs that go on -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+@pytest.mark.parametrize("model", ["asperity", "population"])
+def test_a_resumed_run_is_equal_to_the_last_bit(backend, model):
+    scene = HIGH.replace(
+        {
+            **HUBS,
+            "contact.friction": 0.3,
+            "contact.model": model,
+            "coating.sam_fraction": 0.5,
+            "run.duration": 20e-6,
+            "run.samples": 21,
+            "run.checkpoints": [4e-6, 1.55e-5],
+        }
+    )
+    blocks = []
+    ended = follow(scene, lambda block, *_: blocks.append(block), backend=backend)
+    kept = [k for k, block in enumerate(blocks) if block.checkpoint is not None][:-1]
+    assert len(kept) == 2
+    for k in kept:
+        more = []
+        start = Start(checkpoint=blocks[k].checkpoint, reached=blocks[k].time)
+        done = follow(scene, lambda block, *_, more=more: more.append(block), backend=backend, start=start)
+        for name in ("rows", "events"):
+            ours, theirs = (
+                np.concatenate([getattr(one, name) for one in part]) for part in (more, blocks[k + 1 :])
+            )
+            assert np.array_equal(ours, theirs)
+        assert (done.balance, done.extremes) == (ended.balance, ended.extremes)
+
+
+def test_a_run_goes_on_from_another_with_and_without_friction():
+    first = HIGH.replace(
+        {
+            "coating.friction": 0.3,
+            "run.duration": 15e-6,
+            "run.samples": 16,
+            "run.rtol": 1e-9,
+        }
+    )
+    begin = end_of(first, run(first).checkpoint, 0.0)
+    more = {"run.duration": 5e-6, "run.samples": 6}
+    whole = run(first.replace({"run.duration": 20e-6, "run.samples": 21}))
+    same = solve(first.replace(more), start=begin)
+    np.testing.assert_allclose(same.samples["gear_speed"], whole.samples["gear_speed"][15:], rtol=1e-7)
+    without = solve(first.replace(more | {"coating.friction": 0.0}), start=begin)
+    assert without.status == "finished"
+    assert without.balance.drive_friction_loss == run(first).balance.drive_friction_loss
+    assert without.samples["gear_speed"][-1] > same.samples["gear_speed"][-1]
+    plain = first.replace({"coating.friction": 0.0})
+    rubbed = solve(first.replace(more), start=end_of(plain, run(plain).checkpoint, 0.0))
+    assert rubbed.balance.drive_friction_loss > 0.0
