@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from gearidae.mesh import curvature_radii, friction, mesh_geometry
@@ -109,3 +109,28 @@ def test_a_hub_locks():
     assert friction.hub_starting_torque(PAPER, RESISTANCE, 0.0, (3e-6, 6e-6)) == pytest.approx(
         RESISTANCE * 19 / 76, rel=1e-12, abs=0.0
     )
+
+
+@settings(max_examples=25)
+@given(pairs(), st.floats(0.0, 0.5), st.floats(0.0, 0.5))
+@example(PAPER, 0.3, 0.3)
+def test_the_worst_place_to_start_from(geometry, coefficient, hub):
+    """No place of a grid is worse, some of the preset's is nearly as bad, and hubs alone give their closed form."""
+    r1, r2, pitch = geometry.base_radius_pinion, geometry.base_radius_gear, geometry.base_pitch
+    hubs = (0.1 * r1, 0.05 * r2)
+    found = friction.starting_ratio(geometry, coefficient, hub, hubs)
+    ratios = []
+    for newest in np.linspace(0.0, pitch, 301)[1:-1]:
+        places = np.arange(newest, geometry.path_length, pitch)
+        pinion, gear, reduced = curvature_radii(geometry, places)
+        share = np.sqrt(reduced) / np.sqrt(reduced).sum()
+        f = coefficient * np.sign(places - geometry.approach) * share
+        carried = math.hypot(1.0, f.sum())
+        ratios.append(
+            (r1 + f @ pinion + hub * hubs[0] * carried) / (r2 + f @ gear - hub * hubs[1] * carried)
+        )
+    assert found >= max(ratios) * (1.0 - 1e-5)
+    if geometry is PAPER:  # others may have the worst place in a piece that the grid misses
+        assert found == pytest.approx(max(ratios), rel=1e-3)
+    alone = friction.starting_ratio(geometry, 0.0, hub, hubs)
+    assert alone == pytest.approx(friction.hub_starting_torque(geometry, 1.0, hub, hubs), rel=1e-12)

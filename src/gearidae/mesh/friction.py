@@ -216,25 +216,70 @@ def hub_starting_torque(
     return unrubbed / share if share > 0.0 else math.inf
 
 
+def starting_ratio(
+    geometry: Geometry, coefficient: float, hub_coefficient: float, hub_radii: tuple[float, float]
+) -> float:
+    """Torque of the pinion over the resistance of the gear that it overcomes at the worst place of the mesh, from rest.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Of the gear pair.
+    coefficient, hub_coefficient : float
+        Of flanks and hubs, below those that lock.
+    hub_radii : tuple of float
+        Radii of the hubs of pinion and gear [m].
+
+    Returns
+    -------
+    float
+        Largest ``(R1 + sum f r1 + mu_h r_h1 N) / (R2 + sum f r2 - mu_h r_h2 N)`` over a base pitch with
+        ``f_i = sgn(D_i) mu s_i`` and the force ``N = sqrt(1 + (sum f)^2)`` in the hubs, to 1e-5; infinite where it
+        locks.
+    """
+    inner = np.linspace(-1.0 + 1e-12, 1.0 - 1e-12, 129)  # forces jump at the ends of a piece
+    _, share, beyond, radii = _laid_out(geometry, inner, equal_shares=False)
+    rubbed = coefficient * np.sign(beyond) * share
+    carried = np.hypot(1.0, rubbed.sum(axis=0))
+    pinion = geometry.base_radius_pinion + (rubbed * radii[0]).sum(axis=0)
+    gear = geometry.base_radius_gear + (rubbed * radii[1]).sum(axis=0)
+    pinion = pinion + hub_coefficient * hub_radii[0] * carried
+    gear = gear - hub_coefficient * hub_radii[1] * carried
+    return float((pinion / gear).max()) if (gear > 0.0).all() else math.inf
+
+
 def _over_pitch(
     geometry: Geometry,
     value: Callable[[Floats, Floats, tuple[Floats, Floats]], Floats],
     *,
     equal_shares: bool,
 ) -> float:
-    """Integrate over the newest pair's place in a base pitch a value of shares, distances and radii of all pairs.
+    """Integrate over the newest pair's place in a base pitch a value of shares, distances and radii of all pairs."""
+    half, *there = _laid_out(geometry, _POINTS, equal_shares=equal_shares)
+    return float((half * _WEIGHTS).ravel() @ value(*there))
 
-    Gauss-Legendre between the places where a pair passes the pitch point or leaves the path: the integrand is smooth
-    in between, and the error is rounding.
+
+def _laid_out(
+    geometry: Geometry, nodes: Floats, *, equal_shares: bool
+) -> tuple[Floats, Floats, Floats, tuple[Floats, Floats]]:
+    """Lay nodes on -1..1 between the places where a pair passes the pitch point or leaves the path.
+
+    Returns
+    -------
+    half : ndarray, shape (pieces, 1)
+        Half the length of each piece of the base pitch [m]: what changes with the place is smooth inside.
+    share, beyond : ndarray, shape (pairs, pieces * nodes)
+        Share of the force of each pair, and its distance from the pitch point [m].
+    radii : tuple of ndarray, the same shape
+        Radii of curvature of pinion and gear [m].
     """
     pitch, length = geometry.base_pitch, geometry.path_length
     behind = pitch * np.arange(math.ceil(length / pitch))
     ends = np.concatenate([[0.0, pitch], geometry.approach - behind, length - behind])
     ends = np.unique(ends[(ends >= 0.0) & (ends <= pitch)])
     half = 0.5 * np.diff(ends)[:, None]
-    newest = (ends[:-1, None] + half * (1.0 + _POINTS)).ravel()
+    newest = (ends[:-1, None] + half * (1.0 + nodes)).ravel()
     places = newest + behind[:, None]
     pinion, gear, reduced = curvature_radii(geometry, places)
     share = (places < length) * (1.0 if equal_shares else np.sqrt(reduced))
-    share = share / share.sum(axis=0)
-    return float((half * _WEIGHTS).ravel() @ value(share, places - geometry.approach, (pinion, gear)))
+    return half, share / share.sum(axis=0), places - geometry.approach, (pinion, gear)
