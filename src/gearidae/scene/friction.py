@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from gearidae.asperities.area import AREAS
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 
@@ -102,6 +103,12 @@ def _check_law(scene: Scene) -> None:
     """Refuse a law without its values, and values of the other law."""
     contact, coating = scene.contact, scene.coating
     if contact.friction_law == "shear":
+        if contact.asperity not in AREAS:
+            raise SceneError(
+                "contact.friction_law",
+                "shear",
+                f"needs the contact area of an asperity: contact.asperity must be one of {', '.join(AREAS)}",
+            )
         if contact.shear_strength == 0.0 and not coating.shear_strength:
             raise SceneError(
                 "contact.shear_strength", 0.0, "must be above 0 with contact.friction_law = shear"

@@ -294,7 +294,7 @@ def record_sliding(m: Model, t: float, events: Floats, count: int) -> int:
     found = m.work.rubbing
     for i in range(found.happened):
         kind, k = found.event[i].kind, found.event[i].history
-        if kind == _GEAR_STICK or kind == _GEAR_SLIP:
+        if kind in (_GEAR_STICK, _GEAR_SLIP):
             count = record(m, events, count, t, kind, 0, _NO_FLANK, 0.0)
         else:
             h = m.state.history[k]

@@ -19,6 +19,7 @@ from gearidae.engine.population.layout import (
     ARC,
     HEIGHT,
     JOINED,
+    K_AREA,
     K_ENERGY,
     K_FRICTION,
     K_LOAD,
@@ -86,7 +87,7 @@ def _sums(m: Model, k: int, now: Pair) -> Sums:
             stiffness_d += s * d
             stiffness_dd += s * d * d
         if rubs:
-            p, s = candidate_limit(m, int(m.rows[kinds + j]), p, s)
+            p, s = candidate_limit(m, int(m.rows[kinds + j]), overlap, p, s)
             limit += p
             limit_stiffness += s
             if now.moves:
@@ -105,9 +106,15 @@ def _sums(m: Model, k: int, now: Pair) -> Sums:
 
 
 @compiled(inline=True)
-def candidate_limit(m: Model, kind: int, load: float, stiffness: float) -> tuple[float, float]:
-    """Limit of the friction of a joined asperity and its stiffness: of its load, the coefficient of its kind."""
+def candidate_limit(
+    m: Model, kind: int, overlap: float, load: float, stiffness: float
+) -> tuple[float, float]:
+    """Limit of the friction of a joined asperity and its stiffness, from its load or its area, as its kind has it."""
     share = m.tables[kind + K_FRICTION]
+    if m.scene.friction.shear != 0:
+        scale = m.tables[kind + K_SCALE]
+        area, slope = asperity_value(m.tables, int(m.tables[kind + K_AREA]), scale * overlap)
+        return share * area, share * scale * slope
     return share * load, share * stiffness
 
 

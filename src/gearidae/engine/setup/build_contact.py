@@ -25,10 +25,9 @@ from gearidae.contact.kernels.law import (
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
 from gearidae.engine.model.state import MATERIALS, Record
-from gearidae.engine.setup.build_friction import rubs
+from gearidae.engine.setup.build_friction import Limits, rubs
 from gearidae.engine.setup.tables import Tables
 from gearidae.scene import Material, Scene
-from gearidae.scene.friction import friction_values
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
@@ -93,10 +92,10 @@ def add_contact(
     _add_coverage(s, tables, scene)
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
-    loading, potential, limit = np.zeros((3, MATERIALS, 8 * N_LOADING))
-    values = friction_values(scene)
+    loading, potential = np.zeros((2, MATERIALS, 8 * N_LOADING))
+    limits = Limits(scene, kernel)
     longest = 0
-    for material, (surface, share, offset, name) in enumerate(_parts(scene)):
+    for material, (surface, share, offset, _) in enumerate(_parts(scene)):
         own, tip = s.material[material], asperity_of(surface)
         own.gap_offset = offset / surface.roughness
         law = law_of(scene.contact.asperity, surface)
@@ -113,15 +112,14 @@ def add_contact(
         if share > 0.0:
             push, stored = loading_pieces(law, kernel, float(own.gap_offset))
             loading[material], potential[material] = force * push, force * stored
-            limit[material] = values[name] * loading[material]
+            limits.add(s, tables, material, surface, law)
             for floor, gap in reach.items():
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
                 reach[floor] = max(gap, widest_gap - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
     if s.by_place == 0:  # shares that never change are mixed once
         loading, potential = loading.sum(axis=0), potential.sum(axis=0)
-    if len({values[one.name] for one in _parts(scene) if one.share > 0.0}) > 1:
-        s.friction.loading_at = tables.add((limit.sum(axis=0) if s.by_place == 0 else limit).ravel())
+    limits.finish(s, tables)
     s.loading_at, s.potential_at = tables.add(loading.ravel()), tables.add(potential.ravel())
     s.branch_length, s.point_branch_length = (0, longest) if s.nodes > 0 else (longest, 0)
 

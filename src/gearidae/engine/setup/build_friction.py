@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from gearidae.asperities import AsperityLaw
+from gearidae.asperities.area import ContactArea
+from gearidae.asperities.tip import asperity_of
+from gearidae.contact.kernels.energy import loading_pieces
+from gearidae.contact.kernels.law import N_LOADING, Kernel, law_table
 from gearidae.engine.model.state import MATERIALS, Record
-from gearidae.errors import SceneError
+from gearidae.engine.setup.tables import Tables
 from gearidae.mesh.involute import Geometry
-from gearidae.scene import MATERIAL_NAMES, Gears, Scene
+from gearidae.scene import MATERIAL_NAMES, Gears, Scene, Surface
 from gearidae.scene.friction import friction_values, has_flank_friction, has_hub_friction
 
 
@@ -38,11 +45,51 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
     own.cosine, own.sine = math.cos(2.0 * gears.pressure_angle), math.sin(2.0 * gears.pressure_angle)
     if own.flanks == 0:
         return
-    if scene.contact.friction_law == "shear":
-        raise SceneError("contact.friction_law", "shear", "is not available yet: must be net")
+    own.shear = int(scene.contact.friction_law == "shear")
     values, shares = friction_values(scene), {one.name: one.share for one in scene.materials()}
     there = {values[name] for name in MATERIAL_NAMES if shares.get(name, 0.0) > 0.0}
-    own.even = there.pop() if len(there) == 1 else 0.0
-    for material in range(MATERIALS):
-        own.scale[material] = values[MATERIAL_NAMES[material]] * float(s.material[material].force_scale)
-        own.table_at[material] = s.material[material].table_at
+    own.even = there.pop() if len(there) == 1 and own.shear == 0 else 0.0
+
+
+class Limits:
+    """Laws of the limits of a mean law's materials, laid out beside those of the forces.
+
+    Parameters
+    ----------
+    scene : Scene
+    kernel : {"line", "plane"}
+        As for `gearidae.contact.kernels.law.law_table`.
+    """
+
+    def __init__(self, scene: Scene, kernel: Kernel) -> None:
+        self._kernel, self._values = kernel, friction_values(scene)
+        self._shear = scene.contact.friction_law == "shear"
+        self._needed = has_flank_friction(scene)
+        self._loading = np.zeros((MATERIALS, 8 * N_LOADING))
+
+    def add(self, s: Record, tables: Tables, material: int, surface: Surface, law: AsperityLaw) -> None:
+        """Add those of a material that the flanks have, whose force law has been laid out."""
+        own, force = s.friction, s.material[material]
+        value = self._values[MATERIAL_NAMES[material]]
+        if not self._needed or value == 0.0:
+            return
+        own.table_at[material], own.scale[material] = force.table_at, value * float(force.force_scale)
+        if self._shear:
+            law = ContactArea(law)
+            # the unit of force of the law is that of a compression of sigma; that of the area is pi beta sigma
+            area = value * math.pi * surface.asperity_radius * surface.roughness
+            own.scale[material] = area * float(force.force_scale) / hertz_unit(surface)
+            own.table_at[material] = tables.add(law_table(law, self._kernel))
+        loading = loading_pieces(law, self._kernel, float(force.gap_offset))[0]
+        self._loading[material] = own.scale[material] * loading
+
+    def finish(self, s: Record, tables: Tables) -> None:
+        """Lay out the loading branch, of all materials together where their shares do not change."""
+        if self._needed:
+            mixed = self._loading.sum(axis=0) if s.by_place == 0 else self._loading
+            s.friction.loading_at = tables.add(mixed.ravel())
+
+
+def hertz_unit(surface: Surface) -> float:
+    """Load of an asperity without adhesion at a compression of the roughness [N]."""
+    return asperity_of(surface).hertz_factor * surface.roughness**1.5

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.asperities import AsperityLaw, law_of_tip
+from gearidae.asperities.area import ContactArea
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.layout import GAP_LOW
 from gearidae.contact.kernels.single import asperity_table
@@ -106,7 +108,10 @@ def _kinds(
         tip = asperity_of(one.surface.model_copy(update={"asperity_radius": float(radius)}))
         unit = tip.stretch_limit if tip.stretch_limit > 0.0 else sigma
         law = law_of_tip(scene.contact.asperity, tip, unit)
-        tips.append((law, tip.hertz_factor, unit, one.gap_offset, friction[one.name]))
+        strength = (
+            math.pi * float(radius) / float(s.force_unit)
+        )  # times the unit of length and the shear strength
+        tips.append((law, tip.hertz_factor, unit, one.gap_offset, friction[one.name], strength))
         reach[law] = max(reach.get(law, 0.0), highest * sigma / unit)
         if len(reach) > MOST_LAWS:
             raise SceneError(
@@ -116,7 +121,11 @@ def _kinds(
             )
     places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
     numbers = np.empty((pairs.size, KINDS))
-    for row, (law, factor, unit, offset, value) in enumerate(tips):
+    shear = scene.contact.friction_law == "shear"
+    areas = {
+        law: tables.add(asperity_table(ContactArea(law), far)) if shear else 0 for law, far in reach.items()
+    }
+    for row, (law, factor, unit, offset, value, strength) in enumerate(tips):
         load, join, detach = factor * unit**1.5, law.join * unit / sigma, law.detach * unit / sigma
         numbers[row] = (
             places[law],
@@ -126,6 +135,7 @@ def _kinds(
             join,
             detach - RELEASED * (detach - join),
             offset / sigma,
-            value,
+            strength * unit * value if shear else value,
+            areas[law],
         )
     return numbers, kinds
