@@ -6,9 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import gearidae as gd
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact import line_force
+from gearidae.contact.psi import psi
 from gearidae.mesh.involute import curvature_radii
 from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
 from gearidae.runs.rubbing import flank_coefficient
@@ -67,11 +70,23 @@ def test_coefficients_of_two_materials_count_with_the_forces_that_they_carry():
     assert flank_coefficient(worn, load) == pytest.approx(wanted, rel=1e-5)
     assert flank_coefficient(worn.replace({"coating.friction": 0.4}), load) == 0.4
     assert flank_coefficient(HIGH, load) == 0.0
-    assert math.isnan(
-        flank_coefficient(
-            HIGH.replace({"contact.friction_law": "shear", "contact.shear_strength": 1e7}), load
-        )
+
+
+def test_shear_strength_over_pressure():
+    """Strength times area over force: of asperities without adhesion, both integrals of powers of the overlap."""
+    scene = HIGH.replace(
+        {"contact.asperity": "hertz", "contact.friction_law": "shear", "contact.shear_strength": 1e7}
     )
+    load, sigma, tip = 7e-7, 6e-9, asperity_of(scene.surface)
+    gap = resting_gap(scene) / sigma
+
+    def moment(power):
+        return quad(lambda x: x**power * psi(np.array(gap + x)), 0.0, 12.0, epsrel=1e-10)[0]
+
+    area = math.pi * tip.radius * sigma * moment(1.0)
+    force = tip.hertz_factor * sigma**1.5 * moment(1.5)
+    assert flank_coefficient(scene, load) == pytest.approx(1e7 * area / force, rel=1e-3)
+    assert math.isnan(flank_coefficient(scene, 0.0))
 
 
 def test_effective_mass():

@@ -127,7 +127,7 @@ def _friction(scene: Scene) -> Rows:
     if has_flank_friction(scene):
         loss = flank_loss(scene, mean_force(scene))
         if math.isnan(loss):
-            yield "lost to flank friction", "unknown", "the limit of the law shear is no multiple of the force"
+            yield "lost to flank friction", "unknown", "no mean torque presses the teeth together"
         else:
             yield "lost to flank friction", f"{100 * loss:.3g} %", "of the drive's work, at a constant force"
     if has_hub_friction(scene):

@@ -18,7 +18,7 @@ from scipy.optimize import brentq, minimize_scalar
 from gearidae.arrays import Floats
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of
-from gearidae.contact.line import line_force
+from gearidae.contact.line import line_area, line_force
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 
@@ -75,6 +75,16 @@ class PairContact:
     def part_forces(self, gap: float) -> list[float]:
         """Forces of the parts [N] at a gap [m] of approaching flanks."""
         return [float(self._part_force(part, gap, 0.0)) for part in self.parts]
+
+    def part_areas(self, gap: float) -> list[float]:
+        """Contact areas of the parts [m^2] at a gap [m] of approaching flanks, of a law that has one."""
+        return [
+            part.share
+            * float(
+                line_area(gap + part.gap_offset, 0.0, self.radius, self.width, part.surface, self.law)
+            )
+            for part in self.parts
+        ]
 
     def _part_force(self, part: Material, gap: ArrayLike, stretch: ArrayLike) -> Floats:
         surface, law = part.surface, self.law

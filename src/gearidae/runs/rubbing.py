@@ -27,27 +27,24 @@ def flank_coefficient(scene: Scene, load: float) -> float:
     -------
     float
         Of materials with different coefficients, the mean by the forces that they carry at the pair's resting gap, 0 or
-        more; by their shares where no gap carries the load. NaN for the law ``shear``, whose limit is no multiple
-        of the force.
+        more; by their shares where no gap carries the load. Of the law ``shear``, strength times area over the force
+        there; NaN where no gap carries the load.
     """
     if not has_flank_friction(scene):
         return 0.0
-    if scene.contact.friction_law != "net":
-        return math.nan
     values, contact = friction_values(scene), pair_contact(scene)
-    there = {values[part.name] for part in contact.parts}
-    if len(there) == 1:
-        return there.pop()
+    shear, there = scene.contact.friction_law == "shear", [values[part.name] for part in contact.parts]
+    if not shear and len(set(there)) == 1:
+        return there[0]
     gap = contact.resting_gap(load)
     if math.isnan(gap):
-        return sum(values[part.name] * part.share for part in contact.parts)
-    carried = contact.part_forces(gap)
-    rubbed = sum(values[part.name] * force for part, force in zip(contact.parts, carried, strict=True))
-    return max(rubbed / sum(carried), 0.0)
+        return math.nan if shear else sum(values[part.name] * part.share for part in contact.parts)
+    counted = contact.part_areas(gap) if shear else contact.part_forces(gap)
+    return max(sum(value * one for value, one in zip(there, counted, strict=True)) / load, 0.0)
 
 
 def flank_loss(scene: Scene, load: float) -> float:
-    """Share of the drive's work that friction of the flanks takes at a constant force [N]; NaN for the law ``shear``."""
+    """Share of the drive's work that friction of the flanks takes at a constant force [N]; NaN if nothing is known."""
     coefficient = flank_coefficient(scene, load)
     return loss_fraction(scene.geometry, coefficient) if coefficient != 0.0 else 0.0
 
@@ -65,7 +62,7 @@ def transmitted_share(scene: Scene, load: float) -> float:
     -------
     float
         What the flanks leave times what the hubs leave, 0 or more; flanks of the law ``shear`` count as without
-        friction.
+        friction where no gap carries the force.
     """
     assert scene.gears is not None
     loss = flank_loss(scene, load)
