@@ -156,7 +156,12 @@ def test_the_engine_moves_as_the_twin(seed, what):
 
 def test_listed_asperities_rub_as_in_the_twin():
     """Bare flanks with little play: each asperity that joins makes the limit jump."""
-    changes = {"contact.friction": 0.5, "coating.sam_fraction": 0.0, "mesh.backlash": 6e-8, "initial.gap": 2.4e-8}
+    changes = {
+        "contact.friction": 0.5,
+        "coating.sam_fraction": 0.0,
+        "mesh.backlash": 6e-8,
+        "initial.gap": 2.4e-8,
+    }
     scene = HIGH.replace({"contact.model": "population", "contact.asperities": LISTED} | changes)
     twin = RubbingGears(scene, ListedAsperities(scene, TEN, 0.5, surface=scene.surface))
     wanted = twin.run([1.2e-6], 1e-10)[:, 0]

@@ -84,7 +84,9 @@ def test_locking_is_where_a_torque_vanishes_and_nowhere_before(geometry):
     left = geometry.base_radius_gear - pinion_drives * gear[before]
     assert left[0] == pytest.approx(0.0, abs=1e-12 * geometry.base_radius_gear)
     assert (left[1:] > 0.0).all()
-    left = geometry.base_radius_pinion - gear_drives * pinion[after]  # slides the other way round: gear drives
+    left = (
+        geometry.base_radius_pinion - gear_drives * pinion[after]
+    )  # slides the other way round: gear drives
     assert left[-1] == pytest.approx(0.0, abs=1e-12 * geometry.base_radius_pinion)
     assert (left[:-1] > 0.0).all()
 
@@ -126,9 +128,7 @@ def test_the_worst_place_to_start_from(geometry, coefficient, hub):
         share = np.sqrt(reduced) / np.sqrt(reduced).sum()
         f = coefficient * np.sign(places - geometry.approach) * share
         carried = math.hypot(1.0, f.sum())
-        ratios.append(
-            (r1 + f @ pinion + hub * hubs[0] * carried) / (r2 + f @ gear - hub * hubs[1] * carried)
-        )
+        ratios.append((r1 + f @ pinion + hub * hubs[0] * carried) / (r2 + f @ gear - hub * hubs[1] * carried))
     assert found >= max(ratios) * (1.0 - 1e-5)
     if geometry is PAPER:  # others may have the worst place in a piece that the grid misses
         assert found == pytest.approx(max(ratios), rel=1e-3)

@@ -29,8 +29,8 @@ _RUBS = 1e-15
 def least_constraint(inertia, force, rows, drift, limits):
     """Accelerations of two bodies with elements at rest: Gauss's principle, all candidates tried.
 
-    Minimises ``sum I (a - Q/I)^2 / 2 + sum l abs(J . a + J' . w)``, which is strictly convex. Its minimum is where every
-    element slips (one candidate for each choice of signs), one sticks, or two stick.
+    Minimises ``sum I (a - Q/I)^2 / 2 + sum l abs(J . a + J' . w)``, which is strictly convex. Its minimum is where
+    every element slips (one candidate for each choice of signs), one sticks, or two stick.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def constraint(inertia, free, rows, drift, limits, a):
 
 
 def jkr(overlap):
-    """A^3 of JKR's stable branch at overlaps in stretch limits: ``12^(1/3) s^4 - (4/3) 18^(1/6) s``, ``s = sqrt(A)``."""
+    """A^3 of JKR's stable branch at overlaps in stretch limits, ``12^(1/3) s^4 - (4/3) 18^(1/6) s`` of s = sqrt(A)."""
     d = np.asarray(overlap, float)
     s = (np.maximum(d, 0.0) / 12 ** (1 / 3)) ** 0.25 + 1.0
     for _ in range(60):  # from the right of a convex function's root: monotone
@@ -157,7 +157,14 @@ class RubbingGears:
         phase = start.mesh_phase * pitch
         u = 0.5 * scene.mesh.backlash - start.gap
         self.t, self.y = 0.0, np.array([u, 0.0, phase / self.r2, start.gear_speed, 0.0, 0.0])
-        self.known, self.signs, self.stuck, self.flips, self.sticks, self.stick_time = set(), {}, (), 0, 0, 0.0
+        self.known, self.signs, self.stuck, self.flips, self.sticks, self.stick_time = (
+            set(),
+            {},
+            (),
+            0,
+            0,
+            0.0,
+        )
         self._at = None
 
     # -- geometry and forces -----------------------------------------------------------------------------------------
@@ -215,9 +222,7 @@ class RubbingGears:
         q = np.array(
             [
                 drive - self.r1 * mesh,
-                self.r2 * (mesh + along)
-                - scene.load.drag * w[1] * abs(w[1])
-                - scene.load.viscous * w[1],
+                self.r2 * (mesh + along) - scene.load.drag * w[1] * abs(w[1]) - scene.load.viscous * w[1],
             ]
         )
         state = {"w": w, "pairs": pairs, "q": q, "drive": drive, "force": force}
@@ -266,7 +271,9 @@ class RubbingGears:
             stuck = [k for k, key in enumerate(keys) if key in self.stuck]
             f = np.array(
                 [
-                    0.0 if key in self.stuck else self.signs.get(key, math.copysign(1.0, row @ state["w"])) * limit
+                    0.0
+                    if key in self.stuck
+                    else self.signs.get(key, math.copysign(1.0, row @ state["w"])) * limit
                     for key, row, limit in zip(keys, rows, limits, strict=True)
                 ]
             )
@@ -501,7 +508,9 @@ class ListedAsperities:
             by = x[held] * a1 / base / radius + x[held] ** 2 * (a2 - a1) / (a1 + a2) / (2.0 * radius**2)
             along = -float(loads @ by)
         if self.strength > 0.0:
-            area = (3.0 * self.radii[held] * self.pc[held] / (2.0 * self.modulus)) ** (2 / 3) * cube ** (2 / 3)
+            area = (3.0 * self.radii[held] * self.pc[held] / (2.0 * self.modulus)) ** (2 / 3) * cube ** (
+                2 / 3
+            )
             limit = self.strength * math.pi * float(area.sum())
         else:
             limit = self.coefficient * float(loads.sum())

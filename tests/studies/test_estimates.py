@@ -52,7 +52,11 @@ def test_steady_speed_with_friction_of_the_hubs():
     ratio = (138.86 - 0.3 * 6) / (34.715 + 0.3 * 3)
     wanted = math.sqrt((ratio * 2.43e-11 - 3e-11) / 8e-18)
     assert steady_speed(HIGH.replace(hubs)) == pytest.approx(wanted, rel=1e-12, abs=0)
-    held = hubs | {"drive.torque": 0.0, "drive.speed": 4.0 * wanted + 2.43e-11 / 1e-14, "drive.speed_gain": 1e-14}
+    held = hubs | {
+        "drive.torque": 0.0,
+        "drive.speed": 4.0 * wanted + 2.43e-11 / 1e-14,
+        "drive.speed_gain": 1e-14,
+    }
     assert steady_speed(HIGH.replace(held)) == pytest.approx(wanted, rel=1e-9, abs=0)
 
 

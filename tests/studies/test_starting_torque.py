@@ -114,7 +114,12 @@ def test_static_torque_with_friction():
     """Dry resistance alone: the ratio of the worst place; adhesion, too, is overcome through it."""
     hertz = gd.preset("teodorescu2009").replace({"contact.asperity": "hertz"})
     rubbing = hertz.replace(
-        {"contact.friction": 0.3, "gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
+        {
+            "contact.friction": 0.3,
+            "gears.hub_friction": 0.3,
+            "gears.pinion_hub_radius": 3e-6,
+            "gears.gear_hub_radius": 6e-6,
+        }
     )
     ratio = starting_ratio(hertz.geometry, 0.3, 0.3, (3e-6, 6e-6))
     assert static_starting_torque(hertz) == pytest.approx(3e-11 / 4, rel=1e-12, abs=0.0)

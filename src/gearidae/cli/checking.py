@@ -134,7 +134,11 @@ def _friction(scene: Scene) -> Rows:
         lost = 1.0 - hub_share(geometry, coefficient, radii)
         yield "lost to hub friction", f"{100 * lost:.3g} %", "of the drive's work"
         start = hub_starting_torque(geometry, scene.load.torque, coefficient, radii)
-        yield "starting torque", f"{start:.4g} N m", "of the pinion: dry resistance and hubs, without the teeth"
+        yield (
+            "starting torque",
+            f"{start:.4g} N m",
+            "of the pinion: dry resistance and hubs, without the teeth",
+        )
 
 
 def _roller(scene: Scene) -> Rows:

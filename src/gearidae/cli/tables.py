@@ -127,7 +127,10 @@ def _account_rows(told: dict[str, Any]) -> Iterable[tuple[str, Row]]:
     if told["largest_force"] is not None:
         yield row("largest_force", "largest force", "N", f"at {number('largest_force_time', 's')}")
     if told.get("friction_loss"):
-        yield "efficiency", ("efficiency", f"{100.0 * told['efficiency']:.4g} %", "drag and dry resistance over all losses")
+        yield (
+            "efficiency",
+            ("efficiency", f"{100.0 * told['efficiency']:.4g} %", "drag and dry resistance over all losses"),
+        )
 
 
 def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:

@@ -41,9 +41,9 @@ def sliding_integral(geometry: Geometry, *, equal_shares: bool = False) -> float
     Returns
     -------
     float
-        :math:`\int_0^{p_b} \sum s_i |D_i| \,\mathrm{d}\xi` [m^2] with the shares s of the pairs in mesh. Equal shares of
-        one or two pairs give :math:`p_b^2/2\,(1 - \varepsilon + \varepsilon_a^2 + \varepsilon_r^2)` if the second pair
-        never is in mesh on the same side of the pitch point.
+        :math:`\int_0^{p_b} \sum s_i |D_i| \,\mathrm{d}\xi` [m^2] with the shares s of the pairs in mesh. Equal shares
+        of one or two pairs give :math:`p_b^2/2\,(1 - \varepsilon + \varepsilon_a^2 + \varepsilon_r^2)` if the second
+        pair never is in mesh on the same side of the pitch point.
     """
 
     def distance(share: Floats, beyond: Floats, _: tuple[Floats, Floats]) -> Floats:
@@ -255,8 +255,8 @@ def _over_pitch(
     equal_shares: bool,
 ) -> float:
     """Integrate over the newest pair's place in a base pitch a value of shares, distances and radii of all pairs."""
-    half, *there = _laid_out(geometry, _POINTS, equal_shares=equal_shares)
-    return float((half * _WEIGHTS).ravel() @ value(*there))
+    half, share, beyond, radii = _laid_out(geometry, _POINTS, equal_shares=equal_shares)
+    return float((half * _WEIGHTS).ravel() @ value(share, beyond, radii))
 
 
 def _laid_out(

@@ -175,8 +175,8 @@ def mean_drive_torque(scene: Scene) -> float:
     -------
     float
         Mean over ``run.duration`` of the size of the constant part plus the schedule [N m]; of a drive that holds a
-        speed, what the load takes at that speed without friction; of one with a law, at least what the load takes at the
-        initial speed.
+        speed, what the load takes at that speed without friction; of one with a law, at least what the load takes at
+        the initial speed.
 
     Raises
     ------

@@ -80,9 +80,7 @@ class PairContact:
         """Contact areas of the parts [m^2] at a gap [m] of approaching flanks, of a law that has one."""
         return [
             part.share
-            * float(
-                line_area(gap + part.gap_offset, 0.0, self.radius, self.width, part.surface, self.law)
-            )
+            * float(line_area(gap + part.gap_offset, 0.0, self.radius, self.width, part.surface, self.law))
             for part in self.parts
         ]
 
