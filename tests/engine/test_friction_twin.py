@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog, minimize
 
 from gearidae.engine.backend import solve
+from gearidae.engine.followers.exposures.bins import ROWS
 from gearidae.records import EventKind
 from gearidae.scene import preset
 from reference.population import NUMBERS
@@ -145,9 +146,12 @@ def test_the_engine_moves_as_the_twin(seed, what):
     wanted = twin.run(times, 1e-9)
     solution = solve(scene.replace({"run.duration": 1e-5, "run.samples": 5, "run.rtol": 1e-10}))
     speed, u = (solution.samples[name][1:] for name in ("gear_speed", "transmission_error"))
-    np.testing.assert_allclose(speed, wanted[3], rtol=0.0, atol=1e-6 * np.abs(wanted[3]).max())
+    np.testing.assert_allclose(speed, wanted[3], rtol=0.0, atol=1e-12 + 1e-6 * np.abs(wanted[3]).max())
     np.testing.assert_allclose(u, wanted[0], rtol=0.0, atol=1e-6 * scene.surface.roughness)
-    assert (speed == 0.0).tolist() == (wanted[3] == 0.0).tolist(), what
+    rests = (
+        np.abs(wanted[3]) < 1e-12
+    )  # a gear that is held keeps rounding errors in the twin, and none in the engine
+    assert (speed == 0.0).tolist() == rests.tolist(), what
     balance = solution.balance
     # the engine adds powers up at its steps, the twin integrates them along
     assert balance.friction_loss + balance.dry_loss == pytest.approx(wanted[4, -1], rel=1e-5, abs=0.0)
@@ -171,3 +175,13 @@ def test_listed_asperities_rub_as_in_the_twin():
     balance = solution.balance
     assert balance.friction_loss + balance.dry_loss == pytest.approx(wanted[4], rel=1e-5, abs=0.0)
     assert (solution.events.kind == EventKind.ASPERITY_ONSET).sum() == 2
+
+
+def test_the_work_of_friction_is_the_coefficient_times_the_sliding_work():
+    """Sliding work leaves the normal vibration out of the sliding speed, which turns round: 2e-4 of it is left."""
+    scene = HIGH.replace({"contact.friction": 0.3, "contact.model": "asperity"})
+    solution = solve(scene.replace({"run.exposures": 8, "run.duration": 3e-4, "run.samples": "off"}))
+    table = np.array(solution.extremes.exposures).reshape(2, 19, ROWS.total, 8)
+    work = 0.3 * table[:, :, ROWS.sliding].sum(axis=(1, 2))
+    assert work[0] == pytest.approx(solution.balance.drive_friction_loss, rel=1e-3, abs=0.0)
+    assert work[1] == solution.balance.coast_friction_loss == 0.0

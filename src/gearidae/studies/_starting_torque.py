@@ -64,8 +64,8 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
         Torque on the pinion [N m]: the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
         `gearidae.studies.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20)`` with the ratio i of
         `gearidae.mesh.friction.starting_ratio`, friction of the flanks being that under the scene's own torque. What
-        the dry resistance takes (0 without one) if adhesion does not hold the gear even at the lowest torque; infinite if it
-        does at any.
+        the dry resistance takes (0 without one) if adhesion does not hold the gear even at the lowest torque; infinite
+        if it does at any.
 
     Raises
     ------
