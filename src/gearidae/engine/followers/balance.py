@@ -40,7 +40,6 @@ from gearidae.engine.events.dry_resistance import dry_guard
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.followers.joining import joining_lag
-from gearidae.engine.followers.rubbing import book_rubbing, note_rubbing
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import (
     Ends,
@@ -100,8 +99,6 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q.drive, q.drive_rate = _torque(m, DRIVE, t, y, q.pinion_speed, q.pinion_acceleration)
     q.load, q.load_rate = _torque(m, LOAD, t, y, y[W], yp[W])
     _sample_radius_power(m, t, y)
-    if m.scene.friction.on != 0:
-        note_rubbing(m, t, y)
 
 
 @compiled(inline=True)
@@ -126,8 +123,6 @@ def step(
     """
     if at[1] and _can_wait(m, t, y):
         return
-    if m.scene.friction.on != 0:
-        book_rubbing(m, t, y, at[1], between[0], between[1])
     now = at[0] or m.state.bound_exceeded != 0
     a, parts, start = m.work.adams, 1, m.work.quadrature.time
     if a.order_used > ORDER and in_flight(m) and m.scene.kind == GEARS:
@@ -186,8 +181,6 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
     q = m.work.quadrature
     if m.scene.dry != 0 and q.time == t:
         m.state.energy.dry_loss += q.kinetic - kinetic_energy(m, y)
-    if m.scene.friction.on != 0:
-        note_rubbing(m, t, y)
     if crossed or (joined and m.scene.nodes > 0 and m.scene.kind == GEARS):
         _sample_radius_power(m, t, y)
 

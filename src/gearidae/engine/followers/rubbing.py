@@ -11,6 +11,7 @@ from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral
 from gearidae.engine.friction.forces import Mesh, Shafts, solve_shafts
 from gearidae.engine.friction.pairs import direction, flank_of_history, lever_rate, levers
+from gearidae.engine.model.record_types import HELD_PAIR
 from gearidae.engine.model.state import COAST, Floats, Model, W
 from gearidae.engine.motion.shafts import forces_at_shafts
 
@@ -74,8 +75,9 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     """Add the losses since the last call, and note the powers here.
 
     The corrected trapezoidal rule is applied to the whole interval and to both halves, and extrapolated, where the
-    formula of the step gives the states in between. Before an asperity detaches, its load has an infinite rate: there
-    the powers at three points inside the interval are taken.
+    formula of the step gives the states in between. Rates are infinite before an asperity detaches, and not known of
+    the friction that holds a pair, on which that of hubs depends: there powers at three points inside the interval
+    are taken.
 
     Parameters
     ----------
@@ -93,7 +95,9 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     if h == 0.0:
         return
     first = _powers(m)
-    if root and a.order_used > 0 and m.scene.population.flanks != 0:
+    hubs = m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0
+    no_rates = (root and m.scene.population.flanks != 0) or (hubs and m.state.hold == HELD_PAIR)
+    if no_rates and a.order_used > 0:
         for point in range(3):
             then = start + (0.5 + (point - 1) * _OUTER) * h
             adams.between(a, then, between, rates)

@@ -6,7 +6,8 @@ two, which leaves two equations for the corrections of v and w; a roller keeps o
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import FRICTION
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import is_stuck, motion, slopes_with_friction
 
@@ -38,7 +39,7 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
         return abs(slope)
     of_phase, of_w = delta[PHASE], delta[W]
     if m.scene.friction.on != 0:
-        return _correct_with_friction(m, cj, y, delta, (force_u, force_phase, relief_u, relief_phase))
+        return _correct_with_friction(m, cj, y, delta, force_u, force_phase, relief_u, relief_phase)
     a1, turning, damping = m.scene.pinion_inverse_mass, m.scene.phase_rate, m.scene.damping
     a2 = 0.0 if is_stuck(m) else m.scene.gear_inverse_mass
     torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase
@@ -60,12 +61,19 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     return a1 * abs(force_u) + a2 * abs(torque_u) + slowing * slowing
 
 
-@compiled
+@compiled_once(FRICTION)
 def _correct_with_friction(
-    m: Model, cj: float, y: Floats, delta: Floats, slopes: tuple[float, float, float, float]
+    m: Model,
+    cj: float,
+    y: Floats,
+    delta: Floats,
+    force_u: float,
+    force_phase: float,
+    relief_u: float,
+    relief_phase: float,
 ) -> float:
-    """Solve the same equations with friction; `delta` has the residual, and `slopes` are those of the forces."""
-    s = slopes_with_friction(m, y, slopes[0], slopes[1], slopes[2], slopes[3])
+    """Solve the same equations with friction; `delta` has the residual, and the slopes are those of `mesh_forces`."""
+    s = slopes_with_friction(m, y, force_u, force_phase, relief_u, relief_phase)
     step, turning = 1.0 / cj, m.scene.phase_rate
     of_u, of_v, of_phase, of_w = delta[U], delta[V], delta[PHASE], delta[W]
     v_v, v_w = cj - s.pinion_v - s.pinion_u * step, cj - s.pinion_w - s.pinion_phase * turning * step

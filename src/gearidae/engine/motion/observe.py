@@ -9,6 +9,7 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import is_stuck, mesh_forces, resisting_force, roller_force
 from gearidae.engine.motion.separation import separation
+from gearidae.engine.motion.shafts import friction_at_gear
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
 from gearidae.engine.population.forces import asperities_joined
@@ -55,7 +56,11 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.gear_angle] = (m.state.turns + phase) * m.scene.base_pitch / radius
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
-    row[GEAR.gear_contact_torque] = radius * (force + relief) * m.scene.force_unit
+    contact, resistance = force + relief, 0.0
+    if m.scene.friction.on != 0:
+        friction, resistance = friction_at_gear(m, t, y)
+        contact += friction
+    row[GEAR.gear_contact_torque] = radius * contact * m.scene.force_unit
     drive_gap = coast_gap = math.inf
     touching = 0
     reach = all_pairs(m, y)
@@ -71,7 +76,8 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.pairs_in_contact] = touching
     turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
     drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
-    resistance = force + relief if is_stuck(m) else resisting_force(m, t, u, phase, w)
+    if m.scene.friction.on == 0:
+        resistance = force + relief if is_stuck(m) else resisting_force(m, t, u, phase, w)
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)

@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
-from gearidae.engine.compiling import SOLVER
+from gearidae.engine.compiling import FRICTION, SOLVER
 from gearidae.engine.elastic.elimination import FINISH, PREDICT, SETTLE, pair_deflections, settle_pair
 from gearidae.engine.elastic.nodes import mark_out_of_reach, node_force, node_residual
 from gearidae.engine.elastic.rows import first_unknown
@@ -292,13 +292,7 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     w = y[W]
     _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y, False)
     if m.scene.friction.on != 0:
-        set_limits(m, t, w)
-        s = slopes_with_friction(m, y, force_u, force_phase, relief_u, relief_phase)
-        out[:16] = 0.0
-        out[0], out[1], out[3] = cj, -s.pinion_u, -s.gear_u
-        out[4], out[5], out[7] = -1.0, cj - s.pinion_v, -s.gear_v
-        out[9], out[10], out[11] = -s.pinion_phase, cj, -s.gear_phase
-        out[13], out[14], out[15] = cj - s.pinion_w, -m.scene.phase_rate, cj - s.gear_w
+        _jacobian_with_friction(m, t, cj, y, out, force_u, force_phase, relief_u, relief_phase)
         return
     a1, a2, damping = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, m.scene.damping
     out[:16] = 0.0
@@ -312,6 +306,29 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
         out[7] = -a2 * damping
         out[11] = -a2 * (force_phase + relief_phase)
         out[15] += a2 * (m.scene.drag * 2.0 * abs(w) + m.scene.viscous)
+
+
+@compiled_once(FRICTION)
+def _jacobian_with_friction(
+    m: Model,
+    t: float,
+    cj: float,
+    y: Floats,
+    out: Floats,
+    force_u: float,
+    force_phase: float,
+    relief_u: float,
+    relief_phase: float,
+) -> None:
+    """Jacobian with friction, from the slopes of the forces that `mesh_forces` has just summed."""
+    set_limits(m, t, y[W])
+    s = slopes_with_friction(m, y, force_u, force_phase, relief_u, relief_phase)
+    for i in range(16):
+        out[i] = 0.0
+    out[0], out[1], out[3] = cj, -s.pinion_u, -s.gear_u
+    out[4], out[5], out[7] = -1.0, cj - s.pinion_v, -s.gear_v
+    out[9], out[10], out[11] = -s.pinion_phase, cj, -s.gear_phase
+    out[13], out[14], out[15] = cj - s.pinion_w, -m.scene.phase_rate, cj - s.gear_w
 
 
 class AccelerationSlopes(NamedTuple):

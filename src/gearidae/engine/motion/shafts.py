@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
-from gearidae.engine.friction.forces import Shafts, solve_shafts, without_drag
-from gearidae.engine.friction.pairs import set_limits
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import FRICTION
+from gearidae.engine.friction.forces import Shafts, dry_force, solve_shafts, without_drag
+from gearidae.engine.friction.pairs import direction, levers, set_limits
+from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import mesh_forces
 from gearidae.engine.pairs.shaft_angle import torque_angle
@@ -40,3 +42,26 @@ def shafts_at(m: Model, t: float, y: Floats) -> Shafts:
     """What both shafts do at a state, with the present directions of slip; see `solve_shafts`."""
     turn, pinion, gear = forces_at_shafts(m, t, y)
     return solve_shafts(m, t, y, turn, pinion, gear)
+
+
+@compiled_once(FRICTION)
+def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float]:
+    """Force of the flanks' friction on the gear, and what resists it besides its hub: drags and dry resistance.
+
+    At rest, where the shares of several elements are not unique, the flanks' is zero and the dry resistance takes what
+    it can.
+    """
+    turn, pinion, gear = forces_at_shafts(m, t, y)
+    found = solve_shafts(m, t, y, turn, pinion, gear)
+    friction = 0.0
+    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.notes.pair[i]
+        second = levers(m, noted.position)[1]
+        friction += direction(m, noted) * noted.limit * second
+        if m.state.hold == HELD_PAIR and noted.history == m.state.held_pair:
+            friction += found.held * second
+    w, dry = y[W], dry_force(m, t, y)
+    drags = m.scene.drag * w * abs(w) + m.scene.viscous * w
+    if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:
+        return friction, drags + min(max(gear + friction, -dry), dry)
+    return friction, drags + m.state.slip * dry

@@ -133,7 +133,6 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
         add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
     add_friction(s, scene, gears, geometry)
-    s.noting = int(scene.run.exposures > 0 or s.friction.on != 0)
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
     set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)

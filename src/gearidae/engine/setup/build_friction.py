@@ -24,7 +24,7 @@ def rubs(scene: Scene) -> bool:
 
 
 def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> None:
-    """Set levers, limits and hubs of a gear pair, whose force laws have been laid out.
+    """Set levers and hubs of a gear pair whose force laws have been laid out, and whether forces of pairs are noted.
 
     Parameters
     ----------
@@ -32,6 +32,7 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
         ``SCENE``; changed.
     """
     own = s.friction
+    s.noting = int(scene.run.exposures > 0 or rubs(scene))
     if not rubs(scene):
         return
     own.on, own.flanks = 1, int(has_flank_friction(scene))
