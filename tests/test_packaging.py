@@ -107,7 +107,9 @@ def shipped(folder):
 def test_wheel_has_the_whole_package_and_nothing_else(built):
     in_wheel, _ = built
     package = {name for name in in_wheel if ".dist-info/" not in name}
-    assert package == {name.removeprefix("src/") for name in shipped("src")}
+    assert package == {name.removeprefix("src/") for name in shipped("src")} | {
+        f"gearidae/{name}" for name in shipped("cases")
+    }
     assert any(name.endswith("entry_points.txt") for name in in_wheel)
 
 

@@ -50,6 +50,7 @@ def bench(
     attack: Annotated[
         bool, Parameter(help="Run extreme but valid scenes instead, each in a monitored process.")
     ] = False,
+    population: Annotated[bool, Parameter(help="Give the scenes of --attack real asperities.")] = False,
     patience: Annotated[
         float,
         Parameter(help="Time without progress after which a scene of --attack counts as hung, in seconds."),
@@ -70,7 +71,7 @@ def bench(
             "bench", "--stress, --accuracy, --long, --attack, --forge, --kills", "say one of them"
         )
     if attack:
-        return bench_attack(runs, seed, jobs, output, patience)
+        return bench_attack(runs, seed, jobs, output, patience, population=population)
     if forge:
         return bench_forge(runs, seed, jobs)
     if kills:

@@ -8,12 +8,12 @@ from pathlib import Path
 from rich.console import Console
 
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import say
-from gearidae.cli.tables import show_rows
+from gearidae.cli.output import say, show_rows
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae_bench.attack import Outcome, run_attack
 from gearidae_bench.attack_report import balance_rows, ending_rows, page
+from gearidae_bench.attack_worker import attack_one, attack_population
 from gearidae_bench.forge import is_forged, run_forge
 from gearidae_bench.kills import run_kills
 
@@ -23,7 +23,9 @@ ATTACK_BUDGET = 20_000
 """Steps after which a scene of the attack is left alone."""
 
 
-def bench_attack(runs: int, seed: int, jobs: int | None, output: Path | None, patience: float) -> int:
+def bench_attack(
+    runs: int, seed: int, jobs: int | None, output: Path | None, patience: float, *, population: bool = False
+) -> int:
     """Run extreme scenes, print how they ended, and write the page about them if asked.
 
     What is done when Ctrl-C comes is printed and written all the same.
@@ -38,6 +40,8 @@ def bench_attack(runs: int, seed: int, jobs: int | None, output: Path | None, pa
         Folder for ``attack.md``.
     patience : float
         Seconds without a report after which a scene is taken to hang.
+    population : bool, optional
+        Whether the scenes have real asperities.
 
     Returns
     -------
@@ -57,7 +61,15 @@ def bench_attack(runs: int, seed: int, jobs: int | None, output: Path | None, pa
             status.update(f"{len(outcomes)} of {runs}, {faults} faults ...")
 
         try:
-            run_attack(runs, seed, check_jobs(jobs), budget=ATTACK_BUDGET, patience=patience, report=note)
+            run_attack(
+                runs,
+                seed,
+                check_jobs(jobs),
+                budget=ATTACK_BUDGET,
+                patience=patience,
+                report=note,
+                target=attack_population if population else attack_one,
+            )
         except KeyboardInterrupt:
             interrupted = True
     if not outcomes:
@@ -70,7 +82,9 @@ def bench_attack(runs: int, seed: int, jobs: int | None, output: Path | None, pa
         say(f"scene {outcome.number}: {outcome.status} {outcome.message}")
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
-        (output / "attack.md").write_text(page(outcomes, seed, datetime.now(UTC).date(), runs))
+        (output / "attack.md").write_text(
+            page(outcomes, seed, datetime.now(UTC).date(), runs, population=population)
+        )
         say(f"Report: {output / 'attack.md'}")
     if interrupted:
         raise KeyboardInterrupt(f"{len(outcomes)} of {runs} scenes done")

@@ -67,7 +67,14 @@ def warned_rows(outcomes: Sequence[Outcome]) -> list[str]:
     return ["| warned of | driver | rtol | residual over bound |", "|---|---|---|---|", *rows, ""]
 
 
-def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = None) -> str:
+def page(
+    outcomes: Sequence[Outcome],
+    seed: int,
+    day: date,
+    runs: int | None = None,
+    *,
+    population: bool = False,
+) -> str:
     """Write the report.
 
     Parameters
@@ -78,6 +85,8 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         When they were run.
     runs : int, optional
         Number of scenes requested, if fewer were done.
+    population : bool, optional
+        Whether the scenes have real asperities.
 
     Returns
     -------
@@ -85,7 +94,9 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         Markdown.
     """
     faults = [outcome for outcome in outcomes if not outcome.sound]
-    command = f"python -m gearidae_bench --attack --runs {runs or len(outcomes)} --seed {seed}"
+    drawn = "extreme_population" if population else "extreme_scene"
+    command = f"python -m gearidae_bench --attack{' --population' * population}"
+    command += f" --runs {runs or len(outcomes)} --seed {seed}"
     done = f"; interrupted after {len(outcomes)} scenes" if runs and runs > len(outcomes) else ""
     silence = max((o.longest for o in outcomes), default=0.0)
     lines = [
@@ -116,7 +127,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "|---|---|---|---|",
         *(f"| {o.number} | {o.backend} | {o.status} | {_cell(o.message)} |" for o in faults[:_LISTED]),
         "",
-        f"`gearidae_bench.extreme_scenes.extreme_scene({seed}, scene)` makes any of them again.",
+        f"`gearidae_bench.extreme_scenes.{drawn}({seed}, scene)` makes any of them again.",
         "",
     ]
     return "\n".join(lines)

@@ -24,9 +24,19 @@ from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, EventKind, sampled_columns
 from gearidae.scene import Scene
-from gearidae_bench.extreme_scenes import extreme_scene
+from gearidae_bench.extreme_scenes import Extreme, extreme_population, extreme_scene
 
-__all__ = ["FAULTS", "Followed", "Outcome", "attack_one", "judge", "limit_memory", "run_scene", "warm_up"]
+__all__ = [
+    "FAULTS",
+    "Followed",
+    "Outcome",
+    "attack_one",
+    "attack_population",
+    "judge",
+    "limit_memory",
+    "run_scene",
+    "warm_up",
+]
 
 Floats = NDArray[np.float64]
 
@@ -135,7 +145,19 @@ def limit_memory() -> None:
 
 
 def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: str) -> None:
-    """Run one scene and report, in a process of its own."""
+    """Run one scene of `extreme_scene` and report, in a process of its own."""
+    _attack(extreme_scene, (seed, number), budget, reports, trace)
+
+
+def attack_population(seed: int, number: int, budget: int, reports: Connection, trace: str) -> None:
+    """Do the same with one of `extreme_population`."""
+    _attack(extreme_population, (seed, number), budget, reports, trace)
+
+
+def _attack(
+    draw: Callable[..., Extreme], which: tuple[int, int], budget: int, reports: Connection, trace: str
+) -> None:
+    """Draw a scene, run it and report."""
     logging.disable(logging.WARNING)
     with Path(trace).open("w") as file:
         faulthandler.enable(file)
@@ -144,10 +166,10 @@ def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: 
 
             faulthandler.register(signal.SIGUSR1, file)
         limit_memory()
-        extreme = extreme_scene(seed, number, lambda: reports.send("drawing"))
+        extreme = draw(*which, lambda: reports.send("drawing"))
         reports.send("begun")
         outcome = judge(extreme.scene, extreme.backend, budget, lambda: reports.send("alive"))
-        reports.send(replace(outcome, number=number))
+        reports.send(replace(outcome, number=which[1]))
 
 
 def judge(scene: Scene, backend: str, budget: int, alive: Callable[[], None]) -> Outcome:

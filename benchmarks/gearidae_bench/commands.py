@@ -13,8 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import say, show
-from gearidae.cli.tables import show_rows
+from gearidae.cli.output import say, show, show_rows
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae_bench import Result, Settings, find_scenes, run_benchmark

@@ -21,8 +21,9 @@ from gearidae.scene.coating import THICKEST
 from gearidae.scene.coating_table import MOST_PLACES
 from gearidae.scene.group import Group
 from gearidae.scene.quantity import Count, Quantity
+from gearidae.scene.strip import MOST, flank_strip
 
-__all__ = ["CORNER", "Extreme", "extreme_scene"]
+__all__ = ["CORNER", "Extreme", "extreme_population", "extreme_scene"]
 
 CORNER = 0.2
 """Probability of a corner value where a key is free: a limit of its range, the number next to it, or zero."""
@@ -94,6 +95,53 @@ def extreme_scene(seed: int, number: int, alive: Callable[[], None] | None = Non
         ):  # while drawing: what the gears' own limits leave does not fit together
             continue
     raise refused or SceneError("gears", "(drawn)", "no pair that can mesh was found")
+
+
+def extreme_population(seed: int, number: int, alive: Callable[[], None] | None = None) -> Extreme:
+    """Draw one scene of `extreme_scene`, and give it real asperities: drawn, or a list of 1 to 300.
+
+    There are fewer on each area where they would be more than a population may have, and often fewer still: 100 to
+    the most, log-uniformly.
+
+    Parameters
+    ----------
+    seed, number, alive
+        As for `extreme_scene`.
+
+    Raises
+    ------
+    SceneError
+        As `extreme_scene` does.
+    """
+    extreme, rng = extreme_scene(seed, number, alive), np.random.default_rng([seed, number, 18])
+    scene, sigma = extreme.scene, extreme.scene.surface.roughness
+    changes: dict[str, Any] = {
+        "contact.model": "population",
+        "contact.seed": int(rng.integers(0, 2**32)),
+        "run.asperity_events": bool(rng.random() < 0.7),
+    }
+    if rng.random() < 0.3:
+        count, (low, high) = int(rng.choice([1, 10, 300])), flank_strip(scene)
+        changes["contact.asperities"] = {
+            "x" if scene.roller is not None else "arc": rng.uniform(low, high, count).tolist(),
+            "height": (sigma * rng.uniform(-1.0, 9.0, count)).tolist(),
+            "radius": np.clip(
+                scene.surface.asperity_radius * 10.0 ** rng.uniform(-2.0, 1.0, count), 1e-10, 0.1
+            ).tolist(),
+        }
+    elif rng.random() < 0.3:
+        changes["contact.radius_spread"] = float(rng.choice([1e-3, 0.3, 10.0]))
+    density, most = (
+        scene.surface.asperity_density,
+        math.exp(rng.uniform(math.log(100.0), math.log(0.99 * MOST))),
+    )
+    low, high = flank_strip(scene)
+    flanks = (scene.roller.width, 1) if scene.roller else (0.0, 0)
+    if scene.gears is not None:
+        flanks = scene.gears.face_width, 2 * scene.gears.pinion_teeth
+    mean = density * flanks[0] * (high - low) * flanks[1]
+    changes["surface.asperity_density"] = density * min(most / mean, 1.0)
+    return Extreme(scene.replace(changes), extreme.backend)
 
 
 class _Draw:

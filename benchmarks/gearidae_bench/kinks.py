@@ -11,12 +11,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.engine.events.asperity_events import first_dip, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.model.state import MATERIALS, Model
 from gearidae.engine.pairs.tooth_pairs import gap_and_rate, history_of, pair_at, pairs_near
 from gearidae_bench.compiling import compiled
 
-__all__ = ["arm", "watch"]
+__all__ = ["arm", "begin_step", "dip_in_step", "watch"]
 
 Floats = NDArray[np.float64]
 
@@ -73,3 +74,20 @@ def watch(m: Model, t: float, y: Floats, heights: Floats, armed: bool) -> float:
         for material in range(MATERIALS):
             least = min(least, gap - heights[MATERIALS * k + material])
     return least
+
+
+@compiled()
+def begin_step(m: Model, t: float, y: Floats, heights: Floats, armed: bool) -> float:
+    """Do as `watch` at the start of a step, from where asperities may dip below their guards and come back."""
+    least = watch(m, t, y, heights, armed)
+    if m.scene.population.flanks != 0:
+        note_step_start(m, y)
+    return least
+
+
+@compiled()
+def dip_in_step(m: Model, new: Floats, h: float, before: float, after: float) -> float:
+    """Share of a step at which an asperity dips below its guard, which is above zero at both ends; -1 if none does."""
+    if m.scene.population.flanks == 0 or before <= 0.0 or after <= 0.0:
+        return -1.0
+    return first_dip(m, new, h)

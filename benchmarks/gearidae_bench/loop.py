@@ -17,7 +17,7 @@ from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.schedule_knots import pass_knot
 from gearidae.engine.model.state import MATERIALS, Model
 from gearidae_bench.compiling import compiled
-from gearidae_bench.kinks import arm, watch
+from gearidae_bench.kinks import arm, begin_step, dip_in_step, watch
 from gearidae_bench.roots import (
     CALLS,
     CHATTER,
@@ -123,7 +123,7 @@ def run_dop853(
     rejected = False
     rates(m, 0.0, y, zero, k[0])
     armed = land and arm(m, y, heights)
-    before = watch(m, 0.0, y, heights, armed)
+    before = begin_step(m, 0.0, y, heights, armed)
     while t < end:
         last = t + h >= end
         if last:
@@ -142,6 +142,13 @@ def run_dop853(
         rejected = False
         later = end if last else t + h
         after = watch(m, later, new, heights, armed)
+        share = dip_in_step(m, new, h, before, after)
+        if share > 0.0:  # a step that ends there
+            h, last = share * h, False
+            dop853_step(m, t, y, h, atol, k, zero, trial, new)
+            counts[CALLS] += 12
+            later = t + h
+            after = watch(m, later, new, heights, armed)
         fallen = before > 0.0 > after
         if fallen or (sample < times.size and times[sample] < later):
             dop853_prepare(m, t, y, h, k, zero, trial, new, dense)
@@ -189,7 +196,10 @@ def run_dop853(
         y[:] = new
         t = later
         if fallen and land:
-            counts[FAILED] = handle_event(m, t, y, room)
+            action = handle_event(m, t, y, room)
+            # where forces jump, it is enough that another step begins
+            if action == CHATTER or (action != 0 and m.scene.population.flanks == 0):
+                counts[FAILED] = action
         if counts[FAILED] != 0:
             return
         if fallen:
@@ -197,7 +207,7 @@ def run_dop853(
         else:
             k[0] = k[12]
         armed = land and arm(m, y, heights)
-        before = watch(m, t, y, heights, armed)
+        before = begin_step(m, t, y, heights, armed)
         counts[STEPS] += 1
         h = planned
         if last:
@@ -230,7 +240,7 @@ def run_gauss(
     sample, t, h = 0, 0.0, 1e-3
     rates(m, 0.0, y, zero, k[0])
     armed = arm(m, y, heights)
-    before = watch(m, 0.0, y, heights, armed)
+    before = begin_step(m, 0.0, y, heights, armed)
     while t < end:
         stop = times[sample] if sample < times.size else end
         if stop <= t:
@@ -242,7 +252,7 @@ def run_gauss(
             if knots[knot] <= t:
                 pass_knot(m, t, room, 0)
                 rates(m, t, y, zero, k[0])
-                before = watch(m, t, y, heights, armed)
+                before = begin_step(m, t, y, heights, armed)
                 continue
             stop = min(stop, knots[knot])
         cut = t + h >= stop
@@ -259,6 +269,12 @@ def run_gauss(
         h = max(h, wider) if cut else wider
         later = stop if cut else t + step
         after = watch(m, later, new, heights, armed)
+        share = dip_in_step(m, new, step, before, after)
+        if share > 0.0:  # a step that ends there
+            step = share * step
+            gauss_step(m, t, y, step, scale, k, zero, trial, new)
+            later = t + step
+            after = watch(m, later, new, heights, armed)
         fallen = before > 0.0 > after
         if fallen:
             step = find_root(
@@ -294,7 +310,7 @@ def run_gauss(
                 return
         rates(m, t, y, zero, k[0])
         armed = arm(m, y, heights)
-        before = watch(m, t, y, heights, armed)
+        before = begin_step(m, t, y, heights, armed)
         counts[STEPS] += 1
     while sample < times.size:
         states[sample] = y

@@ -119,10 +119,10 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
     },
     "gears": {"hub_friction": 0.0, "pinion_hub_radius": 0.0, "gear_hub_radius": 0.0},
     "mesh": {"radius_force": False},
-    "surface": {"provenance": ""},
+    "surface": {"provenance": "", "hamaker": 0.0},
     "drive": {"speed_gain": 0.0},
     "load": {"viscous": 0.0},
-    "coating": {"pairing": "patches", "thickness": 0.0},
+    "coating": {"pairing": "patches", "thickness": 0.0, "hamaker": 0.0},
 }
 """Keys that the shipped references are older than, with the values that change nothing."""
 

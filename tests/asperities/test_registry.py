@@ -21,8 +21,9 @@ from gearidae.asperities import (
     unregister,
 )
 from gearidae.asperities.ranges import check_reach
-from gearidae.asperities.tip import asperity_of
-from gearidae.contact.elastic import elastic_grid, elastic_line_curve
+from gearidae.asperities.tip import asperity_of, contact_modulus
+from gearidae.contact.bulk import line_grid
+from gearidae.contact.elastic import elastic_line_curve
 from gearidae.contact.kernels.energy import energy_table, joining_energy, number_table, stretched_energy
 from gearidae.contact.kernels.law import HEADER, law_table, law_value, loading_value
 from gearidae.contact.kernels.layout import H_MODE, MODE_INTEGRATED, MODE_TABLE
@@ -265,7 +266,8 @@ def test_elastic_bodies_lose_what_their_springs_cost(silicon, spring):
     path = np.concatenate([gap[::-1], [lowest], gap])
     curve = elastic_line_curve(path, radius, width, silicon, asperity="spring", nodes=20)
     loop = measure @ (curve.force[: gap.size][::-1] - curve.force[-gap.size :])
-    grid = elastic_grid(lowest, radius, width, silicon, asperity="spring", nodes=20)
+    modulus = contact_modulus(silicon.youngs_modulus, silicon.poisson_ratio)
+    grid = line_grid(curve.x[-1], width, modulus, 20)
     closest = curve.node_gap[gap.size]
     joined = width * grid.weights @ above((closest - JOIN) / sigma) * silicon.asperity_density
     # kinks of the force where nodes reach full stretch limit the quadrature, as for JKR

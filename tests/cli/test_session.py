@@ -13,9 +13,9 @@ import pytest
 
 import gearidae as gd
 from gearidae.cli import main
+from gearidae.cli.command_line import spread
 from gearidae.cli.examples import EXAMPLES
 from gearidae.cli.session import app
-from gearidae.cli.values import spread
 from gearidae.scene import dump_case
 
 SHORT = ["--set", "run.samples=51"]
@@ -137,7 +137,7 @@ def test_bash_completes_commands_options_and_files(tmp_path):
     [
         (
             "check teodorescu2009_lo_speed",
-            "neither a file nor a preset; did you mean teodorescu2009_low_speed?",
+            "no shipped case; did you mean teodorescu2009_low_speed?",
         ),
         ("check roller_slow --set coating.sam_fracton=1", "did you mean coating.sam_fraction?"),
         ("sweep roller_slow --over rollr.speed=1,2", "did you mean roller.speed?"),

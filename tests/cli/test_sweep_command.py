@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 
 import pytest
@@ -10,7 +11,9 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae import engine
+from gearidae.analysis.verdict.headline import headline
 from gearidae.cli import main
+from gearidae.cli.outset import announce_draws
 from sweeps import without_times
 
 FRACTIONS = [1.0, 0.5, 0.45]
@@ -73,3 +76,47 @@ def test_zipped(capsys):
     assert gd.open_archive("out.nc").sam_fraction.dims == ("torque",)
     assert main([*command, *over, "--over", "load.drag=1:3:1", "--overwrite"]) == 2
     assert "load.drag = 3 values: must be as many as drive.torque has, 2" in capsys.readouterr().err
+
+
+def test_what_will_be_run_is_said_first_and_the_answer_last(folder, capsys):
+    assert main([*SWEEP, "-o", "out.nc", "--jobs", "1"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == (
+        "Sweep of teodorescu2009_low_speed: 3 runs, coating.sam_fraction = 1, 0.5, 0.45; less than a second"
+    )
+    assert lines[-2:] == ["Archive: out.nc", "3 runs: turns smoothly 3."]
+    assert main([*SWEEP, "-o", "quiet.nc", "--quiet"]) == 0
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--over", "run.duration=1,2"], "cannot be swept"),
+        (["--over", "coating.sam_fraction=0.5,0.5"], "stands twice"),
+        (["--over", "coating.sam_fraction=2,3"], "coating.sam_fraction"),
+    ],
+)
+def test_a_sweep_that_cannot_be_meant_is_refused_before_anything_is_said(arguments, said, folder, capsys):
+    assert main(["sweep", "low_speed", *arguments]) == 2
+    out, complaint = capsys.readouterr()
+    assert out == ""
+    assert said in complaint
+    assert not list(folder.iterdir())
+
+
+def test_the_time_of_many_runs(capsys):
+    """20,000 times the time that `check` expects of one, four at a time."""
+    scene = LOW.replace({"run.duration": 10.0})
+    announce_draws("Ensemble", scene, {"load.drag": "uniform(8e-18, 8.001e-18)"}, 20_000, 4)
+    found = re.search(r"20000 runs, .*; some ([\d.]+) min with 4 at a time", capsys.readouterr().out)
+    assert float(found[1]) == pytest.approx(5000 * gd.studies.run_time(scene).seconds / 60.0, rel=0.1)
+
+
+def test_the_sentence_of_a_sweep_names_where_the_gear_begins_to_stick():
+    ds = gd.sweep(LOW.replace({"run.duration": "0.3 s"}), {"coating.sam_fraction": [0.8, 0.45, 0.47, 0.6]})
+    assert headline(ds) == (
+        "4 runs: turns smoothly 2, sticks 2. "
+        "The gear sticks at sam_fraction = 0.47 and below, and not at 0.6 and above."
+    )
+    assert headline(ds.isel(sam_fraction=1)) == f"The gear {gd.outcomes(ds.isel(sam_fraction=1))[0].words}."

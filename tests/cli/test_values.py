@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.cli.values import assignments, default_output, spread, sweep_values
+from gearidae.cli.command_line import spread
+from gearidae.cli.values import assignments, default_output, sweep_values
 from gearidae.errors import SceneError
 
 

@@ -8,13 +8,18 @@ from scipy import integrate, optimize, special
 from scipy.interpolate import make_interp_spline
 
 from gearidae.asperities.tip import asperity_of, contact_modulus
-from gearidae.contact.bulk import strip_deflection
-from gearidae.contact.elastic import ElasticFoldError, elastic_grid, elastic_line_curve, elastic_line_force
+from gearidae.contact.bulk import line_grid
+from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve, elastic_line_force
 from gearidae.contact.line import line_force
 from gearidae.contact.rough import adhesion_loss_per_asperity, rough_pressure
 from gearidae.errors import SceneError, SolverError
+from reference.strip import strip_deflection
 
 R, L = 5e-6, 2e-6
+
+
+def modulus_of(surface):
+    return contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +31,7 @@ def smooth(silicon):
 def test_smooth_limit_is_hertz(smooth):
     width = 1e-4  # long against the contact's 0.25 um, as Hertz's line contact is
     curve = elastic_line_curve([-40e-9], R, width, smooth, nodes=48)
-    modulus = contact_modulus(smooth.youngs_modulus, smooth.poisson_ratio)
+    modulus = modulus_of(smooth)
     load = curve.force[0] / width
     half_width = math.sqrt(4 * load * R / (math.pi * modulus))
     peak = 2 * load / (math.pi * half_width)
@@ -44,7 +49,7 @@ def test_smooth_limit_is_hertz(smooth):
 def test_smooth_limit_of_a_short_roller(smooth):
     # Here the kernel's |xi|/L counts (peak 5 % above Hertz). Frictionless contact as a problem of least squares with
     # p >= 0 on uniform strips: no asperities, no Newton.
-    modulus = contact_modulus(smooth.youngs_modulus, smooth.poisson_ratio)
+    modulus = modulus_of(smooth)
     edges = np.linspace(-4.2e-7, 4.2e-7, 202)
     x = 0.5 * (edges[1:] + edges[:-1])
     matrix = strip_deflection(x[:, None], edges[:-1], edges[1:], L, modulus) * 1e18
@@ -131,7 +136,7 @@ def test_closed_loop_loses_what_its_asperities_lose(silicon, asperity, loses):
     curve = elastic_line_curve(path, R, L, silicon, asperity=asperity, nodes=20)
     inward, outward = curve.force[: gap.size][::-1], curve.force[-gap.size :]
     loop = measure @ (inward - outward)
-    grid = elastic_grid(lowest, R, L, silicon, asperity=asperity, nodes=20)
+    grid = line_grid(curve.x[-1], L, modulus_of(silicon), 20)
     closest = curve.node_gap[gap.size]
     joined = L * grid.weights @ special.ndtr(-closest / sigma) * silicon.asperity_density
     work = measure @ np.abs(inward)
@@ -171,7 +176,9 @@ def sticky(silicon):
 def test_fold_is_found_where_the_middle_gap_says(sticky):
     # Prescribe the middle node's gap instead of the rigid one and ask which rigid gap goes with it: that curve has no
     # fold, and the jump into contact is where the rigid gap stops falling.
-    grid = elastic_grid(0.0, R, L, sticky, nodes=16)
+    with pytest.raises(ElasticFoldError, match=r"folds: adhesion outgrows .* while closing") as caught:
+        elastic_line_force([2e-9, 0.0], R, L, sticky, nodes=16)
+    grid = line_grid(caught.value.curve.x[-1], L, modulus_of(sticky), 16)
 
     def rigid_gap(middle, guess):
         def residual(unknown):
@@ -193,8 +200,6 @@ def test_fold_is_found_where_the_middle_gap_says(sticky):
             break
     parabola = np.polynomial.Polynomial.fit([0, 1, 2], rigid[-3:], 2)
     fold = float(parabola(parabola.deriv().roots()[0])) * 1e-9
-    with pytest.raises(ElasticFoldError, match=r"folds: adhesion outgrows .* while closing") as caught:
-        elastic_line_force([2e-9, 0.0], R, L, sticky, nodes=16)
     # It is followed to 1e-4 roughnesses of the fold.
     assert caught.value.gap == pytest.approx(fold, abs=3e-4 * sticky.roughness)
     assert caught.value.gap >= fold - 1e-13

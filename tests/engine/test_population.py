@@ -111,6 +111,8 @@ def test_gears_with_ten_listed_asperities(backend, rtol, allowed):
     assert balance.drag_loss + balance.dry_loss == pytest.approx(told["drag_loss"], rel=allowed, abs=0)
     assert balance.kinetic_change == pytest.approx(told["kinetic_change"], rel=allowed, abs=0)
     assert balance.stored_change == pytest.approx(told["stored_change_from_free_surfaces"], rel=1e-4, abs=0)
+    if backend == "native":  # the quadratures of the balance keep up with formulas of high order
+        assert abs(balance.residual) < 1e-10 * balance.drive_work
 
 
 def test_gears_with_a_drawn_surface():
@@ -280,7 +282,13 @@ def test_a_roller_s_force_is_the_derivative_of_its_energy():
 # -- checkpoints and continued runs -----------------------------------------------------------------------------------
 
 STOPPED = BARE.replace(
-    {"run.duration": 30e-6, "run.samples": 31, "run.rtol": 1e-7, "run.checkpoints": [5e-6, 1.01e-5, 2e-5]}
+    {
+        "run.duration": 30e-6,
+        "run.samples": 31,
+        "run.rtol": 1e-7,
+        "run.checkpoints": [5e-6, 1.01e-5, 2e-5],
+        "run.exposures": 3,
+    }
 )
 
 

@@ -134,8 +134,8 @@ MUTANTS = (
     Mutant(
         "SAM fraction taken for the bare one",
         "engine/setup/build_contact.py",
-        "enumerate(_parts(scene))",
-        "enumerate([one._replace(share=1.0 - one.share) for one in _parts(scene)])",
+        "enumerate(parts_of(scene))",
+        "enumerate([one._replace(share=1.0 - one.share) for one in parts_of(scene)])",
         IMPACT,
     ),
     Mutant(
@@ -507,8 +507,8 @@ MUTANTS = (
     Mutant(
         "flanks of a population drawn with tooth and flank exchanged",
         "populations/flanks.py",
-        "rng = np.random.default_rng([seed, tooth, flank])\n            n = int(rng.poisson(mean))",
-        "rng = np.random.default_rng([seed, flank, tooth])\n            n = int(rng.poisson(mean))",
+        "rng = np.random.default_rng(which)",
+        "rng = np.random.default_rng(which[::-1])",
         ("populations/test_flanks.py::test_the_preset_s_surface_is_the_one_that_a_prototype_drew",),
     ),
     Mutant(
@@ -517,5 +517,26 @@ MUTANTS = (
         "energy = (law.detachment_energy + law.energy(displacement))",
         "energy = law.energy(displacement)",
         ("contact/test_single.py::test_tables_have_the_load_and_the_energy_of_the_law",),
+    ),
+    Mutant(
+        "friction of the flanks drives the pinion",
+        "engine/friction/forces.py",
+        "pinion -= friction * first",
+        "pinion += friction * first",
+        ("engine/test_friction.py::test_the_balance_closes_with_friction",),
+    ),
+    Mutant(
+        "what holds gears at rest counted for the last element alone",
+        "engine/friction/rest.py",
+        "held += other.limit * abs(x * other.pinion + y * other.gear)",
+        "held = other.limit * abs(x * other.pinion + y * other.gear)",
+        ("engine/test_friction.py::test_gears_stay_at_rest_inside_the_zonotope_and_move_outside",),
+    ),
+    Mutant(
+        "sliding of the flanks with levers that do not change along the path",
+        "engine/friction/pairs.py",
+        "rate = w * (m.scene.friction.pinion_bend * turn + m.scene.friction.gear_bend * w)",
+        "rate = 0.0 * w * turn",
+        ("engine/test_friction.py::test_the_balance_closes_with_friction",),
     ),
 )

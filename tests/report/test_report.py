@@ -13,6 +13,7 @@ import pytest
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.cli import main
+from gearidae.cli.tables import show_summary
 from gearidae.records import EventKind
 from gearidae.report import build_report, write_report
 from gearidae.report.series import pack
@@ -183,9 +184,15 @@ def test_run_that_ended_early(single):
     assert np.isfinite(embedded[:2000]).all()
 
 
-def test_account_of_a_run(single, swept):
-    told = json.loads(single.attrs["account"])
-    assert f"work of the drive {with_prefix(told['drive_work'], 'J', 6)}" in Page(build_report(single)).text
+def test_run_summary_in_the_words_of_the_terminal(single, swept, capsys):
+    page = Page(build_report(single)).text
+    drive_work = json.loads(single.attrs["account"])["drive_work"]
+    assert f"drive work {with_prefix(drive_work, 'J', 5)} input" in page
+    show_summary(single)
+    printed = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    assert {"Run summary", "Energy balance"} <= set(printed)
+    for line in printed:
+        assert " ".join(line.split()) in page
     assert "Run summary" not in Page(build_report(swept)).text
 
 

@@ -42,6 +42,11 @@ def starting_torque(path, **more):
     return gd.studies.starting_torque(bare, "own", impacts=1, tolerance=0.5, archive=path, **more)
 
 
+def starting_torques(path, **more):
+    gears = gd.preset("teodorescu2009").replace({"contact.model": "population", "load.torque": 0.0})
+    return gd.studies.starting_torque(gears, seeds=2, archive=path, **more)
+
+
 def sticking_threshold(path, **more):
     ends = {"between": (0.4, 0.7), "exits": 5, "width": 0.05}
     return gd.studies.sticking_threshold(LOW, **ends, archive=path, **more)
@@ -58,7 +63,9 @@ STUDIES = {
     "lives": lives,
     "operating_map": operating_map,
     "posterior": posterior,
+    "pull_off": lambda path, **more: gd.studies.pull_off(LOW, 5, archive=path, **more),
     "starting_torque": starting_torque,
+    "starting_torques": starting_torques,
     "sticking_threshold": sticking_threshold,
 }
 

@@ -12,14 +12,14 @@ import pytest
 import gearidae as gd
 from gearidae.archive.end_state import end_state_of, packed_state
 from gearidae.archive.run_summary import counted_over
-from gearidae.cli.tables import show_account
+from gearidae.cli.tables import show_summary
 from gearidae.engine.continuing import checkpoint_of_start, end_of
 from gearidae.engine.model.state import EMPTY
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.start import Start
 from gearidae.errors import SceneError
 from gearidae.records import EventKind
-from gearidae.report.tables import account_table
+from gearidae.report.tables import summary_tables
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 START_UP = next(case for case in CASES if case.stem == "start_up")
@@ -454,12 +454,12 @@ def test_rows_of_a_continued_run_say_whether_they_are_of_the_chain(capsys):
     }
     assert rows == {"time_at_rest": "this run", "time_adhering": "the chain", "drive_work": "the chain"}
     assert counted_over("drive_work", first.attrs) == ""
-    show_account(second)
+    show_summary(second)
     printed = capsys.readouterr().out
     assert re.search("time to speed.*; this run", printed)
     assert re.search("drive work.*; the chain", printed)
-    page = account_table(second)
-    assert "lost to adhesion (the chain)" in page
+    page = summary_tables(second)
+    assert re.search("adhesion loss.*lost; the chain", page)
 
 
 def test_time_at_rest_of_a_continued_run_is_its_own():

@@ -92,11 +92,6 @@ def test_a_list_needs_the_model_that_reads_it():
         )
 
 
-def test_exposures_are_not_kept_of_a_population():
-    with pytest.raises(SceneError, match=r"run.exposures.*must be 0"):
-        GEARS.replace({"run.exposures": 4})
-
-
 def test_a_list_with_decimal_commas_and_bad_rows(tmp_path):
     """Read by the reader of all tables: no comma is lost, and no row is shifted."""
     path = tmp_path / "list.csv"

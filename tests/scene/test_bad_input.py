@@ -53,7 +53,7 @@ WRONG = [
     ("surface.roughness", 0, "must lie in 1e-12..0.1 m"),
     ("load.torque", -1e-11, "must lie in 0..1e+09 N m"),
     ("load.drag", -1e-18, "must lie in 0..1e+12 N m s^2/rad^2"),
-    ("initial.mesh_phase", 1, "must be at least 0 and below 1"),
+    ("initial.mesh_phase", 10_000, "must be at least 0 and below 10000"),
     ("run.duration", 0, "must lie in 1e-20..1e+12 s"),
     ("run.rtol", 1e-13, "must lie in 1e-12..0.1"),
     ("run.rtol", 1, "must lie in 1e-12..0.1"),

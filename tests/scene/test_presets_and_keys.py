@@ -17,9 +17,9 @@ CONTRACT = {
     "mesh": "backlash tip_relief_radius radius_force damping static_error static_error.order static_error.amplitude "
     "static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
-    "provenance",
-    "coating": "sam_fraction energy pairing thickness pinion_fraction gear_fraction pinion_table gear_table friction "
-    "shear_strength",
+    "hamaker provenance",
+    "coating": "sam_fraction energy hamaker pairing thickness pinion_fraction gear_fraction pinion_table gear_table "
+    "friction shear_strength",
     "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
     "law.name law.parameters speed speed_gain",
     "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "

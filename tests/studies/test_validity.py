@@ -32,6 +32,8 @@ ROWS = [
         "thermal_motion",
         "gas_damping",
         "net_adhesion",
+        "attraction",
+        "attraction_behind",
         "memory",
         "disc_drag",
         "inertia_pinion",
@@ -102,6 +104,17 @@ def test_net_adhesion_is_the_deepest_valley_of_the_parting_force(fraction):
     )
     # the valley may end in a kink, where asperities let go: within 1 pm the force changes by 1e-4
     assert number(scene, "net_adhesion") == pytest.approx(-force.min(), rel=2e-4, abs=0)
+
+
+def test_a_population_needs_no_mean_law():
+    """Numbers and limits are those of the mean law; verdicts say that each asperity is followed."""
+    mean = gd.studies.validity(LOW)
+    real = gd.studies.validity(LOW.replace({"contact.model": "population"}))
+    for name in ("expected_asperities", "memory"):
+        assert (real.number[name], real.bound[name]) == (mean.number[name], mean.bound[name])
+        assert real.holds[name]
+        assert not mean.holds[name]
+        assert "each asperity" in real.verdict[name]
 
 
 def test_verdicts_follow_the_limits():

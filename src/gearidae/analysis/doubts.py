@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
-from scipy.signal import detrend
+import scipy
 
 from gearidae.analysis.fitting import Fit, RingSet, at_places
 from gearidae.analysis.impacts import angle_of, windows_of
@@ -132,7 +131,7 @@ def _smallest_speed(signal: Signal, model: MapModel, usual: float) -> tuple[floa
     """
     pitch = 2.0 * math.pi / model.gear_teeth
     count = max(1, min(round(_SMOOTH * pitch / (usual * signal.interval)), len(signal.values)))
-    slow = uniform_filter1d(signal.values, count, mode="nearest")
+    slow = scipy.ndimage.uniform_filter1d(signal.values, count, mode="nearest")
     slow = slow[int((slow >= 0.5 * usual).argmax()) :]
     noise = 1.48 * float(np.median(np.abs(np.diff(signal.values)))) / math.sqrt(2.0 * count)
     return float(slow.min()), noise
@@ -229,7 +228,7 @@ def _strength(piece: Floats, frequency: float) -> float:
     """Amplitude at a frequency [in parts of the sampling rate] within a window, straight line taken out."""
     turns = np.exp(-2j * math.pi * frequency * np.arange(len(piece)))
     taper = np.hanning(len(piece))
-    return float(abs((detrend(piece) * taper * turns).sum()) / taper.sum())
+    return float(abs((scipy.signal.detrend(piece) * taper * turns).sum()) / taper.sum())
 
 
 def alias(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: float) -> str:

@@ -12,9 +12,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy import signal as dsp
-from scipy.ndimage import uniform_filter1d
 
 from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
 from gearidae.arrays import Floats
@@ -162,7 +161,9 @@ def _until_stop(signal: Signal, pitch: float) -> Signal:
     if len(turning) < FEWEST_SAMPLES:
         return signal
     step = max(float(np.median(turning)) * signal.interval, _SMALLEST_STEP * pitch)
-    slow = uniform_filter1d(turning, max(1, min(round(_SMOOTH * pitch / step), len(turning))), mode="nearest")
+    slow = scipy.ndimage.uniform_filter1d(
+        turning, max(1, min(round(_SMOOTH * pitch / step), len(turning))), mode="nearest"
+    )
     stopped = slow <= 0.0
     end = started + int(stopped.argmax())
     return replace(signal, values=signal.values[:end]) if stopped.any() else signal
@@ -295,5 +296,7 @@ def _bursts(signal: Signal, angle: Floats, pitch: float) -> _Bursts | None:
     cutoff = lowest_frequency(signal.values, round(2.0 * math.pi / pitch))
     if angle[-1] < 2.0 * _REACH * pitch or not 0.0 < cutoff < 0.4 * signal.rate:
         return None
-    fast = dsp.sosfiltfilt(dsp.butter(2, cutoff, "highpass", fs=signal.rate, output="sos"), signal.values)
+    fast = scipy.signal.sosfiltfilt(
+        scipy.signal.butter(2, cutoff, "highpass", fs=signal.rate, output="sos"), signal.values
+    )
     return _Bursts(angle, np.concatenate([[0.0], np.cumsum(fast[1:] ** 2) * signal.interval]), pitch)

@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.interpolate import PchipInterpolator
 
 from gearidae.analysis.impacts import check_width
 from gearidae.arrays import Floats
@@ -245,7 +245,9 @@ def _interpolated(fractions: Floats, known: Floats, values: Floats) -> Floats:
     here = np.isfinite(values)
     if here.sum() < 2:
         return np.full(len(fractions), np.nan)
-    return np.asarray(PchipInterpolator(known[here], values[here], extrapolate=False)(fractions))
+    return np.asarray(
+        scipy.interpolate.PchipInterpolator(known[here], values[here], extrapolate=False)(fractions)
+    )
 
 
 def _spread(fractions: Floats, known: Floats, table: Floats) -> Floats:

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy import signal as dsp
 
 from gearidae.analysis.impacts import LEAD, WIDTH, check_width, lowest_frequency, windows_of
 from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
@@ -316,7 +316,7 @@ def _peak(piece: Floats, rate: float, lowest: float, near: float | None = None) 
     rounding = _ROUNDING * np.finfo(float).eps * float(np.abs(piece).max())
     floor = float(np.median(density[first:])) + 2.0 * rounding**2 / rate + np.finfo(float).tiny
     logarithm = np.log(density + np.finfo(float).tiny)
-    peaks, _ = dsp.find_peaks(logarithm, prominence=_PROMINENCE)
+    peaks, _ = scipy.signal.find_peaks(logarithm, prominence=_PROMINENCE)
     peaks = peaks[(peaks >= first) & (density[peaks] > _ABOVE_NOISE * floor)]
     if not len(peaks):
         return _Peak()
@@ -357,7 +357,7 @@ def piece_of(signal: Signal, start: float, stop: float) -> Floats:
 def _periodogram(piece: Floats, rate: float, size: int) -> tuple[Floats, Floats]:
     # of a constant, a straight line's fit leaves its rounding error, other on each processor; nothing is left of zero
     piece = piece - piece[0]
-    frequency, density = dsp.periodogram(piece, rate, window="hann", nfft=size, detrend="linear")
+    frequency, density = scipy.signal.periodogram(piece, rate, window="hann", nfft=size, detrend="linear")
     return frequency, density
 
 

@@ -14,8 +14,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy import signal as dsp
 
 from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
 from gearidae.arrays import Floats
@@ -71,7 +71,9 @@ def power_spectrum(
     taper = _taper(window, size)
     long = padding * size
     rows = [
-        dsp.welch(each.values, rate, window=taper, noverlap=size // 2, nfft=long, detrend="constant")[1]
+        scipy.signal.welch(
+            each.values, rate, window=taper, noverlap=size // 2, nfft=long, detrend="constant"
+        )[1]
         if len(each.values) >= size
         else np.full(long // 2 + 1, np.nan)
         for each in batch.signals
@@ -128,7 +130,7 @@ def spectrogram(
     made = np.full((len(batch.signals), size // 2 + 1, columns), np.nan)
     for target, each in zip(made, batch.signals, strict=True):
         if len(each.values) >= size:
-            density = dsp.spectrogram(
+            density = scipy.signal.spectrogram(
                 each.values, first.rate, window=taper, noverlap=shared, detrend="constant", mode="psd"
             )[2]
             target[:, : density.shape[1]] = density
@@ -162,7 +164,7 @@ def _segment(batch: Batch, length: float | None, part: float) -> int:
 
 def _taper(window: str | tuple[str, float], size: int) -> Floats:
     try:
-        return np.asarray(dsp.get_window(window, size), dtype=np.float64)
+        return np.asarray(scipy.signal.get_window(window, size), dtype=np.float64)
     except (ValueError, TypeError):
         raise SceneError("window", window, "is no window that scipy.signal knows by name") from None
 

@@ -12,8 +12,11 @@ from gearidae.archive.variables import EXPOSURES, PLACES
 from gearidae.arrays import Floats
 from gearidae.records import ExposureRows, Solution
 from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene.coating import interface_shares
+from gearidae.scene.coating_table import fraction_at
 
 FLANKS = ("drive", "coast")
+_POINTS = 64  # in each place, for means over it
 
 
 def flank_areas(scene: Scene) -> Floats:
@@ -133,16 +136,43 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     geometry, surface, width = scene.geometry, scene.surface, scene.gears.face_width
     unit = math.sqrt(2.0 * geometry.base_pitch * surface.roughness)  # of a contact of unit length
     materials = scene.materials()
-    shares = np.array([1.0 if scene.coating.by_place else each.share for each in materials])[:, None, None]
     by_material = table.swapaxes(1, 2)
+    contacts = by_material[:, rows.contacts : rows.contacts + len(materials)] / area
     lost = by_material[:, rows.adhesion : rows.adhesion + len(materials)] / area
+    shares = np.array([1.0 if scene.coating.by_place else each.share for each in materials])[:, None, None]
+    if (
+        scene.contact.model == "population"
+    ):  # each asperity has been counted, in places that its material covers
+        shares = _shares_by_place(scene)
+        contacts = np.divide(contacts, shares, out=np.zeros_like(contacts), where=shares > 0.0)
+    else:
+        contacts *= surface.asperity_density * width * unit
     return {
-        "asperity_contacts": surface.asperity_density
-        * width
-        * unit
-        * by_material[:, rows.contacts : rows.contacts + len(materials)]
-        / area,
+        "asperity_contacts": contacts,
         "adhesion_work": np.divide(lost, shares, out=np.zeros_like(lost), where=shares > 0.0),
         "sliding_work": table[:, :, rows.sliding] / area,
         "largest_pressure": table[:, :, rows.pressure] / (width * unit),
     }
+
+
+def _shares_by_place(scene: Scene) -> Floats:
+    """Share of each material in each place of the pinion's teeth, the mean over the gear's teeth that they meet.
+
+    Returns
+    -------
+    ndarray, shape (flanks, materials, teeth, places)
+    """
+    assert scene.gears is not None
+    gears, places = scene.gears, scene.run.exposures
+    along = (np.arange(_POINTS * places) + 0.5) / (_POINTS * places)
+    teeth, flanks = np.arange(gears.pinion_teeth), np.arange(len(FLANKS))
+    pinion, gear = scene.coating.tables
+    first = fraction_at(pinion, teeth[:, None], along)
+    meets = math.gcd(gears.pinion_teeth, len(gear))
+    second = (
+        fraction_at(gear, np.arange(len(gear))[:, None], along).reshape(-1, meets, along.size).mean(axis=0)
+    )
+    second = second[(teeth + flanks[:, None]) % meets]
+    found = interface_shares(scene.coating.pairing, np.broadcast_to(first, second.shape), second)
+    shares = np.stack([found[each.name] for each in scene.materials()], axis=1)
+    return np.asarray(shares.reshape(*shares.shape[:-1], places, _POINTS).mean(axis=-1))

@@ -29,7 +29,7 @@ from gearidae.archive.end_state import packed_state
 from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.library import LIBRARY, close, opened
 from gearidae.archive.variables import EVENTS
-from gearidae.records import Block, Statistics, sample_times
+from gearidae.records import Block, EventColumn, Statistics, sample_times
 from gearidae.scene import Scene
 
 COPIED = 2**20
@@ -215,8 +215,10 @@ class GrowingArchive:
         for column, name in enumerate(_EVENT_COLUMNS):
             self._write(name, self.events, block.events[:, column].astype(EVENTS[name].dtype))
         if self._has_asperities:
-            self._write("event_asperity", self.events, block.events[:, 5].astype(np.int64))
-            teeth = tooth_of(self._teeth, block.events[:, 2], block.events[:, 3])
+            self._write("event_asperity", self.events, block.events[:, EventColumn.ASPERITY].astype(np.int64))
+            teeth = tooth_of(
+                self._teeth, block.events[:, EventColumn.PAIR], block.events[:, EventColumn.FLANK]
+            )
             self._write("event_tooth", self.events, teeth)
         self._write("event_sam_fraction", self.events, np.full(len(block.events), self._fraction))
         self.samples += len(block.rows)

@@ -22,7 +22,10 @@ app = App(
 app.meta.suppress_keyboard_interrupt = False
 
 Case = Annotated[
-    Path, Parameter(help="Case file (TOML), or the name of a preset.", completer=completing.cases)
+    Path,
+    Parameter(
+        help="Case file (TOML), or the name of a preset or a shipped case.", completer=completing.cases
+    ),
 ]
 Output = Annotated[
     Path | None, Parameter(name=["--output", "-o"], help="File to write. Default: named after the input.")
@@ -292,6 +295,9 @@ def surface(
     picture: Annotated[
         Path | None, Parameter(help="Image of the numbers against the cut-off to write.")
     ] = None,
+    asperities: Annotated[
+        Path | None, Parameter(help="List of the summits to write, for contact.asperities = {file = ...}.")
+    ] = None,
     overwrite: Overwrite = False,
 ) -> int:
     """Take roughness, density and tip radius of the asperities from a measured height map.
@@ -300,7 +306,8 @@ def surface(
     """
     from gearidae.cli.surface import Choices, analyse_scan
 
-    choices = Choices(size, unit, cutoff, by, both_flanks, align_rows, None if into is None else str(into))
+    case = None if into is None else str(into)
+    choices = Choices(size, unit, cutoff, by, both_flanks, align_rows, case, asperities)
     return analyse_scan(scan, choices, output, picture, overwrite=overwrite)
 
 

@@ -6,18 +6,31 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import gearidae
 from gearidae.cli.values import assignments
 from gearidae.errors import SceneError
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-SHIPPED: Final = {"low_speed": "teodorescu2009_low_speed", "high_speed": "teodorescu2009"}
-"""Shipped cases that are presets under another name."""
+_ALSO_PRESETS: Final = {"low_speed": "teodorescu2009_low_speed", "high_speed": "teodorescu2009"}
+"""Shipped cases that are presets under another name: these have no units to be read."""
+
+
+def shipped_cases() -> dict[str, Path]:
+    """Return the case files that come with the package, by their names."""
+    package = Path(gearidae.__file__).parent
+    for folder in (
+        package / "cases",
+        package.parents[1] / "cases",
+    ):  # installed, and in a tree of the sources
+        if found := {path.stem: path for path in sorted(folder.glob("*.toml"))}:
+            return found
+    return {}
 
 
 def read_scene(case: str, settings: Sequence[str]) -> Scene:
-    """Load a case file, or a preset if there is no such file, and change the keys given by ``--set``.
+    """Load a case file, or a preset or shipped case if there is no such file, and change the keys given by ``--set``.
 
     Parameters
     ----------
@@ -34,15 +47,17 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
     from gearidae.scene import PRESETS, load_case, preset
     from gearidae.scene.group import did_you_mean
 
-    path = Path(case)
-    known = dict(zip(PRESETS, PRESETS, strict=True)) | SHIPPED
-    if case in known and not path.exists():
-        scene = preset(known[case]).replace({"name": case})
-    else:
-        meant = "" if path.exists() or path.suffix else did_you_mean(case, known)
+    path, shipped = Path(case), shipped_cases()
+    presets = dict(zip(PRESETS, PRESETS, strict=True)) | _ALSO_PRESETS
+    if path.exists() or case not in presets | shipped:
+        meant = "" if path.exists() or path.suffix else did_you_mean(case, presets | shipped)
         if meant:
-            raise SceneError("case", case, f"is neither a file nor a preset; {meant}")
+            raise SceneError("case", case, f"is no file, no preset and no shipped case; {meant}")
         scene = load_case(case)
+    elif case in presets:
+        scene = preset(presets[case]).replace({"name": case})
+    else:
+        scene = load_case(shipped[case])
     changes = assignments(settings)
     return scene.replace(changes) if changes else scene
 

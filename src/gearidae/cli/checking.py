@@ -11,8 +11,7 @@ import numpy as np
 from gearidae.archive.variables import EVENTS, columns
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
-from gearidae.cli.output import say
-from gearidae.cli.tables import show_rows
+from gearidae.cli.output import say, show_rows
 from gearidae.cli.validity_table import show_validity
 from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
@@ -51,7 +50,9 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     show_rows(_rows(scene))
     rows = validity_rows(scene)
     show_validity(rows, about=contact_subject(roller=scene.roller is not None))
-    if note := mean_note(rows):
+    if scene.contact.model == "population":
+        say("A run is one specimen of this design: contact.seed numbers the others.")
+    elif note := mean_note(rows):
         say(f"Verdicts of runs are a {note}")
     for doubt in doubts(scene):
         say(f"Warning: {doubt}")

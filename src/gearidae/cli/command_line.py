@@ -16,8 +16,9 @@ from gearidae.cli.interrupts import interrupts_kept
 from gearidae.cli.output import complain
 from gearidae.cli.session import app
 from gearidae.cli.streams import stop_output
-from gearidae.cli.values import spread
 from gearidae.errors import GearidaeError, SceneError
+
+_TAKES_PAIRS = ("--set", "--over", "--vary", "--seen", "--select", "--line")
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:
@@ -53,6 +54,29 @@ def _run(tokens: Sequence[str]) -> int:
 def _complain(message: str, code: int) -> int:
     complain(message)
     return code
+
+
+def spread(arguments: Sequence[str]) -> list[str]:
+    """Let several pairs follow one ``--set`` or ``--over``: ``--set a=1 b=2`` is ``--set a=1 --set b=2``.
+
+    A pair contains ``=`` and does not begin with a dash, so that a case file may stand after the pairs.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        The command line.
+    """
+    spread_out: list[str] = []
+    option = ""
+    for argument in arguments:
+        if argument in _TAKES_PAIRS:
+            option = argument
+        elif argument.startswith("-") or "=" not in argument:
+            option = ""
+        elif option and spread_out[-1] != option:
+            spread_out.append(option)
+        spread_out.append(argument)
+    return spread_out
 
 
 @contextmanager

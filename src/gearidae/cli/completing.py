@@ -28,10 +28,14 @@ def cases(context: CompletionContext) -> Iterable[str]:
     context : CompletionContext
         Its ``incomplete`` is the word so far.
     """
-    from gearidae.cli.case import SHIPPED
+    from gearidae.cli.case import shipped_cases
 
     folder, slash, begun = str(context.incomplete).rpartition("/")
-    return [*_cases_in(Path(folder or slash or "."), f"{folder}{slash}", begun), *presets(context), *SHIPPED]
+    return [
+        *_cases_in(Path(folder or slash or "."), f"{folder}{slash}", begun),
+        *presets(context),
+        *shipped_cases(),
+    ]
 
 
 def _cases_in(folder: Path, prefix: str, begun: str) -> Iterator[str]:

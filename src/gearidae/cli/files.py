@@ -13,8 +13,8 @@ from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import archive_facts, product_facts, say_json
-from gearidae.cli.output import say
-from gearidae.cli.tables import show_account, show_outcomes, show_rows
+from gearidae.cli.output import say, show_rows
+from gearidae.cli.tables import show_outcomes, show_summary
 from gearidae.cli.validity_table import show_validity
 from gearidae.errors import SceneError
 from gearidae.runs.kept_validity import validity_of
@@ -87,7 +87,7 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
     if kind == "runs":
         show_rows(_description(archive, ds))
         show_outcomes(ds)
-        show_account(ds)
+        show_summary(ds)
     else:
         found = answer(ds, kind)
         show_rows([*_contents(archive, ds), *_scene_rows(ds)])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.segment import Segment
+from rich.table import Table
+from rich.text import Text
 
 from gearidae.cli.streams import stop_output
 from gearidae.printable import printable
@@ -66,6 +68,20 @@ def show(table: RenderableType) -> None:
     with console.capture() as drawn:
         console.print(_Plain(table))
     _write(drawn.get())
+
+
+def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:
+    """Print names, values and remarks in three columns.
+
+    Parameters
+    ----------
+    rows : iterable of (str, str, str)
+        A row without a value is a heading.
+    """
+    table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    for name, value, remark in rows:
+        table.add_row(Text(f"  {name}") if value else Text(name, style="bold"), Text(value), Text(remark))
+    show(table)
 
 
 def complain(message: str) -> None:

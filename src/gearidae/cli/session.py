@@ -24,8 +24,8 @@ from gearidae.printable import printable
 __all__ = ["app", "session"]
 
 _WRITERS = (
-    "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "report",
-    "run", "starting-torque", "sweep", "threshold",
+    "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "pull-off",
+    "report", "run", "starting-torque", "sweep", "threshold",
 )  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import gearidae as gd
+from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import run_value, runs
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
-from gearidae.cli.tables import label_text, show_account, show_outcomes
+from gearidae.cli.outset import announce_grid, check_new
+from gearidae.cli.tables import label_text, show_outcomes, show_summary
 from gearidae.cli.values import default_output, sweep_values
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
@@ -67,12 +69,12 @@ def run_case(
     except SolverError as error:
         if error.dataset is not None:
             show_outcomes(error.dataset)
-            show_account(error.dataset)
+            show_summary(error.dataset)
             say(f"Archive of the run up to the failure: {target}")
         complain(str(error))
         return UNFINISHED
     show_outcomes(ds)
-    show_account(ds)
+    show_summary(ds)
     if was_finished:
         say("The run in this archive was already finished; nothing was computed.")
     say(f"Archive: {target}")
@@ -123,6 +125,8 @@ def sweep_case(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
+    check_new(target, resume=resume, overwrite=overwrite)
+    announce_grid("Sweep", scene, values, workers if dask is None else None, zipped=zipped)
     with dask_executor(dask) as executor:
         ds = gd.sweep(
             scene,
@@ -143,6 +147,7 @@ def sweep_case(
     failed = [(label, run) for label, run in unfinished if run_value(run, "status") != "finished"]
     for label, run in failed:
         complain(f"{label_text(label)}: {run_value(run, 'message') or run_value(run, 'status')}")
+    say(headline(ds))
     return UNFINISHED if failed else DONE
 
 

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, Final
 import gearidae as gd
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import complain, is_quiet, say
+from gearidae.cli.output import complain, is_quiet, say, show_rows
+from gearidae.cli.outset import announce, announce_draws, announce_grid, check_new
 from gearidae.cli.request import Request
-from gearidae.cli.tables import name_failures, show_rows
-from gearidae.cli.values import assignments, default_output, sweep_values, texts
+from gearidae.cli.tables import name_failures
+from gearidae.cli.values import assignments, default_output, quantity, sweep_values, texts
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.studies.answers import answer
@@ -19,6 +20,7 @@ from gearidae.studies.answers import answer
 if TYPE_CHECKING:
     import xarray as xr
 
+    from gearidae.scene import Scene
     from gearidae.wear import LossLaw
 
 _FRACTION: Final = "coating.sam_fraction"
@@ -34,6 +36,7 @@ def conduct(
     *arguments: Any,
     keys: Mapping[str, Any] | Sequence[str] = (),
     members: int = 0,
+    outset: Callable[[Scene, int | None], None] | None = None,
     **options: Any,
 ) -> int:
     """Conduct a study of a case, keep it, show what it has found.
@@ -52,6 +55,8 @@ def conduct(
         Of the function, after the scene.
     keys, members
         What differs between the members of an ensemble, and how many they are.
+    outset : callable, optional
+        Says what will be run, given the scene and the number of simultaneous runs (None on a cluster).
     **options
         Of the function.
 
@@ -64,6 +69,9 @@ def conduct(
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
+    check_new(target, resume=request.resume, overwrite=request.overwrite)
+    if outset is not None:
+        outset(scene, workers if request.dask is None else None)
     with request.executor(keys, members) as executor:
         ds = study(
             scene,
@@ -78,9 +86,10 @@ def conduct(
         )
     found = answer(ds, kind)
     show_rows(found.rows)
-    say(found.sentence)
     say(f"{title}: {target}")
-    return _code(ds)
+    code = _code(ds)
+    say(found.sentence)
+    return code
 
 
 def _code(ds: xr.Dataset) -> int:
@@ -98,8 +107,10 @@ def _code(ds: xr.Dataset) -> int:
 def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
     """Search the sticking threshold of a case between two values of a key, ``key=value,value``."""
     ((key, ends),) = sweep_values([over]).items()
-    if len(ends) != 2:
-        raise SceneError("--over", over, f"needs two values, at one of which the gear sticks: {key}=0.4,0.7")
+    if len(ends) != 2 or ends[0] == ends[1]:
+        raise SceneError(
+            "--over", over, f"needs two different values, at one of which the gear sticks: {key}=0.4,0.7"
+        )
     return conduct(
         case,
         request,
@@ -109,6 +120,9 @@ def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
         key,
         (ends[0], ends[1]),
         exits,
+        outset=lambda scene, _: announce(
+            "Threshold", scene, f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits"
+        ),
     )
 
 
@@ -119,10 +133,11 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
         ((key, fractions),) = sweep_values([over]).items()
         if key != _FRACTION:
             raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
+    seeded = read_scene(case, request.settings or ()).contact.model == "population"
     return conduct(
         case,
         request,
-        "starting_torque",
+        "starting_torques" if seeded else "starting_torque",
         "Starting torque",
         gd.studies.starting_torque,
         fractions,
@@ -130,10 +145,27 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
     )
 
 
+def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int:
+    """Part drawn pairs of a case, pressed with a force."""
+    force = None if load is None else quantity("--load", load, "N")
+    return conduct(case, request, "pull_off", "Pull-off", gd.studies.pull_off, seeds, load=force)
+
+
 def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
     """Map what the gears of a case do over two keys."""
     values = sweep_values(over)
-    return conduct(case, request, "operating_map", "Operating map", gd.studies.operating_map, values)
+    if len(values) != 2:
+        example = "drive.torque=4e-18,5e-18 coating.sam_fraction=1:0.4:-0.1"
+        raise SceneError("--over", " ".join(over), f"must be two keys and their values: {example}")
+    return conduct(
+        case,
+        request,
+        "operating_map",
+        "Operating map",
+        gd.studies.operating_map,
+        values,
+        outset=lambda scene, workers: announce_grid("Operating map", scene, values, workers),
+    )
 
 
 def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
@@ -149,9 +181,23 @@ def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
 
 def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any) -> int:
     """Run an ensemble of a case."""
+    from gearidae.studies.design import check_design
+
     keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
-    drawn |= {"keys": keys, "members": drawn["size"]}
-    return conduct(case, request, "ensemble", "Ensemble", gd.studies.ensemble, keys, **drawn)
+    size, of = drawn["size"], drawn.get("of")
+    check_design(size, drawn["design"], drawn["seed"], indices=of is not None)
+    runs = size if of is None else size * (len(keys) + 2)  # the matrices of the Sobol' indices
+    drawn |= {"keys": keys, "members": size}
+    return conduct(
+        case,
+        request,
+        "ensemble",
+        "Ensemble",
+        gd.studies.ensemble,
+        keys,
+        outset=lambda scene, workers: announce_draws("Ensemble", scene, keys, runs, workers),
+        **drawn,
+    )
 
 
 def follow_life(

@@ -18,7 +18,8 @@ Vary = Annotated[
     list[str],
     Parameter(
         help="Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
-        "uniform(lowest, highest), lognormal(median, geometric deviation); repeatable.",
+        "uniform(lowest, highest), lognormal(median, geometric deviation); contact.seed=seeds numbers the seeds of a "
+        "population; repeatable.",
         consume_multiple=False,
         completer=completing.keys,
     ),
@@ -84,14 +85,37 @@ def starting_torque(
         float | None, Parameter(help="Lowest torque to try in N m. Default: 0.001 of the drive's own.")
     ] = None,
     tolerance: Annotated[float, Parameter(help="Relative width at which the search ends.")] = 0.1,
+    seeds: Annotated[
+        int | None, Parameter(help="Gears of a population, with seeds from contact.seed on. Default: 20.")
+    ] = None,
     request: Usual = USUAL,
 ) -> int:
-    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion."""
+    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
+
+    Of a population (contact.model = population): the distribution over its gears, whose torque rises slowly until each
+    has turned one pitch.
+    """
     from gearidae.cli.studies import search_starting_torque
 
     return search_starting_torque(
-        str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance
+        str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance, seeds=seeds
     )
+
+
+@app.command(name="pull-off")
+def pull_off(
+    case: Case,
+    *,
+    seeds: Annotated[int, Parameter(help="Number of drawn surfaces, from contact.seed on.")] = 100,
+    load: Annotated[
+        str | None, Parameter(help="Force that presses the pair, 1 uN. Default: of the drive's mean torque.")
+    ] = None,
+    request: Usual = USUAL,
+) -> int:
+    """Part single pairs of teeth with drawn asperities: the distribution of their pull-off force."""
+    from gearidae.cli.studies import part_pairs
+
+    return part_pairs(str(case), request, seeds, load)
 
 
 @app.command(name="operating-map")

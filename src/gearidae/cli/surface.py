@@ -37,6 +37,8 @@ class Choices:
         Whether to align the lines of the scan.
     case : str or None
         Case file or preset whose surface is to be replaced; None for a table ``[surface]`` alone.
+    asperities : Path or None
+        List of the summits to write.
     """
 
     size: str | None
@@ -46,6 +48,7 @@ class Choices:
     both_flanks: bool
     align_rows: bool
     case: str | None
+    asperities: Path | None = None
 
 
 def analyse_scan(
@@ -78,7 +81,9 @@ def analyse_scan(
         raise SceneError("--cutoff", "(none)", "choose one before writing a case: the numbers depend on it")
     if choices.case is not None and output is None:
         raise SceneError("--case", choices.case, "needs -o, the case file to write")
-    for target in (output, picture):
+    if choices.asperities is not None and choices.cutoff is None:
+        raise SceneError("--cutoff", "(none)", "choose one before writing a list: the summits depend on it")
+    for target in (output, picture, choices.asperities):
         if target is not None:
             check_target(target, overwrite=overwrite, name="output")
     heights, own_size = read_lines(scan, choices.unit)
@@ -92,7 +97,10 @@ def analyse_scan(
         source=scan.name,
     )
     text = None if output is None else _text(found, choices.case)
+    listed = None if choices.asperities is None else found.asperity_list(_along(choices.case))
     show_surface(found)
+    if choices.asperities is not None and listed is not None:
+        _write_list(choices.asperities, listed, found, overwrite=overwrite)
     if picture is not None:
         from gearidae.plot.picture import usual_style
 
@@ -106,6 +114,21 @@ def analyse_scan(
     elif choices.cutoff is None:
         say("The numbers depend on the cut-off wavelength: choose one with --cutoff.")
     return DONE
+
+
+def _along(case: str | None) -> str:
+    """Name what places count along in a list: in a roller's case from the middle, else from the base circle."""
+    return "arc" if case is None or read_scene(case, []).roller is None else "x"
+
+
+def _write_list(path: Path, text: str, found: gd.surfaces.MeasuredSurface, *, overwrite: bool) -> None:
+    """Write a list of asperities, and say how much of a flank it is."""
+    with whole_file(path, overwrite=overwrite, name="output") as part:
+        part.write_text(text, encoding="utf-8")
+    assert found.asperities is not None
+    length, width = (with_prefix(found.asperities.attrs[side], "m", 3) for side in ("length", "width"))
+    say(f"Note: the list covers a flank of {length}, {width} wide; teeth that meet beyond touch nothing.")
+    say(f"Asperities: {path}")
 
 
 def _size(given: str | None, own: tuple[float, float] | None) -> str | tuple[float | str, float | str]:

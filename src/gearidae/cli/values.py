@@ -12,30 +12,6 @@ from gearidae.scene.literal import literal
 from gearidae.scene.units import from_text
 
 _LONGEST_RANGE = 100_000
-_TAKES_PAIRS = ("--set", "--over", "--vary", "--seen", "--select", "--line")
-
-
-def spread(arguments: Sequence[str]) -> list[str]:
-    """Let several pairs follow one ``--set`` or ``--over``: ``--set a=1 b=2`` is ``--set a=1 --set b=2``.
-
-    A pair contains ``=`` and does not begin with a dash, so that a case file may stand after the pairs.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        The command line.
-    """
-    spread_out: list[str] = []
-    option = ""
-    for argument in arguments:
-        if argument in _TAKES_PAIRS:
-            option = argument
-        elif argument.startswith("-") or "=" not in argument:
-            option = ""
-        elif option and spread_out[-1] != option:
-            spread_out.append(option)
-        spread_out.append(argument)
-    return spread_out
 
 
 def assignments(

@@ -65,7 +65,7 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
 def is_cached() -> bool:
     """Whether compiled code can be kept; if not, each process compiles its own, which is said.
 
-    Numba would keep it beside the sources instead, where nothing tells whether a function that it calls has changed.
+    Numba would keep it beside the sources instead, where a change of a function that it calls is not noticed.
     """
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
@@ -104,15 +104,11 @@ class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[m
     """
 
     def __init__(self, function: Callable[..., Any], file: str, declared: _Declared) -> None:
-        path = Path(file).resolve()
         self._py_file = file  # numba names it where it says that a function's code cannot be kept
         self._which, self._stamp = f"{function.__code__.co_firstlineno}-{declared.form}", ""
-        known = [root.resolve() for root in (_ROOT, *declared.sources)]
-        roots = [root for root in known if path.is_relative_to(root)]
-        if roots:
-            inside = path.parent.relative_to(roots[0].parent) if path != roots[0] else Path(path.parent.name)
-            name = "_".join(inside.parts)
-        else:
+        name = _folder_of(file, declared.sources)
+        if not name:
+            path = Path(file).resolve()
             name = hashlib.sha256(str(path.parent).encode()).hexdigest()[:16]
             self._stamp = hashlib.sha256(path.read_bytes()).hexdigest()
         self._folder = cache_folder(declared.sources) / name
@@ -131,7 +127,7 @@ class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[m
         return self._stamp
 
     def get_disambiguator(self) -> str:
-        """What tells functions of one name in one module apart, and the forms of one function."""
+        """Part of the file name that differs for functions of one name in one module, and for forms of one function."""
         return self._which
 
     @classmethod
@@ -140,6 +136,17 @@ class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[m
         if _declared is None or not Path(file).exists():
             return None
         return cls(function, file, _declared)
+
+
+@cache
+def _folder_of(file: str, sources: tuple[Path, ...]) -> str:
+    """Name the folder of a module of the named sources; an empty text for a file from elsewhere."""
+    path = Path(file).resolve()
+    for root in (each.resolve() for each in (_ROOT, *sources)):
+        if path.is_relative_to(root):
+            inside = path.parent.relative_to(root.parent) if path != root else Path(path.parent.name)
+            return "_".join(inside.parts)
+    return ""
 
 
 # numba asks the first of these that answers; its own name folders after the sources' absolute paths

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import update_wrapper
+from functools import cached_property, update_wrapper
 from pathlib import Path
 from typing import Any, TypeVar, cast, overload
 
@@ -19,20 +19,24 @@ class Function:
     """A compiled function in two forms: one for compiled callers, and one for Python, each compiled when first called.
 
     Python's form has to take records and arrays out of Python's objects. Almost all functions are called from compiled
-    code alone, and a third of the compilation would go into unused wrappers. Where numba does not take the options for
-    that, both are the same.
+    code alone, and a third of the compilation would go into unused wrappers; so that form is not even declared before
+    Python calls it. Where numba does not take the options for that, both are the same.
     """
 
-    def __init__(self, function: Callable[..., Any], linked: Any, called: Any) -> None:
+    def __init__(self, function: Callable[..., Any], linked: Any, declare: Callable[[], Any]) -> None:
         update_wrapper(self, function)
         self.py_func = function
-        self._called = called
+        self._declare = declare
         self._linked = linked
         self._numba_type_ = linked._numba_type_  # by which numba knows it for a compiled function
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python."""
         return self._called(*arguments)
+
+    @cached_property
+    def _called(self) -> Any:
+        return self._declare()
 
     @property
     def cache_path(self) -> str:
@@ -76,12 +80,16 @@ def compiled(
 
     def declare(function: F) -> F:
         options = {name: value for name, value in wanted.items() if name in numba_options()}
-        called = linked = _declare(function, sources, options, "called")
-        if not hasattr(called, "_numba_type_"):
-            return cast("F", called)
-        if HAS_LOCATOR_HOOK and "no_cpython_wrapper" in numba_options():
-            linked = _declare(function, sources, options | {"no_cpython_wrapper": True}, "linked")
-        return cast("F", Function(function, linked, called))
+        apart = HAS_LOCATOR_HOOK and "no_cpython_wrapper" in numba_options()
+        of_linked, form = (options | {"no_cpython_wrapper": True}, "linked") if apart else (options, "called")
+        linked = _declare(function, sources, of_linked, form)
+        if not hasattr(linked, "_numba_type_"):  # a numba that compiles nothing
+            return cast("F", linked)
+
+        def declare_called() -> Any:
+            return _declare(function, sources, options, "called") if apart else linked
+
+        return cast("F", Function(function, linked, declare_called))
 
     return declare if function is None else declare(function)
 

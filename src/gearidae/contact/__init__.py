@@ -29,12 +29,16 @@ if TYPE_CHECKING:
     from gearidae.asperities.tip import contact_modulus as contact_modulus
     from gearidae.asperities.tip import tabor_parameter as tabor_parameter
     from gearidae.asperities.tip import tabor_regime as tabor_regime
+    from gearidae.contact.attraction import attraction_energy as attraction_energy
+    from gearidae.contact.attraction import attraction_force as attraction_force
+    from gearidae.contact.attraction import attraction_pressure as attraction_pressure
     from gearidae.contact.bulk import bulk_influence as bulk_influence
     from gearidae.contact.elastic import ElasticCurve as ElasticCurve
     from gearidae.contact.elastic import ElasticFoldError as ElasticFoldError
     from gearidae.contact.elastic import elastic_line_curve as elastic_line_curve
     from gearidae.contact.elastic import elastic_line_force as elastic_line_force
     from gearidae.contact.line import line_force as line_force
+    from gearidae.contact.parting import adhesion_energy as adhesion_energy
     from gearidae.contact.rough import adhesion_loss_per_asperity as adhesion_loss_per_asperity
     from gearidae.contact.rough import maximum_tension as maximum_tension
     from gearidae.contact.rough import rough_pressure as rough_pressure

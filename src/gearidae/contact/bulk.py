@@ -38,25 +38,6 @@ STENCIL: Final = 8
 """Nodes that a value between them is made of."""
 
 
-def averaged_kernel(distance: ArrayLike, width: float) -> Array:
-    """Deflection of a half-space beside a line load across the width, averaged across the width, times pi E*.
-
-    Parameters
-    ----------
-    distance : array_like
-        Distance xi along the contact [m], positive.
-    width : float
-        Face width L [m].
-
-    Returns
-    -------
-    ndarray
-        k [1], for a load per width of 1.
-    """
-    xi = np.abs(np.asarray(distance, dtype=np.float64))
-    return np.asarray(2.0 * (np.arcsinh(width / xi) - width / (np.hypot(xi, width) + xi)))
-
-
 def _first_integral(distance: Array, width: float) -> Array:
     """Integrate the kernel from 0 to a signed distance: odd."""
     xi = np.abs(distance)
@@ -75,31 +56,6 @@ def _first_moment(distance: Array, width: float) -> Array:
     # r^3 - L^3 - xi^3 over L, with the difference of the largest two taken out: r^2 - xi^2 = L^2.
     cubes = width * (r**2 + r * xi + xi**2) / (r + xi) - width**2
     return near + width * (r - width) - 2.0 / 3.0 * cubes
-
-
-def strip_deflection(x: ArrayLike, left: ArrayLike, right: ArrayLike, width: float, modulus: float) -> Array:
-    """Deflection under a unit pressure that is uniform on a rectangle.
-
-    Parameters
-    ----------
-    x : array_like
-        Where the deflection is wanted [m].
-    left, right : array_like
-        Ends of the loaded strip [m]; broadcast against `x`.
-    width : float
-        Face width L [m].
-    modulus : float
-        Contact modulus E* [Pa].
-
-    Returns
-    -------
-    ndarray
-        Approach of both bodies per pressure, averaged across the width [m/Pa].
-    """
-    here = np.asarray(x, dtype=np.float64)
-    upper = _first_integral(np.asarray(right, dtype=np.float64) - here, width)
-    lower = _first_integral(np.asarray(left, dtype=np.float64) - here, width)
-    return np.asarray((upper - lower) / (math.pi * modulus))
 
 
 def bulk_influence(points: ArrayLike, knots: ArrayLike, width: float, modulus: float) -> Array:

@@ -197,37 +197,6 @@ def elastic_line_curve(
     return _Contact(grid, radius, width, layer).walk(path)
 
 
-def elastic_grid(
-    lowest_gap: float,
-    radius: float,
-    width: float,
-    surface: Surface,
-    *,
-    asperity: str = "jkr",
-    coated_surface: Surface | None = None,
-    sam_fraction: float = 0.0,
-    nodes: int = 24,
-) -> LineGrid:
-    """Nodes that reach as far as a contact does when it is pressed to a given gap.
-
-    Parameters
-    ----------
-    lowest_gap : float
-        Smallest rigid gap g that will occur [m].
-    radius, width, surface, asperity, coated_surface, sam_fraction, nodes
-        As in `elastic_line_force`.
-
-    Raises
-    ------
-    SceneError
-        If an argument is not valid.
-    """
-    if not math.isfinite(lowest_gap):
-        raise SceneError("lowest_gap", lowest_gap, "must be a finite number of metres")
-    layer = _rough_layer(surface, asperity, coated_surface, sam_fraction)
-    return _fitted_grid(lowest_gap, radius, width, surface, layer, nodes)
-
-
 def _fitted_grid(
     lowest_gap: float, radius: float, width: float, surface: Surface, layer: _RoughLayer, nodes: int
 ) -> LineGrid:

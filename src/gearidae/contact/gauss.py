@@ -1,4 +1,4 @@
-"""Gauss-Legendre rules, each worked out once: the tables of one surface ask for them some forty times."""
+"""Gauss-Legendre rules, each worked out once: the tables of one surface use them some forty times."""
 
 from __future__ import annotations
 

@@ -23,8 +23,8 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import optimize
 
 from gearidae.asperities import law_of_tip
 from gearidae.asperities.tip import Surface, asperity_of
@@ -149,7 +149,7 @@ def maximum_tension(
     k = int(np.argmin(pressure(grid)))
     if not 0 < k < grid.size - 1:
         return MaximumTension(0.0, math.nan)
-    found = optimize.minimize_scalar(
+    found = scipy.optimize.minimize_scalar(
         lambda gap: float(pressure(np.array([gap]))[0]),
         bounds=(grid[k - 1], grid[k + 1]),
         options={"xatol": 1e-9},

@@ -23,6 +23,7 @@ from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import (
     EnergyBalance,
+    EventColumn,
     Events,
     Extremes,
     Solution,
@@ -59,7 +60,7 @@ def choose_backend(backend: str, method: str) -> str:
     Raises
     ------
     SceneError
-        If the native driver is requested and cannot work here, the name is unknown, or numba has been told to compile
+        If the native driver is requested and cannot work here, the name is unknown, or numba is set to compile
         nothing.
     """
     if not compiles():
@@ -363,11 +364,12 @@ def kept_at(
 
 
 def _events(table: NDArray[np.float64]) -> Events:
+    column = {one.name.lower(): table[:, one] for one in EventColumn}
     return Events(
-        time=np.ascontiguousarray(table[:, 0]),
-        kind=table[:, 1].astype(np.int8),
-        pair=table[:, 2].astype(np.int64),
-        flank=table[:, 3].astype(np.int8),
-        gap_rate=np.ascontiguousarray(table[:, 4]),
-        asperity=table[:, 5].astype(np.int64),
+        time=np.ascontiguousarray(column["time"]),
+        kind=column["kind"].astype(np.int8),
+        pair=column["pair"].astype(np.int64),
+        flank=column["flank"].astype(np.int8),
+        gap_rate=np.ascontiguousarray(column["gap_rate"]),
+        asperity=column["asperity"].astype(np.int64),
     )

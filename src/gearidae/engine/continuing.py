@@ -143,7 +143,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
 def knots_at_start(problem: Problem) -> Floats:
     """Return the event of a schedule that has a knot where a continued run begins; the run before ended just there.
 
-    A knot that the solver could not tell from the end has been left out there.
+    A knot that the solver could not distinguish from the end has been left out there.
 
     Returns
     -------

@@ -8,9 +8,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gearidae.lazy import lazy_names
+from gearidae.plot.asperity_events import asperity_events as asperity_events
 from gearidae.plot.coating import coating_map as coating_map
 from gearidae.plot.coating import starting_torque as starting_torque
+from gearidae.plot.coating import starting_torques as starting_torques
 from gearidae.plot.ensembles import sobol_indices as sobol_indices
+from gearidae.plot.ensembles import specimens as specimens
 from gearidae.plot.ensembles import sticking_probability as sticking_probability
 from gearidae.plot.files import write as write
 from gearidae.plot.gears import gap as gap
@@ -23,6 +26,7 @@ from gearidae.plot.outcome import outcome as outcome
 from gearidae.plot.outcome_map import outcome_map as outcome_map
 from gearidae.plot.overview import overview as overview
 from gearidae.plot.posterior import posterior as posterior
+from gearidae.plot.pull_off import pull_off as pull_off
 from gearidae.plot.roller import roller_force as roller_force
 from gearidae.plot.roller import roller_gap as roller_gap
 from gearidae.plot.spectra import cycle as cycle

@@ -2,21 +2,24 @@
 
 The model puts the roughness of both flanks on one, and knows of its asperities density, tip radius and the
 distribution of their heights; the single asperities drawn are a sample of these. Which of a sample would be pressed,
-stretched or free follows from the gap and the joined height.
+stretched or free follows from the gap and the joined height. A population's asperities are drawn as they are, all that
+stand side by side across the face width; a record tells which of them are joined.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+import scipy
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from gearidae.arrays import Floats
 from gearidae.plot.style import NEGATIVE, POSITIVE
 from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.studies.joined_asperities import contact_arc, met_flank
 from gearidae.studies.tooth_states import ToothContact
 
 FLANKS = "#d3e5f3", "#deb968"
@@ -68,7 +71,7 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
 
 
 def joined_asperities(scene: Scene, contact: ToothContact) -> float:
-    """Return how many asperities of a pair are joined on average.
+    """Return how many asperities of a pair are joined: of a population, else on average.
 
     Returns
     -------
@@ -77,15 +80,53 @@ def joined_asperities(scene: Scene, contact: ToothContact) -> float:
         where the surfaces hardly touch. NaN where the record does not tell.
     """
     assert scene.gears is not None
+    if scene.contact.model == "population":
+        return math.nan if contact.asperities is None else float(len(contact.asperities))
     sigma = scene.surface.roughness
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
     materials = {one.name: one for one in scene.materials()}
     above = sum(
-        materials[part].share * float(np.sum(ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))
+        materials[part].share
+        * float(np.sum(scipy.special.ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))
         for part, joined in contact.joined.items()
     )
     area = scene.gears.face_width * math.sqrt(2.0 * contact.radius * sigma)
     return scene.surface.asperity_density * area * above * float(step)
+
+
+class _Row(NamedTuple):
+    """Asperities of a close-up: places, heights, tip radii and materials, and which are stretched and pressed."""
+
+    x: Floats
+    height: Floats
+    radius: Floats
+    material: NDArray[np.int64]
+    stretched: NDArray[np.bool_]
+    pressed: NDArray[np.bool_]
+
+
+def _sampled_row(scene: Scene, contact: ToothContact) -> _Row:
+    """Return a sample of the model's asperities."""
+    x, height, material = rough_sample(scene, contact.pair)
+    rise = x**2 / (2.0 * contact.radius)
+    joined = np.array([contact.joined[MATERIAL_NAMES[number]] for number in material]) + rise
+    stretched = (joined < height) & (height < contact.gap + rise)
+    radius = np.full(x.size, scene.surface.asperity_radius)
+    return _Row(x, height, radius, material, stretched, height > contact.gap + rise)
+
+
+def _real_row(scene: Scene, contact: ToothContact) -> _Row:
+    """Return the asperities of a population beside a contact."""
+    flank = met_flank(scene, contact.pair, contact.flank)
+    joined = np.zeros(flank.arc.size, np.bool_)
+    joined[list(contact.asperities or ())] = True
+    near = np.abs(flank.arc - contact_arc(scene, contact.place)) < 1.1 * half_width(scene)
+    some, joined = flank.some(near), joined[near]
+    overlap = some.overlaps(scene, contact.place, contact.gap)
+    x = some.arc - contact_arc(scene, contact.place)
+    return _Row(
+        x, some.height, some.radius, some.material, joined & (overlap <= 0.0), joined & (overlap > 0.0)
+    )
 
 
 def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
@@ -104,26 +145,30 @@ def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
     half, sigma, radius = half_width(scene), scene.surface.roughness, contact.radius
     x = np.linspace(-half, half, 801)
     upper = contact.gap + x**2 / (2.0 * radius)
-    places, heights, materials = rough_sample(scene, contact.pair)
-    caps = heights[:, None] - (x - places[:, None]) ** 2 / (2.0 * scene.surface.asperity_radius)
+    real = scene.contact.model == "population"
+    row = (_real_row if real else _sampled_row)(scene, contact)
+    caps = row.height[:, None] - (x - row.x[:, None]) ** 2 / (2.0 * row.radius[:, None])
+    caps = np.vstack([caps, np.full(x.size, -_BELOW * sigma)])
     owner = np.argmax(caps, axis=0)
-    rough = caps[owner, np.arange(len(x))]
+    rough, materials = caps[owner, np.arange(len(x))], np.append(row.material, 0)
     pressed = rough > upper
     lower = np.minimum(rough, upper)
     top = max(_ABOVE * sigma, contact.gap + _BELOW * sigma)
-    ax.fill_between(x * 1e6, lower * 1e9, -_BELOW * sigma * 1e9, color=FLANKS[1], linewidth=0.0)
-    ax.fill_between(x * 1e6, upper * 1e9, top * 1e9, color=FLANKS[0], linewidth=0.0)
+    smooth, bumpy = FLANKS[::-1] if real else FLANKS  # a population stands on the pinion
+    ax.fill_between(x * 1e6, lower * 1e9, -_BELOW * sigma * 1e9, color=bumpy, linewidth=0.0)
+    ax.fill_between(x * 1e6, upper * 1e9, top * 1e9, color=smooth, linewidth=0.0)
     ax.plot(x * 1e6, upper * 1e9, color="0.2", linewidth=0.9)
     ax.plot(x * 1e6, lower * 1e9, color="0.2", linewidth=0.9)
     ax.plot(x * 1e6, np.where(materials[owner] > 0, lower, np.nan) * 1e9, color=COATING, linewidth=2.2)
     ax.plot(x * 1e6, np.where(pressed, upper, np.nan) * 1e9, color=POSITIVE, linewidth=3.5)
-    for place, height, material in zip(places, heights, materials, strict=True):
-        rise = place**2 / (2.0 * radius)
-        joined = contact.joined[MATERIAL_NAMES[material]] + rise
-        if abs(place) < half and joined < height < contact.gap + rise:
-            ax.plot(
-                [place * 1e6] * 2, [height * 1e9, (contact.gap + rise) * 1e9], color=NEGATIVE, linewidth=3.0
-            )
+    shown = np.abs(row.x) < half
+    for place, height in zip(row.x[row.stretched & shown], row.height[row.stretched & shown], strict=True):
+        ends = [height * 1e9, (contact.gap + place**2 / (2.0 * radius)) * 1e9]
+        ax.plot([place * 1e6] * 2, ends, color=NEGATIVE, linewidth=3.0)
+    if real:
+        for joined, colour in ((row.pressed & shown, POSITIVE), (row.stretched & shown, NEGATIVE)):
+            at = row.x[joined]
+            _mark(ax, at * 1e6, (contact.gap + at**2 / (2.0 * radius)) * 1e9, colour)
     ax.annotate(
         "",
         (0.0, contact.gap * 1e9),
@@ -137,3 +182,10 @@ def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
     ax.tick_params(labelsize="x-small")
     box = ax.get_window_extent()
     return (box.height / (top + _BELOW * sigma)) / (box.width / (2.0 * half))
+
+
+def _mark(ax: Axes, x: Floats, height: Floats, colour: str) -> None:
+    """Mark joined asperities where they touch the other flank."""
+    ax.plot(
+        x, height, "v", color=colour, markeredgecolor="white", markeredgewidth=0.6, markersize=7, zorder=5
+    )

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
-from gearidae.analysis.assessment import Assessment
 from gearidae.analysis.map_model import require_map
 from gearidae.errors import SceneError
 from gearidae.plot.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
 from gearidae.studies.products import require
+
+if TYPE_CHECKING:
+    from gearidae.analysis.assessment import Assessment
 
 _LATER = "0.6"
 
@@ -135,6 +139,60 @@ def starting_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.set_xticks(percent)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
         ax.axhline(
+            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
+        )
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+def starting_torques(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the distribution function of a population's starting torques, a line for each coverage.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.starting_torque` of a scene with a population.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        With the drive's own torque; gears that did not start are missing from the top of their line.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is something else, or no gear has started.
+    """
+    require(ds, "starting_torques")
+    if not np.isfinite(ds["starting_torque"]).any():
+        raise SceneError("plot", "starting_torques", "no gear has started")
+    ax = new_axes(ax, height=3.8)
+    count = ds.sizes["seed"]
+    for number in range(ds.sizes["sam_fraction"]):
+        one = ds["starting_torque"].isel(sam_fraction=number)
+        torque = np.sort(one.values[np.isfinite(one.values)])
+        ax.step(
+            torque,
+            np.arange(1, torque.size + 1) / count,
+            where="post",
+            color=COLOURS[number % len(COLOURS)],
+            linestyle=LINE_STYLES[number % len(LINE_STYLES)],
+            marker=".",
+            linewidth=1.2,
+            label=f"SAM {100.0 * float(one['sam_fraction']):.4g} %",
+        )
+    ax.set_xscale("log")
+    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.xaxis.set_minor_formatter(EngFormatter(sep=" "))
+    ax.tick_params(axis="x", which="minor", labelsize="x-small")
+    ax.set_ylim(0.0, 1.02)
+    ax.set_xlabel("starting torque on the pinion (N m)")
+    ax.set_ylabel(f"share of {count} gears")
+    tidy(ax)
+    if ds.attrs.get("drive_torque", 0.0) > 0.0:
+        ax.axvline(
             ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
         )
     ax.legend(frameon=False, fontsize="small")

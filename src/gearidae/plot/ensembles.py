@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from gearidae.archive.specimen import SEED
 from gearidae.errors import SceneError
 from gearidae.plot.parameter_axis import parameter_axis
 from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, tidy
@@ -27,7 +28,7 @@ def sticking_probability(
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
     over : str, optional
-        The key; by default the coverage if it was drawn, else the first.
+        The key; by default the coverage if it was drawn, else the first other than the seed.
     bins : int, optional
         As for `gearidae.studies.sticking_probability`.
 
@@ -41,7 +42,7 @@ def sticking_probability(
         If the dataset is no ensemble, or the key was not drawn.
     """
     names = drawn_keys(ds)
-    over = over or (_COVERAGE if _COVERAGE in names else next(iter(names)))
+    over = over or next((key for key in (_COVERAGE, *names) if key in names and key != SEED), SEED)
     found = probability_of(ds, over, bins=bins)
     name = names[over]
     along = parameter_axis(found[name])
@@ -60,6 +61,50 @@ def sticking_probability(
     ax.set_ylim(-0.02, 1.02)
     ax.set_xlabel(along.label)
     ax.set_ylabel("probability of sticking")
+    tidy(ax)
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+def specimens(ds: xr.Dataset, ax: Axes | None = None, *, of: str | None = None) -> Axes:
+    """Draw the distribution function of a figure over the members of an ensemble, with its mean and standard error.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.ensemble`, over the seeds of a population for instance.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+    of : str, optional
+        The figure; by default the mean speed of the gear, or the final speed of a roller.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no ensemble, or has no such figure.
+    """
+    drawn_keys(ds)
+    of = of or ("settled_gear_speed" if "settled_gear_speed" in ds else "final_speed")
+    if of not in ds or ds[of].dims != ("member",):
+        raise SceneError("of", of, "must be a figure of the ensemble's members")
+    values = np.sort(ds[of].values[np.isfinite(ds[of].values)])
+    if not values.size:
+        raise SceneError("plot", "specimens", f"no member has a {of}")
+    ax = new_axes(ax, height=3.8)
+    share = np.arange(1, values.size + 1) / values.size
+    ax.step(values, share, where="post", color=POSITIVE, marker=".", linewidth=1.2, label="one gear each")
+    mean = float(values.mean())
+    ax.axvline(mean, color="0.3", linewidth=0.8, linestyle=":", label="mean")
+    if values.size > 1:
+        error = float(values.std(ddof=1)) / np.sqrt(values.size)
+        ax.axvspan(mean - error, mean + error, color="0.3", alpha=0.2, linewidth=0, label="standard error")
+    ax.set_ylim(0.0, 1.02)
+    ax.set_xlabel(f"{ds[of].attrs['long_name']} ({ds[of].attrs['units']})")
+    ax.set_ylabel(f"share of {values.size} members below")
     tidy(ax)
     ax.legend(frameon=False, fontsize="small")
     return ax

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from gearidae.archive.select import is_roller, scene_of, swept_dims
+from gearidae.archive.specimen import has_seeds, specimen_label
 from gearidae.archive.variables import columns
 from gearidae.plot.gears import gear_speed
 from gearidae.plot.picture import new_picture
@@ -19,6 +20,7 @@ _PICTURES: Final = {
     "coating_map": {"coating_map": "Frequency of the impact response against the coverage"},
     "ensemble": {
         "sobol_indices": "What the figure depends on",
+        "specimens": "Mean speeds of gears of one design",
         "sticking_probability": "Probability of sticking against one of the keys",
     },
     "life": {
@@ -28,7 +30,9 @@ _PICTURES: Final = {
     "lives": {"lives": "Share of the gears that still turn"},
     "operating_map": {"outcome_map": "What the gears do over two keys"},
     "posterior": {"posterior": "Posterior of each key, and of each two"},
+    "pull_off": {"pull_off": "Share of drawn pairs that part below a force"},
     "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
+    "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
     "sticking_threshold": {"sticking_threshold": "Sticking limit against the mesh exits waited for"},
 }
 """Pictures of what studies have written, and their captions: the one that says most first."""
@@ -51,9 +55,12 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
     needed = {"sobol_indices": "total_order", "coverage_along_flank": "coverage_by_place"}
-    return {
+    found = {
         name: words for name, words in _PICTURES[kind].items() if name not in needed or needed[name] in ds
     }
+    if kind == "ensemble" and not has_seeds(ds):
+        del found["specimens"]
+    return found
 
 
 def overview(ds: xr.Dataset) -> Figure:
@@ -90,7 +97,7 @@ def overview(ds: xr.Dataset) -> Figure:
 
 
 def _title(ds: xr.Dataset) -> str:
-    name = str(scene_of(ds).get("name", "")).replace("_", " ")
+    words = [str(scene_of(ds).get("name", "")).replace("_", " ")]
     if "sam_fraction" in ds.coords and not ds["sam_fraction"].dims:
-        return f"{name}, SAM {100 * ds['sam_fraction'].item():.4g} %"
-    return name
+        words.append(f"SAM {100 * ds['sam_fraction'].item():.4g} %")
+    return ", ".join(filter(None, (*words, specimen_label(ds))))

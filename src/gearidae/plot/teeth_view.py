@@ -69,8 +69,8 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
     Notes
     -----
     Force and state of each pair are reconstructed as `gearidae.analysis.tooth_contacts` says, and where the record
-    does not tell them neither does the picture. The asperities drawn are a sample of the model's; a record knows of
-    no single one.
+    does not tell them neither does the picture. The asperities drawn are a sample of the model's; those of a population
+    are its own, with the joined ones marked as the events tell.
     """
     (state,) = mesh_states(ds, [math.inf if time is None else time])
     view = TeethView(ds, [state])
@@ -177,7 +177,9 @@ class TeethView:
         self.figure.text(
             0.99,
             0.179,
-            "asperities drawn: a sample of the model's",
+            "all asperities of each flank, the joined ones marked"
+            if self._scene.contact.model == "population"
+            else "asperities drawn: a sample of the model's",
             ha="right",
             va="top",
             fontsize="small",
@@ -276,7 +278,7 @@ def _caption(ax: Axes, one: ToothContact, factor: float, joined: float, *, narro
     lines = [
         f"Pair {one.pair}, {flank} flank",
         parted.join([f"gap {_quantity(one.gap, 'm')}", _force(one)]),
-        *([] if math.isnan(joined) else [f"expected asperities in contact {joined:.2g}"]),
+        *([] if math.isnan(joined) else [f"{_joined_words(one)} {joined:.2g}"]),
         parted.join(_states(one)),
     ]
     size = "x-small" if narrow else "small"
@@ -288,6 +290,10 @@ def _caption(ax: Axes, one: ToothContact, factor: float, joined: float, *, narro
     )
     if ax.get_position().x0 < 0.2:
         ax.set_ylabel("height (nm)", fontsize="small", labelpad=1)
+
+
+def _joined_words(one: ToothContact) -> str:
+    return "expected asperities in contact" if one.asperities is None else "joined asperities:"
 
 
 def _force(one: ToothContact) -> str:

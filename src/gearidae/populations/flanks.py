@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -61,24 +61,50 @@ def flanks_of(scene: Scene) -> tuple[FlankAsperities, ...]:
         Two for each tooth of the pinion, or one for a roller; arrays that must not be changed.
     """
     teeth = 1 if scene.gears is None else scene.gears.pinion_teeth
-    width = scene.roller.width if scene.roller is not None else 0.0
-    if scene.gears is not None:
-        width = scene.gears.face_width
-    strip = flank_strip(scene)
     surface, contact = scene.surface, scene.contact
     if contact.asperities:
         return _listed(
             contact.asperities, surface.asperity_radius, contact.seed, teeth, scene.gears is not None
         )
-    return _drawn(
-        teeth,
-        2 if scene.gears is not None else 1,
+    sides = 2 if scene.gears is not None else 1
+    return _drawn(teeth, sides, contact.seed, *_drawing(scene))
+
+
+def first_flanks(scene: Scene, seeds: Iterable[int]) -> Iterator[FlankAsperities]:
+    """Draw the drive flank of the pinion's first tooth, or the roller, for each of some seeds.
+
+    Each is the first of `flanks_of` of the scene with that seed.
+    """
+    contact, drawing = scene.contact, _drawing(scene)
+    for seed in seeds:
+        if contact.asperities:
+            radius = scene.surface.asperity_radius
+            yield _listed(contact.asperities, radius, seed, 1, scene.gears is not None)[0]
+        else:
+            yield _draw_flank((seed, 0, 0), *drawing)
+
+
+class _Drawing(NamedTuple):
+    """What a flank is drawn from: the seed apart, `mean` asperities, radii of a mean and a relative deviation."""
+
+    two_sided: bool
+    mean: float
+    strip: tuple[float, float]
+    roughness: float
+    radii: tuple[float, float]
+
+
+def _drawing(scene: Scene) -> _Drawing:
+    width = scene.roller.width if scene.roller is not None else 0.0
+    if scene.gears is not None:
+        width = scene.gears.face_width
+    strip, surface = flank_strip(scene), scene.surface
+    return _Drawing(
         scene.coating.pairing == "independent",
-        contact.seed,
         surface.asperity_density * width * (strip[1] - strip[0]),
         strip,
         surface.roughness,
-        (surface.asperity_radius, contact.radius_spread),
+        (surface.asperity_radius, scene.contact.radius_spread),
     )
 
 
@@ -86,31 +112,44 @@ def flanks_of(scene: Scene) -> tuple[FlankAsperities, ...]:
 def _drawn(
     teeth: int,
     sides: int,
-    two_sided: bool,
     seed: int,
+    two_sided: bool,
     mean: float,
     strip: tuple[float, float],
     roughness: float,
     radii: tuple[float, float],
 ) -> tuple[FlankAsperities, ...]:
-    """Draw the flanks of all teeth; `mean` asperities each, radii of a mean and a relative deviation."""
+    """Draw the flanks of all teeth."""
+    return tuple(
+        _draw_flank((seed, tooth, flank), two_sided, mean, strip, roughness, radii)
+        for tooth in range(teeth)
+        for flank in range(sides)
+    )
+
+
+def _draw_flank(
+    which: tuple[int, int, int],
+    two_sided: bool,
+    mean: float,
+    strip: tuple[float, float],
+    roughness: float,
+    radii: tuple[float, float],
+) -> FlankAsperities:
+    """Draw one flank, given by seed, tooth and side."""
     low, length = strip[0], strip[1] - strip[0]
     radius, spread = radii
-    flanks = []
-    for tooth in range(teeth):
-        for flank in range(sides):
-            rng = np.random.default_rng([seed, tooth, flank])
-            n = int(rng.poisson(mean))
-            arc = low + length * rng.random(n)
-            height = roughness * rng.standard_normal(n)
-            q = rng.random(n)
-            q2 = rng.random(n) if two_sided else q
-            of_radii = np.full(n, radius)
-            if spread > 0.0:
-                variance = math.log1p(spread**2)
-                of_radii = rng.lognormal(math.log(radius) - 0.5 * variance, math.sqrt(variance), n)
-            flanks.append(FlankAsperities(tooth, flank, arc, height, of_radii, q, q2).sorted())
-    return tuple(flanks)
+    _, tooth, flank = which
+    rng = np.random.default_rng(which)
+    n = int(rng.poisson(mean))
+    arc = low + length * rng.random(n)
+    height = roughness * rng.standard_normal(n)
+    q = rng.random(n)
+    q2 = rng.random(n) if two_sided else q
+    of_radii = np.full(n, radius)
+    if spread > 0.0:
+        variance = math.log1p(spread**2)
+        of_radii = rng.lognormal(math.log(radius) - 0.5 * variance, math.sqrt(variance), n)
+    return FlankAsperities(tooth, flank, arc, height, of_radii, q, q2).sorted()
 
 
 @lru_cache(maxsize=2)

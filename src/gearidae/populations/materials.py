@@ -47,6 +47,26 @@ def covered_sides(scene: Scene, one: FlankAsperities, gear_tooth: int) -> tuple[
     return first, one.q2 < fraction_at(gear, gear_tooth, places)
 
 
+def by_gear_tooth(scene: Scene) -> bool:
+    """Whether the material at an asperity depends on the tooth of the gear that it meets."""
+    return len(scene.coating.gear_table) > 1
+
+
+def materials_met(scene: Scene, one: FlankAsperities) -> NDArray[np.int64]:
+    """Return the index of the material at each asperity on whatever tooth of the gear.
+
+    Returns
+    -------
+    ndarray, shape (1, n) or (2, n)
+        One row where all teeth of the gear are alike; else one for where the gear's side is covered, and one for where
+        it is bare.
+    """
+    if not by_gear_tooth(scene):
+        return materials_at(scene, one, 0)[None]
+    first = covered_sides(scene, one, 0)[0].astype(np.int64)
+    return MATERIAL_OF_SIDES[first, 1 - np.arange(2)[:, None]]
+
+
 def materials_at(scene: Scene, one: FlankAsperities, gear_tooth: int) -> NDArray[np.int64]:
     """Return the index of the material at each asperity, among `gearidae.scene.MATERIAL_NAMES`; shape (n,)."""
     first, second = covered_sides(scene, one, gear_tooth)

@@ -16,6 +16,7 @@ from gearidae.records.columns import (
     sampled_columns,
 )
 from gearidae.records.events import (
+    EventColumn,
     EventKind,
     Events,
     Flank,
@@ -68,6 +69,7 @@ __all__ = [
     "Column",
     "Ending",
     "EnergyBalance",
+    "EventColumn",
     "EventKind",
     "Events",
     "ExposureRows",

@@ -37,6 +37,17 @@ class Flank(IntEnum):
     COAST = 1
 
 
+class EventColumn(IntEnum):
+    """Column of an event in a driver's block of output, shape (n, 6)."""
+
+    TIME = 0
+    KIND = 1
+    PAIR = 2
+    FLANK = 3
+    GAP_RATE = 4
+    ASPERITY = 5
+
+
 @dataclass(frozen=True, slots=True)
 class Events:
     """Events in the order of time; every array has shape (n_events,).

@@ -10,7 +10,9 @@ from pathlib import Path
 import xarray as xr
 
 from gearidae import plot
+from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import scene_of
+from gearidae.archive.specimen import specimen_note
 from gearidae.archive.target import whole_file
 from gearidae.plot.overview import usual_pictures
 from gearidae.report import html
@@ -18,15 +20,14 @@ from gearidae.report.life import life_table, life_viewer
 from gearidae.report.pictures import figures, pictures
 from gearidae.report.series import MOST_VALUES, pack
 from gearidae.report.tables import (
-    account_table,
     answer_tables,
     event_table,
-    headline,
     law_table,
     member_table,
     outcome_table,
     parameter_tables,
     provenance_list,
+    summary_tables,
     validity_table,
 )
 from gearidae.report.teeth import pack_teeth
@@ -62,7 +63,7 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     if kind != "runs":
         return _study_page(ds, kind)
     sections = (
-        html.section("outcome", "Outcome", outcome_table(ds), account_table(ds)),
+        html.section("outcome", "Outcome", _specimen(ds), outcome_table(ds), summary_tables(ds)),
         html.section("series", "Time series", _viewer(ds, most_values)),
         html.section("teeth", "Teeth in mesh", _teeth(ds)),
         html.section("pictures", "Pictures", pictures(ds)),
@@ -70,6 +71,12 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     )
     scripts = ("common.js", "save.js", "box.js", "viewer.js", "teeth.js")
     return _page(ds, headline(ds), sections, scripts)
+
+
+def _specimen(ds: xr.Dataset) -> str:
+    """Say of a run with real asperities that it is one specimen of its design."""
+    note = specimen_note(ds)
+    return html.paragraph(note) if note else ""
 
 
 def _study_page(ds: xr.Dataset, kind: str) -> str:
@@ -91,7 +98,7 @@ def _study_page(ds: xr.Dataset, kind: str) -> str:
     return _page(ds, found.sentence, sections, ("common.js", "save.js"))
 
 
-def _page(ds: xr.Dataset, told: str, sections: Sequence[str], scripts: Sequence[str]) -> str:
+def _page(ds: xr.Dataset, sentence: str, sections: Sequence[str], scripts: Sequence[str]) -> str:
     """Put a page together from its own sections and those that all pages have."""
     name = str(scene_of(ds).get("name", "gearidae"))
     common = (
@@ -117,7 +124,7 @@ def _page(ds: xr.Dataset, told: str, sections: Sequence[str], scripts: Sequence[
 <body>
 <header>
 <h1>{html.text(name.replace("_", " "))}</h1>
-<p class="headline">{html.text(told)}</p>
+<p class="headline">{html.text(sentence)}</p>
 {html.paragraph(ds.attrs.get("summary", ""), "summary")}
 </header>
 <main>

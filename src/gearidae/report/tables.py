@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
+from gearidae.analysis.verdict import outcomes
+from gearidae.analysis.verdict.table import cells, headings
 from gearidae.archive.dataset import dimension_names
-from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.pieces import pieces
-from gearidae.archive.run_summary import counted_over
 from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
+from gearidae.archive.summary_rows import summary_rows
 from gearidae.records import EventKind
 from gearidae.report import html
 from gearidae.scene import describe_keys
@@ -25,10 +25,6 @@ from gearidae.scene.shown import flat
 from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, holds_rows, rows_from_json
 
 _NAMED_KEYS = 12
-_GEAR_HEADINGS = ("outcome", "lowest speed (rad/s)", "highest speed (rad/s)", "impacts", "status")
-_ROLLER_HEADINGS = (
-    "outcome", "peak force", "pull-off force", "restitution", "impacts", "status"
-)  # fmt: skip
 _PREFIXED = ("m", "s", "N", "J", "Pa", "Hz", "W")
 _PROVENANCE = (
     ("title", "title"),
@@ -52,56 +48,16 @@ _PROVENANCE = (
     ("schema_version", "version of the layout"),
 )
 
-_ACCOUNT = (
-    ("top_speed", "highest speed of the gear", "rad/s"),
-    ("time_to_speed", "first sample with 95 % of the largest", "s"),
-    ("time_at_rest", "held at rest by dry resistance or friction", "s"),
-    ("time_adhering", "trapped by adhesion", "s"),
-    ("held_by", "held at the end by", ""),
-    ("largest_force", "largest force", "N"),
-    ("largest_force_time", "time of the largest force", "s"),
-)
-_ENERGY_BALANCE = (
-    ("drive_work", "work of the drive", "J"),
-    ("radius_work", "work of the changing radius", "J"),
-    ("model_change", "jump at the change of the contact model", "J"),
-    ("drag_loss", "lost to drag", "J"),
-    ("dry_loss", "lost to dry resistance", "J"),
-    ("damping_loss", "lost to damping", "J"),
-    ("adhesion_loss", "lost to adhesion", "J"),
-    ("drive_friction_loss", "lost to friction of the drive flank", "J"),
-    ("coast_friction_loss", "lost to friction of the coast flank", "J"),
-    ("pinion_hub_loss", "lost to friction of the pinion's hub", "J"),
-    ("gear_hub_loss", "lost to friction of the gear's hub", "J"),
-    ("stored_change", "stored in contacts", "J"),
-    ("kinetic_change", "stored in motion", "J"),
-    ("residual", "residual: what does not add up", "J"),
-    ("residual_bound", "bound of the residual", "J"),
-)
-
-
-def headline(ds: xr.Dataset) -> str:
-    """Say in one sentence what the runs did."""
-    judged = outcomes(ds)
-    if len(judged) == 1:
-        subject = "roller" if isinstance(judged[0], RollerOutcome) else "gear"
-        return f"The {subject} {judged[0].words}."
-    counts: dict[str, int] = {}
-    for each in judged:
-        counts[each.verdict] = counts.get(each.verdict, 0) + 1
-    return f"{len(judged)} runs: " + ", ".join(f"{count} x {verdict}" for verdict, count in counts.items())
-
 
 def outcome_table(ds: xr.Dataset) -> str:
     """List the outcome of each run."""
     judged = outcomes(ds)
     rtol = scene_of(ds)["run"]["rtol"]
     dims = swept_dims(ds)
-    headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
-    rows = [[*_label_cells(ds, each.label), *_outcome_cells(each, rtol)] for each in judged]
-    last = len(dims) + len(headings) - 1
-    numeric = [place for place in range(last) if place != len(dims)]
-    return html.table((*dims, *headings), rows, caption="Outcome of each run", numeric=numeric)
+    names = (*dims, *headings(judged[0]))
+    rows = [[*_label_cells(ds, each.label), *cells(each, rtol)] for each in judged]
+    numeric = [place for place in range(len(names)) if place != len(dims)]
+    return html.table(names, rows, caption="Outcome of each run", numeric=numeric)
 
 
 def answer_tables(rows: Sequence[tuple[str, str, str]]) -> str:
@@ -134,16 +90,15 @@ def member_table(ds: xr.Dataset, kind: str) -> str:
     elif kind == "ensemble":
         judged, rtol = outcomes(ds), scene_of(ds)["run"]["rtol"]
         drawn = [str(name) for name in dimension_names(json.loads(ds.attrs["swept"])).values()]
-        headings = _ROLLER_HEADINGS if isinstance(judged[0], RollerOutcome) else _GEAR_HEADINGS
         rows = [
             [
                 str(number),
                 *(_value(values.item(), _unit(values)) for values in columns),
-                *_outcome_cells(one, rtol),
+                *cells(one, rtol),
             ]
             for number, (one, *columns) in enumerate(zip(judged, *(ds[name] for name in drawn), strict=True))
         ]
-        listed = html.table(("member", *drawn, *headings), rows, caption="Members")
+        listed = html.table(("member", *drawn, *headings(judged[0])), rows, caption="Members")
     elif kind == "operating_map":
         listed = outcome_table(ds)
     else:
@@ -155,32 +110,9 @@ def _unit(values: xr.DataArray) -> str:
     return str(values.attrs.get("units", "1"))
 
 
-def account_table(ds: xr.Dataset) -> str:
-    """Tell where time and energy of a single run went, of a roller energy only; nothing of a sweep."""
-    told = json.loads(ds.attrs.get("account", "{}"))
-    kept = balance_in_attributes(ds)
-    rows = [
-        (_with_reach(ds, name, words), _measure(told[name], unit))
-        for name, words, unit in _ACCOUNT
-        if told.get(name) not in (None, "")
-    ]
-    if told.get("friction_loss"):
-        words = "efficiency: drag and dry resistance over all losses"
-        rows.append((_with_reach(ds, "efficiency", words), _measure(100.0 * told["efficiency"], "%")))
-    rows += [
-        (_with_reach(ds, name, words), _measure(kept[name], unit))
-        for name, words, unit in _ENERGY_BALANCE
-        if kept.get(name)
-    ]
-    if not rows:
-        return ""
-    return html.table(("quantity", "value"), rows, caption="Run summary", numeric=(1,))
-
-
-def _with_reach(ds: xr.Dataset, name: str, words: str) -> str:
-    """Add to a row of a run that goes on from another what it is counted over."""
-    over = counted_over(name, ds.attrs)
-    return f"{words} ({over})" if over else words
+def summary_tables(ds: xr.Dataset) -> str:
+    """List the run summary and the energy balance of a single run; nothing of a sweep."""
+    return answer_tables(summary_rows(ds))
 
 
 def event_table(ds: xr.Dataset) -> str:
@@ -286,15 +218,6 @@ def _provenance(key: str, value: Any) -> str:
     if key == "wall_time" and isinstance(value, (int, float, np.number)):
         return _measure(value, "s")
     return _number(value)
-
-
-def _outcome_cells(outcome: GearOutcome | RollerOutcome, rtol: float) -> list[str]:
-    if isinstance(outcome, RollerOutcome):
-        forces = (outcome.peak_force, outcome.pull_off_force)
-        numbers = [*(_measure(force, "N") for force in forces), _number(outcome.restitution)]
-    else:
-        numbers = [_number(outcome.resolved_min_speed(rtol)), _number(outcome.max_speed)]
-    return [outcome.words, *numbers, str(outcome.impacts), outcome.status]
 
 
 def _flatten(tables: dict[str, Any], swept: dict[str, Any]) -> Iterator[tuple[str, Any]]:

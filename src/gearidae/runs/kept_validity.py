@@ -6,7 +6,6 @@ import json
 from typing import TYPE_CHECKING
 
 from gearidae.archive.select import run_scene, scene_of, swept_dims
-from gearidae.runs.validity import validity_attribute, validity_rows
 from gearidae.scene import Scene
 from gearidae.scene.validity_row import ATTRIBUTE, ValidityRow, holds_rows, rows_from_json
 
@@ -29,6 +28,8 @@ def with_validity(ds: xr.Dataset, scene: Scene) -> xr.Dataset:
     xarray.Dataset
         The same object, with the attribute ``validity``.
     """
+    from gearidae.runs.validity import validity_attribute  # loads the contact laws
+
     ds.attrs[ATTRIBUTE] = validity_attribute(scene)
     return ds
 
@@ -51,4 +52,6 @@ def validity_of(ds: xr.Dataset) -> list[ValidityRow]:
     of_base = scene.to_dict() == json.loads(ds.attrs.get("scene", "{}"))
     if of_base and holds_rows(ds.attrs.get(ATTRIBUTE)):
         return rows_from_json(ds.attrs[ATTRIBUTE])
+    from gearidae.runs.validity import validity_rows
+
     return validity_rows(scene)

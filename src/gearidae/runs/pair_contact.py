@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
 
 from gearidae.arrays import Floats
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of
+from gearidae.contact.attraction import attraction_force
 from gearidae.contact.line import line_area, line_force
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
@@ -35,6 +35,8 @@ _SEARCH_STEP, _ENERGY_STEP = 0.25, 0.05
 """Steps of a search for a load and of the integral of a force, in roughnesses; far inside they grow with the depth."""
 _CHUNK = 8
 """Steps that are taken at a time."""
+_SPLIT = 16
+"""Parts into which a step is divided at a time."""
 _DIFFERENCE = 1e-4
 """Change of the gap over which a stiffness is taken, in roughnesses: forces are exact to twelve digits."""
 
@@ -70,6 +72,20 @@ class PairContact:
         total: Floats = np.zeros(np.broadcast_shapes(np.shape(gap), np.shape(stretch)))
         for part in self.parts:
             total = total + self._part_force(part, gap, stretch)
+        return total + self.attraction(gap) if self.attracts else total
+
+    @property
+    def attracts(self) -> bool:
+        """Whether the flanks attract each other across the gap."""
+        return any(part.surface.hamaker > 0.0 for part in self.parts)
+
+    def attraction(self, gap: ArrayLike, hamaker: float | None = None) -> Floats:
+        """Attraction across gaps [m], negative [N], with the materials' Hamaker constants or one for all [J]."""
+        total: Floats = np.zeros(np.shape(gap))
+        for surface, share, offset, _ in self.parts:
+            constant = surface.hamaker if hamaker is None else hamaker
+            own_gap = np.asarray(gap) + offset
+            total = total + share * attraction_force(own_gap, self.radius, self.width, constant)
         return total
 
     def part_forces(self, gap: float) -> list[float]:
@@ -109,13 +125,18 @@ class PairContact:
         if not load > 0.0:
             return math.nan
         for gaps in _inwards(sigma, _SEARCH_STEP, beyond=float(self.force(_BEGIN * sigma)) >= load):
-            carried = np.flatnonzero(self.force(gaps) >= load)
-            if carried.size and carried[0] > 0:
-                outer, inner = gaps[carried[0] - 1], gaps[carried[0]]
-                return float(
-                    brentq(lambda gap: float(self.force(gap)) - load, inner, outer, xtol=error * sigma)
-                )
+            carried = int(np.argmax(self.force(gaps) >= load))
+            if carried > 0:
+                return self._carries(load, gaps[carried - 1], gaps[carried], error * sigma)
         return math.nan
+
+    def _carries(self, load: float, outer: float, inner: float, error: float) -> float:
+        """Gap between two at which the load is carried; many at a time, as a call for one gap costs as much."""
+        while outer - inner > error:
+            gaps = np.linspace(outer, inner, _SPLIT + 1)
+            carried = 1 + int(np.argmax(self.force(gaps[1:]) >= load))
+            outer, inner = float(gaps[carried - 1]), float(gaps[carried])
+        return 0.5 * (outer + inner)
 
     def closest_gap(self, height: float, energy: float) -> float:
         """Gap at which a body that comes in has spent its energy.
@@ -165,13 +186,11 @@ class PairContact:
         sigma = self.surface.roughness
         stretch = max(asperity_of(part.surface).stretch_limit for part in self.parts)
         opened = np.linspace(0.0, 3.0 * sigma + stretch, 41)
-        forces = self.force(gap + opened, opened)
-        k = int(np.argmin(forces))
-        near = opened[max(k - 1, 0)], opened[min(k + 1, opened.size - 1)]
-        found = minimize_scalar(
-            lambda by: float(self.force(gap + by, by)), bounds=near, options={"xatol": 1e-4 * sigma}
-        )
-        return max(-min(float(found.fun), float(forces[k])), 0.0)
+        for _ in range(3):  # each time between the neighbours of the lowest
+            forces = self.force(gap + opened, opened)
+            k = int(np.argmin(forces))
+            opened = np.linspace(opened[max(k - 1, 0)], opened[min(k + 1, opened.size - 1)], opened.size)
+        return max(-float(forces[k]), 0.0)
 
 
 def pair_contact(scene: Scene) -> PairContact:

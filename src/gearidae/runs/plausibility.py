@@ -29,7 +29,7 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
-    return [*_sizes(scene), *_resistance(scene)]
+    return [*_sizes(scene), *_resistance(scene), *_bodies(scene)]
 
 
 def log_doubts(scene: Scene) -> None:
@@ -75,6 +75,14 @@ def _sizes(scene: Scene) -> list[str]:
             f"face width of {with_prefix(width, 'm')}"
         )
     return found
+
+
+def _bodies(scene: Scene) -> list[str]:
+    """Say that bodies stay rigid where flanks attract each other."""
+    if scene.contact.model != "auto" or not scene.attracts:
+        return []
+    words = 'contact.model = "auto" keeps the teeth rigid where flanks attract each other (hamaker), however hard they'
+    return [f'{words} are pressed; "asperity" is the same without this warning']
 
 
 def _resistance(scene: Scene) -> list[str]:

@@ -58,7 +58,7 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
 
 
 def started_attributes(start: engine.Start) -> dict[str, str]:
-    """Attributes of a run's dataset that tell the state it went on from; none of a run by itself."""
+    """Attributes of a run's dataset that name the state it went on from; none of a run by itself."""
     from gearidae.archive.end_state import fingerprint
 
     return {} if start.words is None else {"started_from": fingerprint(start.words)}

@@ -100,7 +100,7 @@ class _Run:
                 time=0.0,
                 state={},
                 last_event="none",
-                advice="free some space, or ask for fewer samples (run.samples)",
+                advice="free some space, or reduce the number of samples (run.samples)",
             ) from error
 
     def take_up(self) -> GrowingArchive:

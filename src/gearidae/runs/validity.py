@@ -29,10 +29,9 @@ from gearidae.contact.surroundings import (
     film_damping,
     thermal_amplitude,
 )
-from gearidae.mesh.friction import locking_coefficients
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
+from gearidae.runs.locking import locking_rows
 from gearidae.runs.pair_contact import PairContact
-from gearidae.scene.friction import friction_values, has_flank_friction, has_hub_friction
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 
@@ -51,8 +50,10 @@ _SILICON: Final = 2330.0
 """Density of silicon [kg/m^3]: discs of base radius and face width are made of it."""
 _CLEARANCE: Final = 2e-6
 """Distance between gear and substrate that the drag of the air is estimated for [m]: a usual sacrificial layer."""
-_NEAR_LOCKING: Final = 0.5
-"""Share of the coefficient that locks teeth or hubs, up to which friction changes forces by less than double."""
+_USUAL_HAMAKER: Final = 5e-20
+"""Hamaker constant [J] of flanks in a scene that has none: an assumption, to say what it leaves out."""
+_LITTLE_ATTRACTION: Final = 0.1
+"""Share of the force that presses below which the attraction may be left out."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
 
 
@@ -102,15 +103,22 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
     return list(_rows(scene))
 
 
-# Some 15 ms: an archive asks for them when it is begun and when it is finished.
+# Some 15 ms: an archive needs them at its beginning and at its end.
 @lru_cache(maxsize=16)
 def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rest = rest_of(scene)
     stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
-    rows = [_asperities(rest), _density(rest.contact), *_merging(scene), *_tabor(scene)]
+    real = scene.contact.model == "population"
+    rows = [_asperities(rest, real), _density(rest.contact), *_merging(scene), *_tabor(scene)]
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
+    rows += [_attraction(scene, rest, rest.gap, "attraction", "attraction across the gap")]
     if scene.gears is not None:
-        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene), *_locking(scene)]
+        assert scene.mesh is not None
+        behind = scene.mesh.backlash - rest.gap
+        rows += [
+            _attraction(scene, rest, behind, "attraction_behind", "attraction across the backlash behind")
+        ]
+        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene), *locking_rows(scene)]
     return tuple(rows)
 
 
@@ -133,7 +141,8 @@ def _about(count: float) -> str:
     return f"{float(f'{count:.2g}'):,.0f}" if count < 1e9 else f"{count:.0e}"
 
 
-def _asperities(rest: Rest) -> ValidityRow:
+def _asperities(rest: Rest, real: bool) -> ValidityRow:
+    """Compare the asperities in contact with those that a mean law needs; `real` ones do without."""
     count = needed = math.nan
     limit = verdict = "-"
     if not math.isnan(rest.gap):
@@ -144,11 +153,13 @@ def _asperities(rest: Rest) -> ValidityRow:
         words = (
             "one pair's force is the mean to 10 %"
             if count >= needed
+            else "each asperity is followed: a run is one specimen, another contact.seed another"
+            if real
             else "the smooth law of force is an ensemble mean, not one pair of teeth"
         )
         verdict = f"{words} (gap {rest.gap / rest.contact.surface.roughness:.2f} roughnesses)"
     quantity = "expected asperities in contact"
-    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, count >= needed, verdict)
+    return _row(EXPECTED_ASPERITIES, quantity, count, "1", limit, needed, real or count >= needed, verdict)
 
 
 def _counts(rest: Rest) -> list[float]:
@@ -176,11 +187,13 @@ def _memory(scene: Scene, rest: Rest) -> ValidityRow:
         rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
         ratio = width / rolled
         laws = [law_of(contact.law, part.surface) for part in contact.parts]
-        forgets = all(law.detach == law.join for law in laws)
-        holds = forgets or ratio >= 1.0
+        forgets, real = all(law.detach == law.join for law in laws), scene.contact.model == "population"
+        holds = forgets or real or ratio >= 1.0
         words = (
             "asperities of this law have no memory"
             if forgets
+            else "each asperity remembers on its own, and passes through the contact"
+            if real
             else "the same asperities stay in contact while the pair is engaged"
             if holds
             else "asperities pass through the contact; here those that an impact joins stay with the pair"
@@ -226,7 +239,7 @@ def _tabor(scene: Scene) -> Iterator[ValidityRow]:
     for surface, _, _, name in scene.materials():
         high, low = (tabor_parameter(surface, eps) for eps in _SPACINGS)
         limit, bound, holds, verdict = _tabor_verdict(law, low, high)
-        # the end of the range that is compared: the small one where the law asks for large parameters
+        # the end of the range that is compared: the small one where the law needs large parameters
         number = high if law == "dmt" else low
         yield ValidityRow(
             f"tabor_{name}",
@@ -309,6 +322,24 @@ def _adhesion(scene: Scene, rest: Rest) -> ValidityRow:
     return _row("net_adhesion", quantity, tension, "N", limit, rest.load, tension <= rest.load, verdict)
 
 
+def _attraction(scene: Scene, rest: Rest, gap: float, name: str, quantity: str) -> ValidityRow:
+    """Compare what flanks attract each other with across a gap with the force that presses, in the scene or not."""
+    pull, holds, verdict = math.nan, False, ""
+    driven = "the drive's force" if scene.roller is None else "the peak force, rigid bodies"
+    limit = driven
+    if not math.isnan(gap):
+        inside = rest.contact.attracts
+        pull = -float(rest.contact.attraction(gap, None if inside else _USUAL_HAMAKER))
+        holds = inside or pull <= _LITTLE_ATTRACTION * rest.load
+        limit = f"{with_prefix(rest.load, 'N')}, {driven}"
+        ratio = "" if rest.load == 0.0 else f", {_times(pull / rest.load)} that force"
+        across = f"over {with_prefix(gap, 'm')}{ratio}"
+        missing = f"with {_USUAL_HAMAKER:g} J, left out of the scene"
+        verdict = f"in the scene, {across}" if inside else f"{missing}, {across}"
+    bound = rest.load if rest.contact.attracts else _LITTLE_ATTRACTION * rest.load
+    return _row(name, quantity, pull, "N", limit, bound, holds, verdict)
+
+
 def _disc_drag(scene: Scene) -> ValidityRow:
     assert scene.load is not None
     assert scene.initial is not None
@@ -350,31 +381,3 @@ def _inertia(scene: Scene) -> Iterator[ValidityRow]:
         limit = f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon"
         quantity = f"{name}: moment of inertia"
         yield _row(f"inertia_{name}", quantity, inertia, "kg m^2", limit, disc, holds, verdict)
-
-
-def _locking(scene: Scene) -> Iterator[ValidityRow]:
-    """Compare coefficients of friction with those that lock the teeth or a hub."""
-    assert scene.gears is not None
-    gears, geometry, values = scene.gears, scene.geometry, friction_values(scene)
-    where = max((values[one.name] for one in scene.materials() if one.share > 0.0), default=0.0)
-    if has_flank_friction(scene) and scene.contact.friction_law == "net":
-        locks = min(locking_coefficients(geometry))
-        yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")
-    if has_hub_friction(scene):
-        ratios = (
-            gears.pinion_hub_radius / geometry.base_radius_pinion,
-            gears.gear_hub_radius / geometry.base_radius_gear,
-        )
-        quantity, coefficient = "coefficient of friction of the hubs", gears.hub_friction
-        yield _near_locking("locking_hubs", quantity, coefficient, 1.0 / max(ratios), "hubs")
-
-
-def _near_locking(name: str, quantity: str, coefficient: float, locks: float, what: str) -> ValidityRow:
-    holds = coefficient <= _NEAR_LOCKING * locks
-    verdict = (
-        f"the {what} are far from locking"
-        if holds
-        else f"near self-locking: the {what} can carry {_times(1.0 / (1.0 - coefficient / locks))} their load"
-    )
-    limit = f"{_NEAR_LOCKING * locks:.3g}, half of that which can lock the {what}"
-    return _row(name, quantity, coefficient, "1", limit, _NEAR_LOCKING * locks, holds, verdict)

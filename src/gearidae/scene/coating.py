@@ -14,7 +14,8 @@ bare      :math:`2\gamma_s`                        h + 2 t    (1 - f1) (1 - f2)
 
 The gap h of a scene is that of flanks that are covered on both sides: where the monolayer is lost there is a recess of
 its thickness t. With ``pairing = "patches"``, as in Teodorescu et al. 2009, covered patches meet covered ones: there
-is no mixed material, and the shares are f and 1 - f.
+is no mixed material, and the shares are f and 1 - f. The Hamaker constant of unlike surfaces is the geometric mean,
+too.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from gearidae.errors import SceneError
 from gearidae.scene.coating_table import FractionTable, path_means
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Quantity
-from gearidae.scene.surface import Energy, OptionalFriction, OptionalStrength, Surface
+from gearidae.scene.surface import Energy, Hamaker, OptionalFriction, OptionalStrength, Surface
 
 MATERIAL_NAMES: Final = ("bare", "coated", "mixed")
 """Names of the materials that an interface may have, in the order of `Scene.materials`."""
@@ -71,6 +72,9 @@ class Coating(Group):
 
     sam_fraction: Fraction = Field(description="share of the flank that the monolayer still covers, f")
     energy: Energy = Field(default=0.1, description="surface energy where the monolayer covers the flank")
+    hamaker: Hamaker = Field(
+        default=0.0, description="Hamaker constant where the monolayer covers both flanks, at their own gap"
+    )
     pairing: Literal["patches", "independent"] = Field(
         default="patches",
         description="patches: covered patches meet covered ones; independent: each side is covered on its own",
@@ -186,14 +190,16 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
         In the order of `MATERIAL_NAMES`, mixed with independent sides only; shares add up to 1. Those of fractions by
         tooth and place are means over all teeth that meet and along the path of contact.
     """
-    energies = {
-        "bare": surface.energy,
-        "coated": coating.energy,
-        "mixed": math.sqrt(coating.energy * surface.energy),
+    own = {
+        "coated": {"energy": coating.energy, "hamaker": coating.hamaker},
+        "mixed": {
+            "energy": math.sqrt(coating.energy * surface.energy),
+            "hamaker": math.sqrt(coating.hamaker * surface.hamaker),
+        },
     }
     return tuple(
         Material(
-            surface if name == "bare" else surface.model_copy(update={"energy": energies[name]}),
+            surface if name == "bare" else surface.model_copy(update=own[name]),
             share,
             _RECESSES[name] * coating.thickness,
             name,

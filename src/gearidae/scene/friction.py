@@ -69,7 +69,15 @@ def check_friction(scene: Scene) -> None:
                 value,
                 f"must be below {1.0 / lever:.4g}: gears of this mesh lock themselves from there on",
             )
-    if scene.contact.model == "elastic" and (has_flank_friction(scene) or has_hub_friction(scene)):
+    if not (has_flank_friction(scene) or has_hub_friction(scene)):
+        return
+    if scene.attracts:
+        raise SceneError(
+            "surface.hamaker",
+            scene.surface.hamaker,
+            "friction is not available with flanks that attract each other: must be 0, as that of the coating",
+        )
+    if scene.contact.model == "elastic":
         raise SceneError(
             "contact.model",
             scene.contact.model,

@@ -52,6 +52,22 @@ def check_thickness(scene: Scene) -> None:
         )
 
 
+def check_attraction(scene: Scene) -> None:
+    """Refuse attraction across the gap between elastic bodies, whose deflections would not follow it.
+
+    Raises
+    ------
+    SceneError
+        Naming ``contact.model``.
+    """
+    if scene.contact.model == "elastic" and scene.attracts:
+        raise SceneError(
+            "contact.model",
+            "elastic",
+            "cannot be used with surface.hamaker or coating.hamaker, for rigid teeth only: asperity or population",
+        )
+
+
 def pairs_within_reach(scene: Scene, cutoff: float) -> float:
     """Tooth pairs of one flank that can be in touch at a time, by their tip relief.
 

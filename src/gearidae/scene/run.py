@@ -27,8 +27,10 @@ class Initial(Group):
     gap: Annotated[float, Length(unit="m", shown=("nm", -9))] = Field(
         description="gap of the drive flank from the summits' mean plane, a length or in roughnesses"
     )
-    mesh_phase: Annotated[float, Quantity(unit="1", at_least=0, below=1)] = Field(
-        default=0.3, description="position of pair 0 on the path of contact, in base pitches"
+    mesh_phase: Annotated[float, Quantity(unit="1", at_least=0, below=10_000)] = Field(
+        default=0.3,
+        description="position of pair 0 on the path of contact, in base pitches; with whole pitches another pair, and "
+        "tooth of the pinion, is in mesh",
     )
 
 

@@ -16,7 +16,13 @@ from gearidae.scene.friction import check_friction, check_no_friction
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
-from gearidae.scene.limits import check_gaps, check_reach, check_stretch, check_thickness
+from gearidae.scene.limits import (
+    check_attraction,
+    check_gaps,
+    check_reach,
+    check_stretch,
+    check_thickness,
+)
 from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
@@ -106,6 +112,7 @@ class Scene(Group):
         check_thickness(self)
         check_tables(self)
         check_asperities(self)
+        check_attraction(self)
         if self.roller is not None:
             if given:
                 raise SceneError(
@@ -195,8 +202,15 @@ class Scene(Group):
 
     @property
     def coated_surface(self) -> Surface:
-        """The surface where the monolayer covers it: the same, with the coating's energy."""
-        return self.surface.model_copy(update={"energy": self.coating.energy})
+        """The surface where the monolayer covers it: the same, with the coating's energy and Hamaker constant."""
+        return self.surface.model_copy(
+            update={"energy": self.coating.energy, "hamaker": self.coating.hamaker}
+        )
+
+    @property
+    def attracts(self) -> bool:
+        """Whether flanks attract each other across the gap: a material that they have has a Hamaker constant."""
+        return any(one.share > 0.0 and one.surface.hamaker > 0.0 for one in self.materials())
 
     def materials(self) -> tuple[Material, ...]:
         """List the materials that share the interface of two flanks, see `gearidae.scene.coating`.

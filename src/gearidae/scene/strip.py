@@ -44,27 +44,15 @@ def flank_strip(scene: Scene) -> tuple[float, float]:
 
 
 def check_population(scene: Scene) -> None:
-    """Refuse more asperities than can be kept, and what a population does not go with.
+    """Refuse more asperities than can be kept.
 
     Raises
     ------
     SceneError
-        Naming ``surface.asperity_density`` or ``run.exposures``.
+        Naming ``surface.asperity_density``.
     """
     if scene.contact.model != "population":
         return
-    if scene.run.exposures != 0:
-        raise SceneError(
-            "run.exposures",
-            scene.run.exposures,
-            "must be 0 with contact.model = population, which keeps none yet",
-        )
-    if len(scene.coating.gear_table) > 1:
-        raise SceneError(
-            "coating.gear_table",
-            f"({len(scene.coating.gear_table)} rows)",
-            "must have one row with contact.model = population, where an asperity meets every tooth of the gear",
-        )
     if scene.contact.asperities:
         return
     low, high = flank_strip(scene)

@@ -15,6 +15,7 @@ from gearidae.scene.quantity import Count, Quantity
 
 _LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
+Hamaker = Annotated[float, Quantity(unit="J", at_least=0, at_most=1e-17, least=1e-25)]
 _FRICTION = Quantity(unit="1", at_least=0, at_most=2, least=1e-6)
 _STRENGTH = Quantity(unit="Pa", at_least=0, at_most=1e12, least=1.0, shown=("MPa", 6))
 Friction = Annotated[float, _FRICTION]
@@ -51,6 +52,10 @@ class Surface(Group):
     interaction_range: Annotated[float, Quantity(unit="m", above=0, at_most=1e-6, shown=("nm", -9))] = Field(
         default=INTERACTION_RANGE,
         description="range of the adhesive forces, eps (equilibrium spacing of atoms); for maugis asperities",
+    )
+    hamaker: Hamaker = Field(
+        default=0.0,
+        description="Hamaker constant of bare flanks, which then attract each other across the gap; teeth stay rigid",
     )
     provenance: Annotated[str, BeforeValidator(_line)] = Field(
         default="",

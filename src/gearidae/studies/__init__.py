@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from gearidae.studies._lives import lives as lives
     from gearidae.studies._operating_map import operating_map as operating_map
     from gearidae.studies._predict import predict as predict
+    from gearidae.studies._pull_off import pull_off as pull_off
     from gearidae.studies._sensitivity import sensitivity as sensitivity
     from gearidae.studies._starting_torque import starting_torque as starting_torque
     from gearidae.studies._starting_torque import static_starting_torque as static_starting_torque

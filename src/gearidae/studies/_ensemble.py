@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.keep import read_keep
+from gearidae.archive.specimen import SEED
 from gearidae.archive.variables import extreme_names
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution
@@ -21,6 +23,7 @@ from gearidae.studies.design import Design, check_design, pick_freeze_design, pl
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.indices import Indices, indices_of
 from gearidae.studies.members import along_members, member_plan, names_of
+from gearidae.studies.seeds import NO_INDEX, SEEDS, numbers_seeds, seed_numbers
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -53,7 +56,8 @@ def ensemble(
         Key of a number to its distribution: a frozen one of scipy.stats in SI units, or a text with units,
         ``normal(mean, standard deviation)``, ``truncnormal(mean, standard deviation, lowest, highest)``,
         ``uniform(lowest, highest)`` or ``lognormal(median, geometric standard deviation)`` with the latter a pure
-        number above 1. The keys are independent of each other.
+        number above 1. The keys are independent of each other. ``{"contact.seed": "seeds"}``, alone or beside others,
+        gives each member of a population a surface of its own: its seeds are numbered from the scene's own on.
     size : int
         Number of members; with `of` the number N of rows, a power of 2, and the ensemble has N times (keys + 2)
         members.
@@ -63,7 +67,8 @@ def ensemble(
         Of the design; the same seed draws the same members.
     of : str, optional
         Figure whose Sobol' indices are wanted: ``sticks`` (0 or 1), ``impacts``, or one of the extremes, such as
-        ``min_gear_speed`` or ``largest_mesh_force``.
+        ``min_gear_speed`` or ``largest_mesh_force``. Seeds have no index: they are no continuous input. What the
+        indices of the keys leave over of the variance is the scatter between the gears of one design.
     executor, jobs, backend, progress, archive, overwrite, resume
         As for `gearidae.sweep`. Threads work side by side where the runs share their surface; if keys of the surface
         vary, much of the time goes into tables of the force law, and processes are faster.
@@ -72,7 +77,8 @@ def ensemble(
     -------
     Dataset
         Along ``member``: the keys' values as coordinates (SI), ``verdict`` and ``verdict_code``, ``sticks``, and what
-        the solver keeps of each run (``min_gear_speed``, ``stick_time``, ``mesh_exits``, ``largest_mesh_force``, ...).
+        the solver keeps of each run (``min_gear_speed``, ``stick_time``, ``mesh_exits``, ``largest_mesh_force``, ...),
+        with seeds also its energies (``drive_work``, ``adhesion_loss``, ...).
         Members that could not be finished are there with their ``status`` and ``message``. With `of` the coordinates
         ``matrix`` and ``row``, and along ``parameter`` the indices ``first_order`` and ``total_order``, each with its
         standard ``..._uncertainty``; the attribute ``index_rows`` says how many rows they rest on.
@@ -96,19 +102,29 @@ def ensemble(
     base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
-    distributions = read_distributions(base, vary)
+    seeded = numbers_seeds(base, vary)
+    own = {key: given for key, given in vary.items() if key != SEED} if seeded else vary
+    if seeded and of is not None and not own:
+        raise SceneError("of", of, f"needs keys beside {SEED}, which has no index")
+    distributions = read_distributions(base, own) if own or not seeded else ()
     how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
     texts = names_of(distributions)
-    values = {each.key: drawn.values[:, number] for number, each in enumerate(distributions)}
-    plan = member_plan(base, values, texts)
-    about = {"design": design, "seed": int(seed), "size": int(size), "of": of, "distributions": texts}
+    values: dict[str, Any] = {each.key: drawn.values[:, number] for number, each in enumerate(distributions)}
+    if seeded:
+        values[SEED] = seed_numbers(base, drawn)
+    words = {**texts, **({SEED: SEEDS} if seeded else {})}
+    plan = member_plan(base, values, words)
+    about = {"design": design, "seed": int(seed), "size": int(size), "of": of, "distributions": words}
 
     def finish(ds: xr.Dataset) -> xr.Dataset:
-        ds = _with_design(along_members(ds, tuple(texts)), drawn, tuple(texts), of, int(seed))
-        return ds.assign_attrs(_titles(base, texts, len(plan.scenes)))
+        ds = _with_design(along_members(ds, tuple(words)), drawn, tuple(texts), of, int(seed))
+        if seeded and of is not None:
+            ds = ds.assign_attrs(index_comment=NO_INDEX)
+        return ds.assign_attrs(_titles(base, words, len(plan.scenes)))
 
-    return run_study(plan, how, {"ensemble": json.dumps(about)}, finish)
+    keep = read_keep(("extremes", "energy_balance") if seeded else ("extremes",), base)
+    return run_study(plan, how, {"ensemble": json.dumps(about)}, finish, keep=keep)
 
 
 def figure_names(scene: Scene) -> tuple[str, ...]:
@@ -159,7 +175,9 @@ def _index_variables(found: Indices, of: str) -> dict[str, Any]:
 
 
 def _titles(scene: Scene, texts: Mapping[str, str], members: int) -> dict[str, str]:
-    drawn = ", ".join(f"{key} from {text}" for key, text in texts.items())
+    drawn = ", ".join(
+        f"{key} numbered" if key == SEED else f"{key} from {text}" for key, text in texts.items()
+    )
     return {
         "title": f"{scene.name}: ensemble of {members} runs",
         "summary": (

@@ -45,7 +45,7 @@ _LARGEST_STEP: Final = 0.04
 _STEPS: Final = 7
 """Steps, each half of the one before."""
 _NEIGHBOURS: Final = 1e-9
-"""Over the size of the input: how far the inputs are apart whose figures tell the scatter."""
+"""Over the size of the input: distance between the inputs whose figures give the scatter."""
 _SCATTERED: Final = 5
 """How many of them."""
 _TIGHTER: Final = (1.0, 1e-2, 1e-4)

@@ -8,7 +8,7 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -25,6 +25,7 @@ from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.rubbing import flank_coefficient, hub_radii
 from gearidae.runs.running import prepare, solve_to_end, unsolved
+from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.products import open_product
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
@@ -100,6 +101,7 @@ def starting_torque(
     lowest: float | None = None,
     simulated: bool = True,
     tolerance: float = 0.1,
+    seeds: int | None = None,
     executor: Executor | None = None,
     jobs: int | None = None,
     backend: str = "auto",
@@ -108,7 +110,7 @@ def starting_torque(
     overwrite: bool = False,
     resume: bool = False,
 ) -> xr.Dataset:
-    """Smallest drive torque that takes the gear through the mesh, against SAM fraction.
+    """Smallest drive torque that takes the gear through the mesh, against SAM fraction; of a population, by its gears.
 
     Parameters
     ----------
@@ -116,7 +118,8 @@ def starting_torque(
         With gears. Its constant drive torque is replaced, a schedule of the drive taken away, its initial speed set to
         zero.
     sam_fraction : array_like or 'own', optional
-        Fractions of the coating; by default 13 from 1 to 0.4. ``own`` stands for the scene's own coating as it is.
+        Fractions of the coating; by default 13 from 1 to 0.4. ``own`` stands for the scene's own coating as it is, and
+        is the default of a population.
     impacts : int, optional
         Pitches to be turned, each with its mesh exit.
     lowest : float, optional
@@ -125,6 +128,9 @@ def starting_torque(
         Whether to simulate too.
     tolerance : float, optional
         Relative width at which the search among simulated torques ends, 0.001 .. 1.
+    seeds : int, optional
+        Of a population the number of gears, 20 by default, whose seeds count from ``contact.seed`` on. `impacts`,
+        `lowest`, `simulated` and `tolerance` are not for populations.
     executor, jobs, backend, progress, archive, overwrite, resume
         As for `sweep`. With `archive`, finished runs are kept beside it until it is written.
 
@@ -136,6 +142,13 @@ def starting_torque(
         less. Both are what the dry resistance takes where adhesion does not hold even at the lowest torque, and NaN
         without `simulated`. All in N m on the pinion. The scene's own constant torque is the attribute
         ``drive_torque``.
+
+        Of a population, dims (sam_fraction, seed): ``starting_torque``, at the last moment of rest before the gear has
+        turned one pitch, while the torque rises linearly; ``starts``, whether the drive's own constant torque, there at
+        once, turns it so far. Along ``sam_fraction`` ``quantiles`` (10, 50 and 90 %), ``not_started`` (the share that
+        rests when the ramp ends at ``ramp_end``), ``chance`` (mean of ``starts``), the ``rate`` [N m/s] and
+        ``median_change``, by which half of a rate has changed the median; the rate is halved until that is less than a
+        tenth. ``damping`` is the scene's, or 3 % of the critical damping of an asperity without load.
 
     Raises
     ------
@@ -156,6 +169,15 @@ def starting_torque(
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base = prepare(scene, rtol=None, t_end=None, samples=None, backend=backend)
     how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    if base.contact.model == "population":
+        _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
+        return starting_torques(
+            base, *_coatings(base, "own" if sam_fraction is None else sam_fraction), seeds, how
+        )
+    if seeds is not None:
+        raise SceneError(
+            "seeds", seeds, 'needs contact.model = "population": others do not differ by their seeds'
+        )
     fractions, scenes = _coatings(base, sam_fraction)
     least = _lowest(scene, lowest)
 
@@ -176,6 +198,16 @@ def starting_torque(
         {**origin_of(scene), "settings": json.dumps([fractions, impacts, least, simulated, tolerance])},
         read=lambda path: open_product(path, "starting_torque")[0],
     )
+
+
+def _refuse_settings(**given: Any) -> None:
+    """Refuse settings that the starting torques of a population do not have."""
+    usual = {"impacts": 3, "lowest": None, "simulated": True, "tolerance": 0.1}
+    for name, value in given.items():
+        if value != usual[name]:
+            raise SceneError(
+                name, value, "is not for a population, whose gears each turn by one pitch: leave it out"
+            )
 
 
 def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[Scene]]:

@@ -8,12 +8,17 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from gearidae.analysis.verdict import outcomes
+from gearidae.analysis.verdict.codes import sticking, verdict_codes
 from gearidae.archive.dataset import dimension_names
+from gearidae.archive.specimen import SEED, has_seeds
 from gearidae.errors import SceneError
 
 _PER_BIN: Final = 25
 """Members that a bin has at least, by default: a probability of one half is then known to 0.1."""
 _MOST_BINS: Final = 20
+_MOST_VALUES: Final = 1000
+"""Values of a key at most that have intervals of their own."""
 
 
 def sticking_probability(
@@ -24,12 +29,13 @@ def sticking_probability(
     Parameters
     ----------
     ds : Dataset
-        From `ensemble`.
+        From `ensemble`, or from `gearidae.sweep` over ``contact.seed`` and other keys: then each run is a member.
     over : str, optional
-        Key that was drawn; by default all members are taken together.
+        Key that was drawn; by default all members are taken together. The seed of a population is none: it has no
+        order.
     bins : int, optional
         Number of intervals of the key, with as many members in each; by default as many as have 25 members or more, at
-        most 20.
+        most 20. A key of few values, such as that of a sweep, has an interval for each of them.
     confidence : float, optional
         Of the band.
 
@@ -48,7 +54,8 @@ def sticking_probability(
     """
     if not 0.0 < confidence < 1.0:
         raise SceneError("confidence", confidence, "must be above 0 and below 1")
-    names = drawn_keys(ds)
+    ds = _along_members(ds)
+    names = {key: name for key, name in drawn_keys(ds).items() if key != SEED}
     own = np.isfinite(ds["sticks"].values)
     if "matrix" in ds.coords:
         own &= ~np.char.startswith(ds["matrix"].values.astype(str), "AB")
@@ -61,8 +68,7 @@ def sticking_probability(
         raise SceneError("over", over, f"must be a key that was drawn: {', '.join(names)}")
     name = names[over]
     ordered = members.sortby(name)
-    count = _bin_count(ordered.sizes["member"], bins)
-    groups = np.array_split(np.arange(ordered.sizes["member"]), count)
+    groups = _groups(ordered[name].values, bins)
     values, sticks = ordered[name].values, ordered["sticks"].values
     about = ds[name].attrs
     ends = {
@@ -89,9 +95,35 @@ def drawn_keys(ds: xr.Dataset) -> dict[str, str]:
     SceneError
         If the dataset is no ensemble.
     """
-    if "ensemble" not in ds.attrs or "member" not in ds.dims or "sticks" not in ds:
-        raise SceneError("dataset", type(ds).__name__, "must be an ensemble, from studies.ensemble")
+    whole = "ensemble" in ds.attrs and "member" in ds.dims and "sticks" in ds
+    if not whole and not _is_sweep_over_seeds(ds):
+        raise SceneError(
+            "dataset", type(ds).__name__, "must be an ensemble, from studies.ensemble, or a sweep over seeds"
+        )
     return dimension_names(json.loads(ds.attrs["swept"]))
+
+
+def _along_members(ds: xr.Dataset) -> xr.Dataset:
+    """Return an ensemble as it is, and a sweep over seeds as an ensemble: its runs along ``member``."""
+    if not _is_sweep_over_seeds(ds):
+        return ds
+    dims = ds["status"].dims
+    stacked = ds[["status"]].stack(member=dims).reset_index("member")
+    words = [one.verdict for one in outcomes(ds)]
+    codes = verdict_codes(words)
+    return stacked.assign(sticks=("member", sticking(codes))).assign_attrs(ensemble="sweep")
+
+
+def _is_sweep_over_seeds(ds: xr.Dataset) -> bool:
+    return "ensemble" not in ds.attrs and has_seeds(ds) and "status" in ds and bool(ds["status"].dims)
+
+
+def _groups(values: np.ndarray[Any, Any], bins: int | None) -> list[np.ndarray[Any, Any]]:
+    """Put ordered members into intervals of their values."""
+    _, first = np.unique(values, return_index=True)
+    if bins is None and 2 * first.size <= values.size and first.size <= _MOST_VALUES:
+        return np.split(np.arange(values.size), np.sort(first)[1:])
+    return np.array_split(np.arange(values.size), _bin_count(values.size, bins))
 
 
 def _bin_count(members: int, bins: int | None) -> int:

@@ -1,4 +1,4 @@
-"""What every pair of teeth did at chosen times, as far as a record tells.
+"""States of every pair of teeth at chosen times, as far as a record allows.
 
 The gap of every pair follows from the recorded motion, the history of its asperities from the gaps it went through, and
 from both the force of every pair and whether its asperities stretch. What is not recorded is how far the bodies gave
@@ -28,6 +28,7 @@ from gearidae.scene import Scene
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at, met_teeth
 from gearidae.studies.equilibrium import MaterialLaw, material_laws
+from gearidae.studies.joined_asperities import JoinedAsperities
 from gearidae.studies.tooth_record import ToothRecord, joined_heights
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
@@ -43,7 +44,7 @@ _JUST = 1e-6  # of the stretch limit: nearer to either end of the stretch is at 
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """What tells contacts from teeth apart, in SI units."""
+    """Limits that separate contact from separation, in SI units."""
 
     cutoff: float
     engage: float
@@ -52,21 +53,29 @@ class _Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class _Followed:
+class _Near:
     """One pair at those of the wanted samples at which it counts."""
 
     pair: int
     flank: Flank
     wanted: Integers
+    sample: Integers
     place: Floats
     radius: Floats
     gap: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class _Followed:
+    """The same with its history."""
+
+    near: _Near
     joined: dict[str, Floats]
     force: Floats
 
 
 def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
-    """Tell what the pairs of teeth did at some times of a run.
+    """Find the states of the pairs of teeth at some times of a run.
 
     Parameters
     ----------
@@ -88,7 +97,7 @@ def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     Notes
     -----
     The force of a pair is found from its own history since it came near. The recorded force of all pairs has no part
-    in it and serves as the check. A turning point of a gap between two samples is known where an event tells its
+    in it and serves as the check. A turning point of a gap between two samples is known where an event gives its
     time; the gap there is interpolated with the recorded rates.
     """
     run = _one_run(ds)
@@ -96,10 +105,11 @@ def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     wanted = _nearest(run, np.atleast_1d(np.asarray(times, dtype=np.float64)))
     order = np.argsort(wanted, kind="stable")
     states: dict[int, MeshState] = {}
+    real = JoinedAsperities(run, scene) if scene.contact.model == "population" else None
     stretches = _stretches(run, scene, wanted[order], limits.reach)
     for (samples, events), mine in stretches:
         record = ToothRecord(run, scene, samples, events)
-        found = _states(record, scene, limits, wanted[order[mine]] - samples.start)
+        found = _states(record, scene, limits, wanted[order[mine]] - samples.start, real)
         states |= dict(zip(order[mine].tolist(), found, strict=True))
     return [states[k] for k in range(len(wanted))]
 
@@ -178,18 +188,26 @@ def _look_back(angle: xr.DataArray, sample: int, travel: float) -> int:
     return end
 
 
-def _states(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers) -> list[MeshState]:
+def _states(
+    record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers, real: JoinedAsperities | None
+) -> list[MeshState]:
     """Return the states at some samples of a stretch, counted from its first."""
-    stretches = {name: _stretch_limit(law, scene) for name, law in material_laws(scene).items()}
     contacts: list[list[ToothContact]] = [[] for _ in wanted]
-    for pair in _followed(record, scene, limits, wanted):
-        for k, place in enumerate(pair.wanted):
-            contacts[place].append(_contact(pair, k, limits, stretches))
+    if real is not None:
+        for near in _near(record, scene, limits, wanted):
+            for k, place in enumerate(near.wanted):
+                contacts[place].append(_real_contact(record, near, k, real, limits.cutoff))
+    else:
+        stretches = {name: _stretch_limit(law, scene) for name, law in material_laws(scene).items()}
+        for pair in _followed(record, scene, limits, wanted):
+            for k, place in enumerate(pair.near.wanted):
+                contacts[place].append(_contact(pair, k, limits, stretches))
     states = []
     for at, found in zip(wanted, contacts, strict=True):
         total = float(record.mesh_force[at])
         mismatch = sum(one.force * (1 if one.flank == Flank.DRIVE else -1) for one in found) - total
-        told = abs(mismatch) <= AGREEMENT * max(sum(abs(one.force) for one in found), limits.load)
+        told = real is None or real.told
+        told &= abs(mismatch) <= AGREEMENT * max(sum(abs(one.force) for one in found), limits.load)
         states.append(
             MeshState(
                 time=float(record.time[at]),
@@ -216,11 +234,11 @@ def _limits(scene: Scene) -> _Limits:
     )
 
 
-def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers) -> Iterator[_Followed]:
-    """Follow every pair that is on its path, or near enough for a force, at one of the wanted samples."""
+def _near(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers) -> Iterator[_Near]:
+    """Find every pair that is on its path, or near enough for a force, at one of the wanted samples."""
     order = np.argsort(wanted, kind="stable")
     at = wanted[order]
-    geometry, laws = scene.geometry, material_laws(scene)
+    geometry = scene.geometry
     for flank in (Flank.DRIVE, Flank.COAST):
         # the place of pair n is that of pair 0, less (drive) or more (coast) n pitches
         pitches = record.place(flank, 0, record.travel[at]) / geometry.base_pitch
@@ -237,15 +255,53 @@ def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Intege
             if not counts.any():
                 continue
             place, gap, here = place[counts], gap[counts], at[counts]
-            start, gaps, places = record.path_to(flank, pair, int(here[-1]), limits.reach)
-            joined = {
-                name: joined_heights(gaps, places[here - start], _stretch_limit(law, scene))
-                for name, law in laws.items()
-            }
-            radius = curvature_radii(geometry, place)[2]
-            force = _force(scene, laws, gap, joined, radius, _share_ratios(scene, flank, pair, place))
-            force[gap >= limits.cutoff] = 0.0
-            yield _Followed(pair, flank, order[counts], place, radius, gap, joined, force)
+            yield _Near(pair, flank, order[counts], here, place, curvature_radii(geometry, place)[2], gap)
+
+
+def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers) -> Iterator[_Followed]:
+    """Follow every pair that counts at one of the wanted samples."""
+    laws = material_laws(scene)
+    for near in _near(record, scene, limits, wanted):
+        start, gaps, places = record.path_to(near.flank, near.pair, int(near.sample[-1]), limits.reach)
+        joined = {
+            name: joined_heights(gaps, places[near.sample - start], _stretch_limit(law, scene))
+            for name, law in laws.items()
+        }
+        ratios = _share_ratios(scene, near.flank, near.pair, near.place)
+        force = _force(scene, laws, near.gap, joined, near.radius, ratios)
+        force[near.gap >= limits.cutoff] = 0.0
+        yield _Followed(near, joined, force)
+
+
+def _real_contact(
+    record: ToothRecord, near: _Near, k: int, real: JoinedAsperities, cutoff: float
+) -> ToothContact:
+    """Contact of a pair with real asperities at the k-th of its samples."""
+    pair, flank, place, gap = near.pair, near.flank, float(near.place[k]), float(near.gap[k])
+    travel, error = (np.array([number]) for number in real.first_motion)
+    first = record.place(flank, pair, travel)
+    opened = float(record.gap(flank, first, error)[0])
+    joined = np.empty(0, np.int64)
+    if gap < cutoff:
+        joined = real.of(pair, flank, float(record.time[near.sample[k]]), (float(first[0]), opened))
+    overlaps, loads, names = real.loads(pair, flank, joined, place, gap)
+    states = {
+        name: ContactState.PARTLY_STRETCHED
+        if min(overlaps[n] for n in range(len(names)) if names[n] == name) < 0.0
+        else ContactState.LOADING
+        for name in names
+    }
+    return ToothContact(
+        pair,
+        flank,
+        place,
+        float(near.radius[k]),
+        gap,
+        float(loads.sum()),
+        {},
+        states or {"bare": ContactState.OPEN},
+        tuple(joined.tolist()),
+    )
 
 
 def _stretch_limit(law: MaterialLaw, scene: Scene) -> float:
@@ -288,11 +344,15 @@ def _force(
                 ]
             )
         )
-    return np.sqrt(2.0 * radius * sigma) * total
+    force = np.sqrt(2.0 * radius * sigma) * total
+    if scene.attracts:
+        force += sum(ratios[name] * law.attraction(gap, radius, scene) for name, law in laws.items())
+    return force
 
 
 def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, float]) -> ToothContact:
-    gap = float(pair.gap[k])
+    near = pair.near
+    gap = float(near.gap[k])
     joined = {name: float(heights[k]) for name, heights in pair.joined.items()}
     states = {}
     for name, limit in stretches.items():
@@ -306,10 +366,10 @@ def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, floa
         else:
             states[name] = ContactState.FULLY_STRETCHED
     return ToothContact(
-        pair.pair,
-        pair.flank,
-        float(pair.place[k]),
-        float(pair.radius[k]),
+        near.pair,
+        near.flank,
+        float(near.place[k]),
+        float(near.radius[k]),
         gap,
         float(pair.force[k]),
         joined,
@@ -318,7 +378,7 @@ def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, floa
 
 
 def _untold(contact: ToothContact) -> ToothContact:
-    """Keep of a contact what the record tells: its gap, and whether it is open."""
+    """Keep of a contact what the record holds: its gap, and whether it is open."""
     states = {
         name: state if state == ContactState.OPEN else ContactState.UNTOLD
         for name, state in contact.states.items()

@@ -10,25 +10,18 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
 from gearidae.analysis.verdict.codes import Outcome
 from gearidae.archive.select import scene_of
+from gearidae.archive.specimen import has_seeds
 from gearidae.scene import describe_key
 from gearidae.scene.prefixes import with_prefix
+from gearidae.studies.gear_answers import FIGURES, Rows, mean_rows, starts_rows, starts_sentence
 
-Rows: TypeAlias = Iterator[tuple[str, str, str]]
-
-_FIGURES: Final = (
-    "min_gear_speed",
-    "max_gear_speed",
-    "largest_mesh_force",
-    "smallest_mesh_force",
-    "stick_time",
-)
 _SHARES: Final = (0.9, 0.5, 0.1)
 """Of the gears that still turn, for which the passages are given."""
 _SIGNS: Final = {
@@ -109,7 +102,7 @@ def _ends(one: xr.Dataset) -> tuple[str, str]:
 
 
 def _number(value: float, one: xr.Dataset) -> str:
-    """Write a value of a bracket with as many digits as tell its ends apart, four at least."""
+    """Write a value of a bracket with as many digits as distinguish its ends, four at least."""
     sticks, passes, unit = float(one["sticks"]), float(one["passes"]), str(one["limit"].attrs["units"])
     digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
     return f"{value:.{digits}g}" + ("" if unit == "1" else f" {unit}")
@@ -148,7 +141,10 @@ def _ensemble_rows(ds: xr.Dataset) -> Rows:
             one = ds.sel(parameter=key)
             yield str(key), _uncertain(one, "total_order"), _uncertain(one, "first_order")
     yield from _counts(ds["verdict"])
-    for name in _FIGURES:
+    if has_seeds(ds):
+        yield from mean_rows(ds)
+        return
+    for name in FIGURES:
         if name in ds and np.isfinite(ds[name]).any():
             low, middle, high = np.nanquantile(ds[name].values, (0.05, 0.5, 0.95))
             unit = str(ds[name].attrs["units"])
@@ -330,6 +326,31 @@ def _starting_rows(ds: xr.Dataset) -> Rows:
         yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, f"sticks at {sticks}, static {static}"
 
 
+def _pull_off_sentence(ds: xr.Dataset) -> str:
+    low, middle, high = _quantiles(ds["pull_off"])
+    return f"A drawn pair parts at {middle} (median of {ds.sizes['seed']}; 80 % between {low} and {high})."
+
+
+def _quantiles(values: xr.DataArray) -> list[str]:
+    found = np.quantile(values.values, (0.1, 0.5, 0.9))
+    unit = str(values.attrs["units"])
+    return [f"{one:.3g}" if unit == "1" else with_prefix(float(one), unit, 3) for one in found]
+
+
+def _pull_off_rows(ds: xr.Dataset) -> Rows:
+    """Quantiles of the forces and of the numbers of asperities."""
+    yield f"Pressed with {with_prefix(float(ds.attrs['load']), 'N', 3)} and parted", "median", "10 and 90 %"
+    for name, words in (
+        ("pull_off", "pull-off"),
+        ("asperities_joined", "asperities joined under the load"),
+        ("asperities_holding", "asperities that hold"),
+    ):
+        low, middle, high = _quantiles(ds[name])
+        yield words, middle, f"{low} and {high}"
+    never = int((ds["pull_off"] == 0.0).sum())
+    yield "pairs that never pull", str(never), f"of {ds.sizes['seed']}"
+
+
 def _coating_sentence(ds: xr.Dataset) -> str:
     frequency = ds["characteristic_frequency"].values
     if not np.isfinite(frequency).any():
@@ -365,7 +386,9 @@ _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Datase
     "life": (_life_sentence, _life_rows),
     "lives": (_lives_sentence, _lives_rows),
     "operating_map": (_map_sentence, _map_rows),
+    "pull_off": (_pull_off_sentence, _pull_off_rows),
     "posterior": (_posterior_sentence, _posterior_rows),
     "starting_torque": (_starting_sentence, _starting_rows),
+    "starting_torques": (starts_sentence, starts_rows),
     "sticking_threshold": (_threshold_sentence, _threshold_rows),
 }

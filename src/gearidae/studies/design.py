@@ -117,7 +117,7 @@ def pick_freeze_design(distributions: Sequence[Distribution], size: int, design:
 def _points(dimensions: int, size: int, design: str, seed: int) -> Floats:
     """Points of the unit cube, shape (size, dimensions)."""
     generator = np.random.default_rng(seed)
-    if design == "random":
+    if design == "random" or dimensions == 0:
         return generator.random((size, dimensions))
     if dimensions > _MOST_DIMENSIONS:
         raise SceneError(
@@ -130,4 +130,4 @@ def _points(dimensions: int, size: int, design: str, seed: int) -> Floats:
 
 def _values(distributions: Sequence[Distribution], points: Floats) -> Floats:
     columns = [each.quantiles(points[:, number]) for number, each in enumerate(distributions)]
-    return np.stack(columns, axis=1)
+    return np.stack(columns, axis=1) if columns else points

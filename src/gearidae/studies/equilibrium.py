@@ -19,11 +19,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import brentq
+from numpy.typing import ArrayLike, NDArray
 
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of
+from gearidae.contact.attraction import attraction_force
 from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_value
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
@@ -42,6 +42,14 @@ class MaterialLaw(NamedTuple):
     limit: float
     table: NDArray[np.float64]
     offset: float
+    hamaker: float
+
+    def attraction(self, gap: ArrayLike, radius: ArrayLike, scene: Scene) -> NDArray[np.float64]:
+        """Attraction [N] of the material across gaps between flanks with reduced radii [m]."""
+        assert scene.gears is not None
+        own_gap = np.asarray(gap) + self.offset * scene.surface.roughness
+        unit = attraction_force(own_gap, 1.0, scene.gears.face_width, self.hamaker)
+        return np.asarray(unit * np.sqrt(np.asarray(radius)))
 
 
 _DEEPEST, _WIDEST = -30.0, GAP_HIGH - 0.1
@@ -144,10 +152,13 @@ def pair_law(scene: Scene) -> PairLaw:
     def law(gap: float, joined: float, radius: float, opened: float = -math.inf) -> float:
         at, low, high = gap / roughness, joined / roughness, opened / roughness
         total = 0.0
-        for scale, limit, table, offset in parts.values():
+        for scale, limit, table, offset, _ in parts.values():
             height = min(max(low, high - limit), at)
             total += scale * law_value(table, at + offset, height + offset)[0]
-        return math.sqrt(2.0 * radius * roughness) * float(total)
+        force = math.sqrt(2.0 * radius * roughness) * float(total)
+        if scene.attracts:
+            force += sum(float(part.attraction(gap, radius, scene)) for part in parts.values())
+        return force
 
     return law
 
@@ -164,8 +175,8 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
     -------
     dict
         By ``bare``, ``coated`` and ``mixed``: force of unit value and unit ``sqrt(2 R sigma)`` [N/m] times the
-        material's share, its stretch limit over the roughness, its table (see `gearidae.contact.kernels.law`), and its
-        gap offset over the roughness.
+        material's share, its stretch limit over the roughness, its table (see `gearidae.contact.kernels.law`), its
+        gap offset over the roughness, and its Hamaker constant times the share [J].
     """
     assert scene.gears is not None
     roughness, width = scene.surface.roughness, scene.gears.face_width
@@ -176,7 +187,8 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
             hertz = 4.0 / 3.0 * asperity.modulus * math.sqrt(surface.asperity_radius)
             scale = share * force_scale(roughness, hertz, surface.asperity_density, width)
             law = law_of(scene.contact.asperity, surface)
-            laws[name] = MaterialLaw(scale, law.detach - law.join, law_table(law), offset / roughness)
+            limit, pull = law.detach - law.join, share * surface.hamaker
+            laws[name] = MaterialLaw(scale, limit, law_table(law), offset / roughness, pull)
     return laws
 
 
@@ -211,7 +223,7 @@ def settled_gap(scene: Scene, balance: Callable[[float], float]) -> float:
     gaps = np.arange(_WIDEST, _DEEPEST, -0.25) * sigma
     for outer, inner in pairwise(gaps):
         if balance(float(inner)) > 0.0:
-            return float(brentq(balance, inner, outer, xtol=_GAP_ERROR * sigma))
+            return _between(balance, float(inner), float(outer), _GAP_ERROR * sigma)
     return _DEEPEST * sigma
 
 
@@ -236,6 +248,15 @@ def nearest_gap(scene: Scene, balance: Callable[[float], float], gap: float) -> 
     while _DEEPEST * sigma < near < _WIDEST * sigma:
         far = min(max(near + way * step, _DEEPEST * sigma), _WIDEST * sigma)
         if (balance(far) > 0.0) != (way > 0.0):
-            return float(brentq(balance, min(near, far), max(near, far), xtol=_GAP_ERROR * sigma))
+            return _between(balance, min(near, far), max(near, far), _GAP_ERROR * sigma)
         near, step = far, 1.6 * step
     return near
+
+
+def _between(balance: Callable[[float], float], inner: float, outer: float, error: float) -> float:
+    """Gap between two at which the force balance changes its sign, by bisection: SciPy's roots take long to load."""
+    carries = balance(inner) > 0.0
+    while outer - inner > error:
+        middle = 0.5 * (inner + outer)
+        inner, outer = (middle, outer) if (balance(middle) > 0.0) == carries else (inner, middle)
+    return 0.5 * (inner + outer)

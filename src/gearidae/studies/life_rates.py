@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 MOST_STATES: Final = 1000
 """Largest number of states whose rate is computed."""
 _EVALUATIONS: Final = 3
-"""Rates that a step of the integration asks for."""
+"""Rates per step of the integration."""
 _PATIENCE: Final = 20.0
 """Time that a cycle gets, over its share of that of a window."""
 

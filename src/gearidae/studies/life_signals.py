@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 SAMPLES: Final = 30_001
-"""Of a signal, where the scene asks for none."""
+"""Of a signal, where the scene has none."""
 _ASSESSED: Final = {
     "assessed_coverage": "most likely coverage by the signal",
     "assessed_low": "lower end of its 95 % interval",
@@ -43,7 +43,7 @@ def assess_life(ds: xr.Dataset, chart: xr.Dataset, *, noise: float = 0.0, seed: 
     -------
     Dataset
         The life, and along ``passages`` ``assessed_coverage`` with its 95 % interval ``assessed_low`` and
-        ``assessed_high`` [1], NaN where a signal cannot tell, and ``assessed_verdict``.
+        ``assessed_high`` [1], NaN where a signal does not decide, and ``assessed_verdict``.
 
     Raises
     ------

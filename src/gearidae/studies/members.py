@@ -26,9 +26,7 @@ STICKS = {
 }
 
 
-def member_plan(
-    base: Scene, values: Mapping[str, NDArray[np.float64]], drawn_from: Mapping[str, str]
-) -> SweepPlan:
+def member_plan(base: Scene, values: Mapping[str, NDArray[Any]], drawn_from: Mapping[str, str]) -> SweepPlan:
     """Make the scenes of all members, before anything is run.
 
     Parameters
@@ -57,7 +55,7 @@ def member_plan(
 
 def drawn_members(
     make: Callable[[dict[str, float]], Made],
-    values: Mapping[str, NDArray[np.float64]],
+    values: Mapping[str, NDArray[Any]],
     drawn_from: Mapping[str, str],
 ) -> list[Made]:
     """Make something of the values of each member.

@@ -79,11 +79,29 @@ _KINDS: Final = {
         "lives",
         dict.fromkeys(("passages_to_sticking", "passages_turning", "sticks", "ending", "status"), "member"),
     ),
+    "pull_off": _Kind(
+        "study of pull-off forces",
+        "pull-off",
+        dict.fromkeys(("pull_off", "asperities_joined", "asperities_holding", "gap"), "seed"),
+    ),
     "posterior": _Kind("posterior", "calibrate", check=calibrated_keys),
     "starting_torque": _Kind(
         "study of starting torques",
         "starting-torque",
         dict.fromkeys(("static_torque", "simulated_torque", "simulated_stuck"), "sam_fraction"),
+    ),
+    "starting_torques": _Kind(
+        "study of a population's starting torques",
+        "starting-torque",
+        {
+            "starting_torque": "sam_fraction",
+            "starts": "sam_fraction",
+            "quantiles": "sam_fraction",
+            "not_started": "sam_fraction",
+            "chance": "sam_fraction",
+            "rate": "sam_fraction",
+            "median_change": "sam_fraction",
+        },
     ),
     "sticking_threshold": _Kind(
         "sticking threshold", "threshold", dict.fromkeys(("limit", "sticks", "passes"), "exits")
@@ -97,7 +115,8 @@ def require(ds: xr.Dataset, kind: str) -> xr.Dataset:
     Parameters
     ----------
     kind : str
-        ``coating_map``, ``life``, ``lives``, ``posterior``, ``starting_torque`` or ``sticking_threshold``.
+        ``coating_map``, ``life``, ``lives``, ``posterior``, ``starting_torque``, ``starting_torques`` or
+        ``sticking_threshold``.
 
     Raises
     ------

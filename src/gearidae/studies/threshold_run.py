@@ -20,7 +20,7 @@ _LONGEST = 8.0
 
 @dataclass(frozen=True, slots=True)
 class ThresholdRun:
-    """What a run tells.
+    """Result of one run.
 
     Attributes
     ----------

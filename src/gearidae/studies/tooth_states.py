@@ -12,7 +12,7 @@ class ContactState(IntEnum):
     """State of the asperities in a pair of teeth."""
 
     UNTOLD = -1
-    """The record does not tell."""
+    """Not recoverable from the record."""
     OPEN = 0
     """Too far apart to count as contact."""
     LOADING = 1
@@ -40,11 +40,14 @@ class ToothContact:
     gap : float
         Gap along the line of action [m].
     force : float
-        Positive pushes apart [N]; NaN where the record does not tell.
+        Positive pushes apart [N]; NaN where it is not recoverable from the record.
     joined : dict of str to float
         By ``bare`` and ``coated``, as far as there are such parts: height above which asperities are joined [m].
     states : dict of str to ContactState
         State of either part.
+    asperities : tuple of int, optional
+        Joined asperities of a population, by their numbers on the pinion's flank; None of other models, and where the
+        record does not tell.
     """
 
     pair: int
@@ -55,6 +58,7 @@ class ToothContact:
     force: float
     joined: dict[str, float]
     states: dict[str, ContactState]
+    asperities: tuple[int, ...] | None = None
 
     @property
     def state(self) -> ContactState:

@@ -14,7 +14,7 @@ from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.units import from_text
 from gearidae.surfaces.height_map import height_map
 from gearidae.surfaces.remarks import remarks
-from gearidae.surfaces.statistics import METHODS, statistics, usual_cutoffs
+from gearidae.surfaces.statistics import METHODS, asperities, statistics, usual_cutoffs
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,6 +41,9 @@ class MeasuredSurface:
         Whether the roughness of both flanks is put into one.
     source : str
         Where the heights come from.
+    asperities : xarray.Dataset or None
+        The summits one by one at the chosen cut-off: ``along``, ``across``, ``height`` above their mean plane and
+        ``radius`` [m] along ``asperity``.
     """
 
     statistics: xr.Dataset
@@ -48,6 +51,7 @@ class MeasuredSurface:
     by: str
     both_flanks: bool
     source: str
+    asperities: xr.Dataset | None = None
 
     @property
     def settings(self) -> dict[str, float | str]:
@@ -76,6 +80,40 @@ class MeasuredSurface:
             f"{'; rows aligned' if ds.attrs['rows_aligned'] else ''}"
         )
         return "".join(char if char.isprintable() else "_" for char in words)
+
+    def asperity_list(self, along: str = "arc") -> str:
+        """Write the summits as a list of asperities for ``contact.asperities``.
+
+        Parameters
+        ----------
+        along : {"arc", "x"}
+            Name of the places along the columns' index: ``arc`` from the edge of the area that was analysed, for gears,
+            ``x`` from its middle, for a roller.
+
+        Returns
+        -------
+        str
+            A table of comma-separated values with the columns ``arc [um]`` or ``x [um]``, ``height [nm]`` and
+            ``radius [nm]``.
+
+        Raises
+        ------
+        SceneError
+            As for `settings`, and if both flanks are to be put into one, which has no summits of its own.
+        """
+        self._chosen()
+        if self.both_flanks:
+            raise SceneError(
+                "both_flanks", True, "must be false: two flanks in one have no summits of their own"
+            )
+        assert self.asperities is not None
+        ds = self.asperities
+        if not ds.sizes["asperity"]:
+            raise SceneError("cutoff", f"{self._chosen():.4g} m", "leaves no summit in this map")
+        first = 0.5 * float(ds.attrs["length"]) if along == "x" else 0.0
+        columns = (1e6 * (ds["along"].values - first), 1e9 * ds["height"].values, 1e9 * ds["radius"].values)
+        rows = "".join(f"{s:.9g},{z:.9g},{r:.9g}\n" for s, z, r in zip(*columns, strict=True))
+        return f"{along} [um],height [nm],radius [nm]\n{rows}"
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -209,7 +247,9 @@ def surface_from(
     asked = usual_cutoffs(surface)
     if chosen is not None:
         asked = np.unique(np.append(asked[~np.isclose(asked, chosen, rtol=1e-6, atol=0.0)], chosen))
-    return MeasuredSurface(statistics(surface, asked), chosen, by, both_flanks, source)
+    made = statistics(surface, asked)
+    listed = None if chosen is None else asperities(surface, chosen)
+    return MeasuredSurface(made, chosen, by, both_flanks, source, listed)
 
 
 def _in_words(asperities: dict[str, float]) -> str:

@@ -116,6 +116,45 @@ def statistics(surface: HeightMap, cutoffs: NDArray[np.float64]) -> xr.Dataset:
     )
 
 
+def asperities(surface: HeightMap, cutoff: float) -> xr.Dataset:
+    """List the summits of a map for one cut-off wavelength.
+
+    Parameters
+    ----------
+    cutoff : float
+        Shortest wavelength that is kept [m], one that `statistics` allows.
+
+    Returns
+    -------
+    Dataset, dims (asperity,)
+        ``along`` and ``across``, the places along the columns' and the rows' index from the edge of the area that is
+        analysed, ``height`` above the summits' mean plane and ``radius`` [m], ordered along. The attributes ``length``
+        and ``width`` are that area's [m].
+    """
+    field = band_limited(cosine_sum(surface.heights), surface.size, cutoff)
+    wanted = _wanted(surface, field, cutoff)
+    found = find_summits(field, wanted)
+    order = np.argsort(found.places[1], kind="stable")
+    edges, sides = [], []
+    for axis, step in enumerate(field.spacing):
+        inside = np.flatnonzero(wanted.any(axis=1 - axis))
+        edges.append((inside[0] - 0.5) * step)
+        sides.append(float((inside[-1] + 1 - inside[0]) * step))
+    columns = {
+        "along": (found.places[1] - edges[1], "place along the columns' index"),
+        "across": (found.places[0] - edges[0], "place along the rows' index"),
+        "height": (found.heights - found.heights.mean(), "height above the summits' mean plane"),
+        "radius": (1.0 / found.curvatures, "radius of the tip"),
+    }
+    return xr.Dataset(
+        {
+            name: ("asperity", values[order], {"units": "m", "long_name": words})
+            for name, (values, words) in columns.items()
+        },
+        attrs={"width": sides[0], "length": sides[1]},
+    )
+
+
 def _finest(surface: HeightMap) -> float:
     """Cut-off for which the grid has as many points as it may [m]; 1 % to spare, sides being rounded up."""
     area = surface.size[0] * surface.size[1]

@@ -23,10 +23,13 @@ class Summits(NamedTuple):
         [m].
     curvatures : ndarray, shape (n,)
         Mean of both principal curvatures, positive [1/m].
+    places : ndarray, shape (2, n)
+        Along both indices, from the first point of the grid [m].
     """
 
     heights: Floats
     curvatures: Floats
+    places: Floats
 
 
 def find_summits(field: Field, wanted: NDArray[np.bool_]) -> Summits:
@@ -52,7 +55,7 @@ def find_summits(field: Field, wanted: NDArray[np.bool_]) -> Summits:
         ndimage.map_coordinates(values, places, order=3, mode="nearest")
         for values in (field.heights, field.curvature)
     )
-    return Summits(heights, -0.5 * laplacian)
+    return Summits(heights, -0.5 * laplacian, places * np.array(field.spacing)[:, None])
 
 
 def _to_the_top(field: Field, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Floats:

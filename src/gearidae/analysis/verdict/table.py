@@ -11,6 +11,9 @@ from gearidae.scene.prefixes import with_prefix
 
 T = TypeVar("T")
 
+_SHORT = ("min_speed", "max_speed", "peak_force", "pull_off_force", "restitution", "impacts", "wall_time")
+"""What stands beside the words, which say when a gear came to stand and after how many exits."""
+
 _COLUMNS = {
     "min_speed": ("min speed", "rad/s"),
     "max_speed": ("max speed", "rad/s"),
@@ -23,6 +26,27 @@ _COLUMNS = {
     "wall_time": ("wall time", "s"),
 }
 """Attribute of an outcome to heading and unit."""
+
+
+def headings(outcome: Any) -> list[str]:
+    """Name the columns of `cells`."""
+    return ["outcome", *(_COLUMNS[name][0] for name in _SHORT if hasattr(outcome, name))]
+
+
+def cells(outcome: Any, rtol: float) -> list[str]:
+    """Write an outcome as the terminal and the report list it: in words, then numbers with their units.
+
+    Parameters
+    ----------
+    outcome : GearOutcome or RollerOutcome
+    rtol : float
+        Relative tolerance of the run, below which a smallest speed is not resolved.
+    """
+    numbers = {name: getattr(outcome, name) for name in _SHORT if hasattr(outcome, name)}
+    if "min_speed" in numbers:
+        numbers["min_speed"] = outcome.resolved_min_speed(rtol)
+    early = "" if outcome.status == "finished" or outcome.verdict == "unfinished" else f" ({outcome.status})"
+    return [outcome.words + early, *(_number(name, value) for name, value in numbers.items())]
 
 
 class Shown:
@@ -51,7 +75,7 @@ def _table(outcomes: Sequence[Any]) -> str:
         [
             *(_plain(value) for value in one.label.values()),
             one.words,
-            *(_number(getattr(one, name), _COLUMNS[name][1]) for name in names),
+            *(_number(name, getattr(one, name)) for name in names),
         ]
         for one in outcomes
     ]
@@ -60,12 +84,13 @@ def _table(outcomes: Sequence[Any]) -> str:
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def _number(value: float, unit: str) -> str:
+def _number(name: str, value: float) -> str:
+    unit = _COLUMNS[name][1]
     if math.isnan(value):
         return "-"
     if not unit or unit == "rad/s":
         return f"{value:.4g} {unit}".rstrip()
-    return with_prefix(value, unit, 4)
+    return with_prefix(value, unit, 2 if name == "wall_time" else 4)
 
 
 def _plain(value: Any) -> str:

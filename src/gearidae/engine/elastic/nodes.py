@@ -320,7 +320,7 @@ def node_residual(m: Model, y: Floats, out: Floats) -> None:
 
 @compiled_once(ELASTIC, makes_arrays=True)
 def node_rates(m: Model, yp: Floats) -> None:
-    """Rates of the deflections at an accepted time, as far as the nodes' shares in the last motion tell."""
+    """Rates of the deflections at an accepted time, from the nodes' shares in the last motion."""
     for k in range(m.scene.histories):
         first, share, h = first_unknown(m, k), row(m, k, SHARE), m.state.history[k]
         near = h.pair != EMPTY and h.gap < m.scene.cutoff

@@ -20,6 +20,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pair_at,
     pair_gap,
 )
+from gearidae.engine.population.attraction import attraction_energy
 from gearidae.engine.population.forces import population_energy
 
 
@@ -40,7 +41,8 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
         Scaled; the true stored energy is their difference.
     """
     if m.scene.population.flanks != 0:
-        return population_energy(m, y), 0.0
+        stored = population_energy(m, y)
+        return (stored + attraction_energy(m, y) if m.scene.attracts != 0 else stored), 0.0
     stored = pending = 0.0
     reach = all_pairs(m, y)
     for i in range(reach.total):

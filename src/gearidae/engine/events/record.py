@@ -6,8 +6,10 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model
+from gearidae.records import EventColumn
 
-EVENT_NUMBERS: Final = 6
+_TIME, _KIND, _PAIR, _FLANK, _GAP_RATE, _ASPERITY = map(int, EventColumn)
+EVENT_NUMBERS: Final = len(EventColumn)
 """Numbers of an event."""
 EVENTS_AT_ONCE: Final = 8 * 64 + 64
 """More than can be recorded at one accepted time: four for each pair, and those of mesh, gear and schedules."""
@@ -22,8 +24,8 @@ def record(
     Parameters
     ----------
     events : ndarray, shape (n, EVENT_NUMBERS)
-        Time [s], kind, pair, flank, gap rate [m/s], asperity or -1. Where it is full nothing is written;
-        drivers keep `EVENTS_AT_ONCE` free before they look for events.
+        Columns of `EventColumn`, in SI units; asperity -1 where an event is of no single one. Where it is full nothing
+        is written; drivers keep `EVENTS_AT_ONCE` free before they look for events.
     count : int
         Events already there.
     t, kind, pair, flank, rate : float
@@ -31,12 +33,12 @@ def record(
     """
     if count >= events.shape[0]:
         return count
-    events[count, 0] = t * m.scene.time_unit
-    events[count, 1] = kind
-    events[count, 2] = pair + (m.state.turns if flank >= 0.0 else 0.0)
-    events[count, 3] = flank
-    events[count, 4] = rate * m.scene.length_unit / m.scene.time_unit
-    events[count, 5] = -1.0
+    events[count, _TIME] = t * m.scene.time_unit
+    events[count, _KIND] = kind
+    events[count, _PAIR] = pair + (m.state.turns if flank >= 0.0 else 0.0)
+    events[count, _FLANK] = flank
+    events[count, _GAP_RATE] = rate * m.scene.length_unit / m.scene.time_unit
+    events[count, _ASPERITY] = -1.0
     return count + 1
 
 
@@ -48,5 +50,5 @@ def record_asperity(
     t, kind, pair, flank, rate = what
     after = record(m, events, count, t, kind, pair, flank, rate)
     if after > count:
-        events[count, 5] = asperity
+        events[count, _ASPERITY] = asperity
     return after

@@ -107,8 +107,8 @@ def step(
 ) -> None:
     """Add works and losses up to an accepted time; histories and mesh marks must still be those before it.
 
-    A turning point needs no sample. In free flight, where only torques and drag are integrated, formulas of high
-    order take steps that are too long for the quadrature; these steps are divided.
+    A turning point needs no sample. Formulas of high order take steps that are too long for the quadrature of drag and
+    damping; these steps are divided, and in free flight those of the torques with them.
 
     Parameters
     ----------
@@ -123,17 +123,18 @@ def step(
     """
     if at[1] and _can_wait(m, t, y):
         return
-    now = at[0] or m.state.bound_exceeded != 0
-    a, parts, start = m.work.adams, 1, m.work.quadrature.time
-    if a.order_used > ORDER and in_flight(m) and m.scene.kind == GEARS:
-        parts = m.scene.flight_parts
-        start = max(start, a.time - a.last_step)
-    for part in range(1, parts + 1):
-        time, state, rates = t, y, yp
-        if part < parts:
-            time, state, rates = start + (t - start) * part / parts, between[0], between[1]
-            adams.between(a, time, state, rates)
-        _accumulate(m, time, state, rates, now or part < parts)
+    a, parts, flying = m.work.adams, 1, in_flight(m)
+    start = max(m.work.resistance.time, a.time - a.last_step)
+    if a.order_used > ORDER and m.scene.kind == GEARS:
+        parts = m.scene.step_parts
+    for part in range(1, parts):
+        time = start + (t - start) * part / parts
+        adams.between(a, time, between[0], between[1])
+        if flying:
+            _accumulate(m, time, between[0], between[1], True)
+        else:
+            _accumulate_losses(m, time, between[0], between[1])
+    _accumulate(m, t, y, yp, at[0] or m.state.bound_exceeded != 0)
 
 
 @compiled

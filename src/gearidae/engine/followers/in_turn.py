@@ -1,9 +1,10 @@
 """The followers of a run in their order, each called only if the scene wants it.
 
 A follower keeps sums or extremes of its own and changes nothing else. It is a module with `begin` at a start of the
-integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root, `resume`
-behind all events of a root, and `finish` before a restart, at the end and for a look in between. It leaves out what it
-does not need. Exposures use what joining and the balance have left at the same time.
+integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root, `flips`
+where asperities have joined or detached, `resume` behind all events of a root, and `finish` before a restart, at the
+end and for a look in between. It leaves out what it does not need. Exposures use what joining and the balance have left
+at the same time.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.events.pair_events import PairEvent
 from gearidae.engine.followers import balance, joining
 from gearidae.engine.followers.exposures import follow as exposures
+from gearidae.engine.followers.exposures.asperities import add_flips
 from gearidae.engine.followers.extremes import follow as extremes
 from gearidae.engine.followers.rubbing import book_rubbing, note_rubbing
 from gearidae.engine.model.located import model_at
@@ -68,6 +70,13 @@ def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
         joining.event(m, y, found.coast, found.pair, found.k, found.gap)
     if m.scene.follow.exposures != 0:
         exposures.event(m, t, y, yp, found)
+
+
+@compiled
+def flips(m: Model, y: Floats) -> None:
+    """Take note of asperities that have joined or detached, before they are recorded."""
+    if m.scene.follow.exposures != 0:
+        add_flips(m, y)
 
 
 @compiled

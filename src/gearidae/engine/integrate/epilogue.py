@@ -5,6 +5,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.asperity_events import flip_asperities, record_flips
+from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
@@ -102,10 +103,20 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
                 followers.event(m, t, y, yp, found)
                 count = take_event(m, t, y, found, events, count)
     if m.scene.population.flanks != 0:
-        restart |= flip_asperities(m, y)
+        if flip_asperities(m, y):
+            restart = True
+            followers.flips(m, y)
         count, too_many = record_flips(m, t, events, count)
         if too_many:
             driver.error = MANY_EVENTS
+        if (
+            m.scene.friction.on == 0
+            and m.scene.dry != 0
+            and m.state.slip == 0.0
+            and dry_guard(m, t, y) <= 0.0
+        ):
+            # the force has jumped past what holds the gear, and no root would show it
+            count = stick_or_slip(m, t, y, events, count)
     if m.scene.friction.on != 0:
         restart |= settle_sliding(m, t, y, False)
         count = record_sliding(m, t, events, count)

@@ -62,7 +62,7 @@ model_at: Any = intrinsic(_model)
 """A model of this process, from where `note_addresses` has written."""
 
 POINTERS: Final = 7
-"""Words that tell where a model lies: addresses of its records, address and length of its arrays."""
+"""Words that locate a model in memory: addresses of its records, address and length of its arrays."""
 
 
 @compiled

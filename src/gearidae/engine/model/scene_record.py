@@ -24,6 +24,7 @@ MATERIAL: Final = record_type(
     ("table_at", INT),  # force law among the tables [index]
     ("energy_at", INT),  # stored energy among the tables [index]
     ("number_at", INT),  # number of asperities above a height, among the tables [index]
+    ("attraction", REAL),  # across a gap of 1, with the material's share, per sqrt(radius / pb) [F]
 )
 
 COVERAGE: Final = record_type(  # of one side's flanks
@@ -66,6 +67,9 @@ POPULATION: Final = record_type(
     ("arcs_at", INT),  # places along the flank of all asperities, among the tables [index]
     ("heights_at", INT),  # their heights among the tables [index]
     ("kinds_at", INT),  # where the numbers of their kinds are, among the tables [index]
+    ("by_gear_tooth", INT),  # 1 where kinds depend on the gear's tooth: these where it is covered there
+    ("bare_kinds_at", INT),  # and these where it is bare, among the tables [index]
+    ("gear_numbers_at", INT),  # coverage numbers of the gear's side, among the tables [index]
     ("highest", REAL),  # of their heights [sigma]
     ("join", REAL),  # farthest distance at which any joins [sigma]
     ("steepness", REAL),  # base pitch, or a roller's radius, over sigma [1]
@@ -199,9 +203,11 @@ SCENE: Final = record_type(
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
     ("balance_span", REAL),  # over which they may last [tau]
     ("balance_error", REAL),  # error over throughput from which on it takes single steps [1]
-    ("flight_parts", INT),  # into which it divides a step in flight [1]
+    ("step_parts", INT),  # into which it divides a step of high order [1]
     # last, so that what every step reads lies as close together as without it
     ("population", POPULATION),  # real asperities on the flanks
+    ("attracts", INT),  # 1 if flanks attract each other across the gap
+    ("attraction_floor", REAL),  # gap below which the attraction grows no further [sigma]
     ("friction", FRICTION),  # of flanks and hubs
     ("noting", INT),  # 1 where the forces of single pairs are noted, for exposures or friction
 )

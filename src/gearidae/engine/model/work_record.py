@@ -168,6 +168,7 @@ NOTED: Final = record_type(  # a pair where its force was evaluated
     ("gap_rate", REAL),  # [sigma/tau]
     ("force", REAL),  # [F]
     ("slope", REAL),  # of the force in the gap [F/sigma]
+    ("drift", REAL),  # rate of the force at that gap, of a population [F/tau]
     ("limit", REAL),  # of its friction; below zero where nothing rubs [F]
     ("limit_slope", REAL),  # in the gap [F/sigma]
     ("limit_rate", REAL),  # [F/tau]

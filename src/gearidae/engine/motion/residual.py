@@ -38,6 +38,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_touching,
     static_error,
 )
+from gearidae.engine.population.attraction import attraction_sums, roller_attraction
 from gearidae.engine.population.forces import mesh_sums, roller_sum
 from gearidae.engine.torques.torque import torque_force
 
@@ -46,7 +47,11 @@ from gearidae.engine.torques.torque import torque_force
 def roller_force(m: Model, t: float, y: Floats, settling: bool) -> tuple[float, float]:
     """Force on a roller and its slope in the height, scaled; `settling` as for `mesh_forces`."""
     if m.scene.population.flanks != 0:
-        return roller_sum(m, y)
+        load, stiffness = roller_sum(m, y)
+        if m.scene.attracts != 0:
+            pull, change = roller_attraction(m, y)
+            return load + pull, stiffness + change
+        return load, stiffness
     height, speed = y[U], y[V]
     elastic = m.scene.nodes > 0
     if elastic:
@@ -85,7 +90,11 @@ def mesh_forces(
         Their partial derivatives in u and phase.
     """
     if m.scene.population.flanks != 0:
-        return mesh_sums(m, y)
+        a, b, c, d, e, f = mesh_sums(m, y)
+        if m.scene.attracts != 0:
+            a1, b1, c1, d1, e1, f1 = attraction_sums(m, y)
+            return a + a1, b + b1, c + c1, d + d1, e + e1, f + f1
+        return a, b, c, d, e, f
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
     u, v, phase, w = y[U], y[V], y[PHASE], y[W]
     cutoff = m.scene.cutoff
@@ -183,7 +192,7 @@ def motion(
     if m.scene.friction.on != 0:
         drive -= (1.0 - e1) * force
         pinion, gear = rubbed_accelerations(m, t, y, turn, drive, force + relief)
-        out[V] = yp[V] + yp[W] - ((1.0 - e1) * pinion - e2 * turn * turn)
+        out[V] = yp[V] + yp[W] - (1.0 - e1) * pinion + e2 * turn * turn
         out[PHASE], out[W] = yp[PHASE] - m.scene.phase_rate * w, yp[W] - gear
         return force_u, force_phase, relief_u, relief_phase
     if m.scene.error_count == 0:

@@ -13,6 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import mixed_value
 from gearidae.contact.kernels.law import N_LOADING, loading_value
 from gearidae.engine.model.state import Model
+from gearidae.engine.pairs.attraction import attraction
 
 Shares: TypeAlias = tuple[float, float, float]
 """A number for each of bare, coated and mixed, the order of the materials."""
@@ -30,7 +31,7 @@ class Fraction(NamedTuple):
 
 
 @compiled(inline=True)
-def _fraction(m: Model, side: int, coast: int, pair: int, inside: float) -> Fraction:
+def fraction_of(m: Model, side: int, coast: int, pair: int, inside: float) -> Fraction:
     """Covered fraction of a side's tooth, a smooth step from the middle of each place to that of the next one.
 
     On the coast flank the gear's tooth is the next one.
@@ -62,10 +63,10 @@ def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Share
     """
     if m.scene.by_place == 0:
         return WHOLE, NONE, NONE
-    f = _fraction(m, 0, coast, pair, inside)
+    f = fraction_of(m, 0, coast, pair, inside)
     if m.scene.patches != 0:
         return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
-    g = _fraction(m, 1, coast, pair, inside)
+    g = fraction_of(m, 1, coast, pair, inside)
     one, one_slope, one_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
     both, slope = f.value * g.value, f.slope * g.value + f.value * g.slope
     bend = f.bend * g.value + 2.0 * f.slope * g.slope + f.value * g.bend
@@ -107,10 +108,29 @@ def weighed(shares: Shares, values: Shares) -> float:
 
 @compiled(inline=True)
 def loading_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
-    """Loading branch of all materials and its slope, scaled, for a contact of unit length."""
+    """Loading branch of all materials, with their attraction, and its slope, scaled, for a contact of unit length."""
     if m.scene.by_place == 0:
-        return loading_value(m.tables, m.scene.loading_at, gap)
-    return mixed_value(m.tables, m.scene.loading_at, gap, shares)
+        force, slope = loading_value(m.tables, m.scene.loading_at, gap)
+    else:
+        force, slope = mixed_value(m.tables, m.scene.loading_at, gap, shares)
+    if m.scene.attracts != 0:
+        pull, change = attraction_of(m, gap, shares)
+        return force + pull, slope + change
+    return force, slope
+
+
+@compiled
+def attraction_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
+    """Attraction of all materials across a gap and its slope, scaled, for a contact of unit length."""
+    a, b, c = attraction(m, 0, gap), attraction(m, 1, gap), attraction(m, 2, gap)
+    return weighed(shares, (a.force, b.force, c.force)), weighed(shares, (a.slope, b.slope, c.slope))
+
+
+@compiled
+def attraction_energies(m: Model, gap: float) -> tuple[Shares, Shares]:
+    """Energy of each material's attraction, scaled, per length and share, and its slopes in the gap."""
+    a, b, c = attraction(m, 0, gap), attraction(m, 1, gap), attraction(m, 2, gap)
+    return (a.energy, b.energy, c.energy), (-a.force, -b.force, -c.force)
 
 
 @compiled
@@ -123,16 +143,19 @@ def potential_of(m: Model, gap: float, shares: Shares) -> float:
 
 @compiled
 def potentials_of(m: Model, gap: float) -> tuple[Shares, Shares]:
-    """Potential of each material's loading branch, scaled, per length and share, and its slopes.
+    """Potential of each material's loading branch and attraction, scaled, per length and share, and its slopes.
 
-    Without tables the first is that of all materials together.
+    Without tables the first is that of the loading branches of all materials together.
     """
     first = m.scene.potential_at
     a, a1 = loading_value(m.tables, first, gap)
-    if m.scene.by_place == 0:
-        return (a, 0.0, 0.0), (a1, 0.0, 0.0)
-    b, b1 = loading_value(m.tables, first + 8 * N_LOADING, gap)
-    c, c1 = loading_value(m.tables, first + 16 * N_LOADING, gap)
+    b = b1 = c = c1 = 0.0
+    if m.scene.by_place != 0:
+        b, b1 = loading_value(m.tables, first + 8 * N_LOADING, gap)
+        c, c1 = loading_value(m.tables, first + 16 * N_LOADING, gap)
+    if m.scene.attracts != 0:
+        (e, f, g), (e1, f1, g1) = attraction_energies(m, gap)
+        return (a + e, b + f, c + g), (a1 + e1, b1 + f1, c1 + g1)
     return (a, b, c), (a1, b1, c1)
 
 

@@ -23,4 +23,5 @@ def note_force(
     noted.history, noted.pair, noted.position = k, pair, position
     noted.gap, noted.gap_rate = gap
     noted.force, noted.slope = force
+    noted.drift = 0.0
     notes.count += 1

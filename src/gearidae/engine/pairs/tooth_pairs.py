@@ -125,7 +125,7 @@ def history_of(m: Model, coast: int, pair: int) -> int:
 def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
     """First and last number of a flank's pairs on the path of contact.
 
-    The last two mesh marks tell, so that a step that ends at a mark sees the side it comes from.
+    The last two mesh marks decide, so that a step that ends at a mark sees the side it comes from.
     """
     between = 0.5 * (m.state.mark_low + m.state.mark_high)
     lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
@@ -245,7 +245,7 @@ def set_branches(m: Model, k: int, material: int) -> None:
     """Work out the branch of a history's joined height.
 
     A law that is integrated on demand keeps no branches, nor does an elastic contact. That of the stored energy
-    waits until the energy balance asks for it.
+    waits until the energy balance needs it.
     """
     own = m.scene.material[material]
     table = m.tables[own.table_at :]

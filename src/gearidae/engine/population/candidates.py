@@ -12,6 +12,7 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Model
+from gearidae.engine.pairs.coverage import fraction_of
 from gearidae.engine.population.layout import (
     ARC,
     BOUND,
@@ -27,7 +28,7 @@ from gearidae.engine.population.layout import (
     column,
     flank_of,
 )
-from gearidae.engine.population.spots import Spot, spot_at
+from gearidae.engine.population.spots import Spot, place_of_arc, spot_at
 
 LEVELS: Final = (1.0, 2.0)
 """Roughnesses above which asperities are listed once more: a sixth of them, and one in fifty."""
@@ -102,7 +103,7 @@ def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: floa
             if merged < own.joined and m.rows[kept + merged] == asperity:
                 _add(m, k, asperity, 1.0)
                 merged += 1
-            elif _may_join(m, asperity, own.gap, before, after, bend):
+            elif _may_join(m, k, asperity, own.gap, before, after, bend):
                 _add(m, k, asperity, -1.0)
     while merged < own.joined:
         _add(m, k, int(m.rows[kept + merged]), 1.0)
@@ -143,12 +144,27 @@ def _first_from(m: Model, level: int, flank: int, arc: float) -> int:
 
 
 @compiled(inline=True)
-def _may_join(m: Model, asperity: int, gap: float, before: Spot, after: Spot, bend: float) -> bool:
+def _kind(m: Model, k: int, asperity: int) -> int:
+    """Where the numbers of an asperity's kind are; in the pair of the k-th history, if the gear's tooth matters."""
+    own = m.scene.population
+    if own.by_gear_tooth != 0 and not _gear_covered(m, k, asperity):
+        return int(m.tables[own.bare_kinds_at + asperity])
+    return int(m.tables[own.kinds_at + asperity])
+
+
+@compiled
+def _gear_covered(m: Model, k: int, asperity: int) -> bool:
+    """Whether an asperity meets a covered place of the gear's tooth in the pair of the k-th history."""
+    own, coast = m.scene.population, 1 if k >= m.scene.slots else 0
+    place = place_of_arc(m, m.tables[own.arcs_at + asperity])
+    fraction = fraction_of(m, 1, coast, m.state.history[k].pair, place).value
+    return bool(m.tables[own.gear_numbers_at + asperity] < fraction)
+
+
+@compiled(inline=True)
+def _may_join(m: Model, k: int, asperity: int, gap: float, before: Spot, after: Spot, bend: float) -> bool:
     """Whether a free asperity may join at a gap or a wider one, while the contact is between two spots."""
-    arc, kind = (
-        m.tables[m.scene.population.arcs_at + asperity],
-        int(m.tables[m.scene.population.kinds_at + asperity]),
-    )
+    arc, kind = m.tables[m.scene.population.arcs_at + asperity], _kind(m, k, asperity)
     x = max(before.arc - arc, arc - after.arc, 0.0)
     height = m.tables[m.scene.population.heights_at + asperity] - m.tables[kind + K_OFFSET]
     return bool(height - gap - bend * x * x + m.tables[kind + K_JOIN] > 0.0)
@@ -158,7 +174,7 @@ def _may_join(m: Model, asperity: int, gap: float, before: Spot, after: Spot, be
 def _add(m: Model, k: int, asperity: int, sign: float) -> None:
     """Add an asperity to the candidates of a history, joined or free by its sign."""
     scene, own = m.scene.population, m.work.contact[k]
-    j, kind = own.count, int(m.tables[scene.kinds_at + asperity])
+    j, kind = own.count, _kind(m, k, asperity)
     m.rows[column(m, k, INDEX) + j] = asperity
     m.rows[column(m, k, ARC) + j] = m.tables[scene.arcs_at + asperity]
     m.rows[column(m, k, HEIGHT) + j] = m.tables[scene.heights_at + asperity] - m.tables[kind + K_OFFSET]

@@ -133,7 +133,8 @@ def mesh_sums(m: Model, y: Floats) -> tuple[float, float, float, float, float, f
     """Forces F and Fs of a population, with their slopes in u and phase; see `mesh_forces` of the residual."""
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
     turn = m.scene.phase_rate
-    m.work.notes.count = 0
+    if m.scene.friction.on != 0:  # no notes of a time that exposures might take for their own
+        m.work.notes.count, m.work.notes.time = 0, -1.0
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -163,6 +164,14 @@ def roller_sum(m: Model, y: Floats) -> tuple[float, float]:
         return 0.0, 0.0
     sums = _sums(m, 0, pair_now(m, 0, 0, y))
     return sums.load, -sums.stiffness
+
+
+@compiled_once(POPULATION)
+def pair_load(m: Model, y: Floats, coast: int, pair: int) -> tuple[float, float, float]:
+    """Force of a pair along the line of action, its slope in the gap, and its rate at that gap, scaled."""
+    now = pair_now(m, coast, pair, y)
+    sums = _sums(m, history_of(m, coast, pair), now)
+    return sums.load, -sums.stiffness, sums.stiffness_d * now.place_rate
 
 
 @compiled_once(POPULATION)

@@ -33,9 +33,10 @@ K_ENERGY: Final = 3
 K_JOIN: Final = 4  # distances of joining and detachment, over the roughness
 K_DETACH: Final = 5
 K_OFFSET: Final = 6  # recess of its material
-K_FRICTION: Final = 7  # coefficient of friction, or shear strength times the unit of area
-K_AREA: Final = 8  # where the table of its contact area begins, for a shear strength
-KINDS: Final = 9
+K_MATERIAL: Final = 7  # index of its material
+K_FRICTION: Final = 8  # coefficient of friction, or shear strength times the unit of area
+K_AREA: Final = 9  # where the table of its contact area begins, for a shear strength
+KINDS: Final = 10
 
 
 @compiled(inline=True)

@@ -11,6 +11,7 @@ with k a base pitch over the roughness. Along the path it changes at fixed gap b
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
@@ -90,6 +91,15 @@ def spot_at(m: Model, place: float, moves: bool) -> Spot:
     return Spot(
         arc, 2.0 * scale * pinion, 2.0 * scale, radius, 1.0 - 2.0 * pinion * curvature, -2.0 * curvature
     )
+
+
+@compiled
+def place_of_arc(m: Model, arc: float) -> float:
+    """Place along the path of contact, clipped to it, at which a pair touches at an arc; 0 of a roller."""
+    if m.scene.kind == ROLLER:
+        return 0.0
+    along = math.sqrt(max(arc, 0.0) / m.scene.population.arc_scale) - m.scene.start_radius
+    return min(max(along, 0.0), m.scene.contact_ratio)
 
 
 @compiled(inline=True)

@@ -29,6 +29,7 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
+from gearidae.engine.setup.build_attraction import add_attraction
 from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_friction import add_friction, rubs
 from gearidae.engine.setup.build_population import add_population, population_rows
@@ -93,7 +94,7 @@ def make_problem(
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
             problem.deeper = lambda: make_problem(scene, deeper, *same, light_gap)
-    elif scene.contact.model == "auto" and not rubs(scene):
+    elif scene.contact.model == "auto" and not scene.attracts and not rubs(scene):
         bodies, light = scene.replace({"contact.model": "elastic"}), lowest + LIGHTER
         problem.elastic = lambda: make_problem(bodies, None, *same, light)
     return problem
@@ -131,6 +132,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
         add_population(s, tables, scene, float(1.0 / s.phase_rate), math.pi / gears.pinion_teeth)
     else:
         add_contact(s, tables, scene, gears.face_width, unit_length, widest)
+    add_attraction(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
     add_friction(s, scene, gears, geometry)
     _set_slots(s, scene)
@@ -148,18 +150,19 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     for shaft, law in ((DRIVE, drive), (LOAD, load)):
         if law.law is not None:
             model.work.torque_law[shaft] = law_address(law.law.name)
-    outside = start.mesh_phase - min(max(start.mesh_phase, 0.0), float(s.contact_ratio))
+    whole, phase = divmod(start.mesh_phase, 1.0)  # the solver's phase stays small: whole pitches are turns
+    outside = phase - min(phase, float(s.contact_ratio))
     relief = float(0.5 * s.relief_curvature * outside**2)
     u = float(s.half_backlash) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
-    model.state.first_place = start.mesh_phase
-    model.state.first_lead = u + static_error(model, u, start.mesh_phase)[1]
+    model.state.turns, model.state.first_place = whole, start.mesh_phase
+    model.state.first_lead = u + static_error(model, u, phase)[1]
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
         "dry_resistance": int(s.dry == 0),
     }
-    return _begun(model, scene, [u, 0.0, start.mesh_phase, w], skipped)
+    return _begun(model, scene, [u, 0.0, phase, w], skipped)
 
 
 def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
@@ -174,10 +177,12 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     energy = 0.5 * roller.mass * roller.speed**2
     bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
     grid = choose_model(s, scene, bounds, nodes)
+    unit_length = math.sqrt(2.0 * roller.radius * sigma)
     if scene.contact.model == "population":
         add_population(s, tables, scene, roller.radius / sigma, 0.0)
     else:
-        add_contact(s, tables, scene, roller.width, math.sqrt(2.0 * roller.radius * sigma), 1.0)
+        add_contact(s, tables, scene, roller.width, unit_length, 1.0)
+    add_attraction(s, tables, scene, roller.width, unit_length, 1.0)
     s.slots = s.histories = 1
     set_run(s, tables, scene, set(), begin.time)
     add_nodes(s, tables, grid)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +46,8 @@ def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | 
     """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
     model = scene.contact.model
     s.lowest_gap = GAP_LOW  # where the tables of the force law end
+    if model == "auto" and scene.attracts:
+        model = "asperity"
     if model == "auto":
         lowest, enough = rigid_limit(scene, bounds)
         # friction is not available with elastic contacts: where they would be needed, the run ends
@@ -89,13 +92,13 @@ def add_contact(
     widest : float
         Largest contact length.
     """
-    _add_coverage(s, tables, scene)
+    add_coverage(s, tables, scene)
     reach = {FORCE_FLOOR: GAP_LOW, CONTACT_FORCE: GAP_LOW}
     kernel: Kernel = "plane" if s.nodes > 0 else "line"
     loading, potential = np.zeros((2, MATERIALS, 8 * N_LOADING))
     limits = Limits(scene, kernel)
     longest = 0
-    for material, (surface, share, offset, _) in enumerate(_parts(scene)):
+    for material, (surface, share, offset, _) in enumerate(parts_of(scene)):
         own, tip = s.material[material], asperity_of(surface)
         own.gap_offset = offset / surface.roughness
         law = law_of(scene.contact.asperity, surface)
@@ -124,22 +127,29 @@ def add_contact(
     s.branch_length, s.point_branch_length = (0, longest) if s.nodes > 0 else (longest, 0)
 
 
-def _parts(scene: Scene) -> tuple[Material, ...]:
+def parts_of(scene: Scene) -> tuple[Material, ...]:
     """Materials with the shares that their force scales hold: one each where shares change with tooth and place."""
     if not scene.coating.by_place:
         return scene.materials()
     return tuple(material._replace(share=1.0) for material in scene.materials())
 
 
-def _add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
+def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
     """Lay out the fractions by tooth and place, if there are any."""
     if not scene.coating.by_place:
         return
     s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
     for own, table in zip(s.coverage, scene.coating.tables, strict=True):
-        own.teeth, own.places = len(table), len(table[0])
-        own.values_at = tables.add(np.array(table).ravel())
-        own.place_scale = len(table[0]) / float(s.contact_ratio)
+        add_fractions(own, tables, table, float(s.contact_ratio))
+
+
+def add_fractions(
+    own: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
+) -> None:
+    """Lay out a side's fractions by tooth and place; `own`, its ``COVERAGE``, is changed."""
+    own.teeth, own.places = len(table), len(table[0])
+    own.values_at = tables.add(np.array(table).ravel())
+    own.place_scale = len(table[0]) / contact_ratio
 
 
 def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:

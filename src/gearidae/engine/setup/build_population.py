@@ -16,10 +16,11 @@ from gearidae.contact.kernels.single import asperity_table
 from gearidae.engine.model.state import Floats, Record
 from gearidae.engine.population.candidates import LEVELS
 from gearidae.engine.population.layout import FIELDS, K_DETACH, K_JOIN, KINDS
+from gearidae.engine.setup.build_contact import add_fractions
 from gearidae.engine.setup.tables import Tables
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import FlankAsperities, flanks_digest, flanks_of
-from gearidae.populations.materials import materials_at
+from gearidae.populations.materials import materials_met
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.friction import friction_values
 
@@ -65,7 +66,11 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     _add_levels(own, tables, heights, counts)
     numbers, kinds = _kinds(s, tables, scene, flanks)
     first = tables.add(numbers.ravel())
-    own.kinds_at = tables.add((first + KINDS * kinds).astype(np.float64))
+    own.kinds_at, *bare = (tables.add((first + KINDS * row).astype(np.float64)) for row in kinds)
+    if bare:
+        own.by_gear_tooth, (own.bare_kinds_at,) = 1, bare
+        own.gear_numbers_at = tables.add(np.concatenate([one.q2 for one in flanks]))
+        add_fractions(s.coverage[1], tables, scene.coating.gear_table, float(s.contact_ratio))
     own.join = float(numbers[:, K_JOIN].max())
     digest = flanks_digest(flanks)
     own.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
@@ -95,10 +100,14 @@ def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Integers) 
 def _kinds(
     s: Record, tables: Tables, scene: Scene, flanks: tuple[FlankAsperities, ...]
 ) -> tuple[Floats, Integers]:
-    """Numbers of each kind, and the kind of each asperity; a kind is a material with a radius."""
+    """Numbers of each kind, and the kind of each asperity in the rows of `materials_met`.
+
+    A kind is a material with a radius.
+    """
     radii, of_radius = np.unique(np.concatenate([one.radius for one in flanks]), return_inverse=True)
-    material = np.concatenate([materials_at(scene, one, one.tooth + one.flank) for one in flanks])
-    pairs, kinds = np.unique(len(MATERIAL_NAMES) * of_radius + material, return_inverse=True)
+    material = np.concatenate([materials_met(scene, one) for one in flanks], axis=1)
+    both = len(MATERIAL_NAMES) * of_radius.ravel() + material
+    pairs, kinds = np.unique(both.ravel(), return_inverse=True)
     sigma, by_name = scene.surface.roughness, {one.name: one for one in scene.materials()}
     highest = float(s.population.highest) - GAP_LOW
     tips, friction = [], friction_values(scene)
@@ -125,7 +134,7 @@ def _kinds(
     areas = {
         law: tables.add(asperity_table(ContactArea(law), far)) if shear else 0 for law, far in reach.items()
     }
-    for row, (law, factor, unit, offset, value, strength) in enumerate(tips):
+    for row, (pair, (law, factor, unit, offset, value, strength)) in enumerate(zip(pairs, tips, strict=True)):
         load, join, detach = factor * unit**1.5, law.join * unit / sigma, law.detach * unit / sigma
         numbers[row] = (
             places[law],
@@ -135,7 +144,8 @@ def _kinds(
             join,
             detach - RELEASED * (detach - join),
             offset / sigma,
+            pair % len(MATERIAL_NAMES),
             strength * unit * value if shear else value,
             areas[law],
         )
-    return numbers, kinds
+    return numbers, kinds.reshape(both.shape)

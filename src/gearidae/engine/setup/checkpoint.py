@@ -31,7 +31,7 @@ _NOTHING: Final = empty_history()
 
 
 def scene_digest(text: str) -> tuple[float, ...]:
-    """Four numbers that tell one scene from another."""
+    """Four numbers that identify a scene."""
     digest = hashlib.sha256(text.encode()).hexdigest()
     return tuple(float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4))
 

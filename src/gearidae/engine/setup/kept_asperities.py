@@ -46,13 +46,13 @@ def kept_asperities(m: Model) -> Floats:
     return block
 
 
-def asperity_words(m: Model, told: float) -> int:
-    """Words of the block in a checkpoint that tells so many; one that cannot be is refused."""
+def asperity_words(m: Model, words: float) -> int:
+    """Length of a checkpoint's block of asperities, in words; an impossible one is refused."""
     if m.scene.population.flanks == 0:
         return 0
     most = FIRST + _total(m) + WORDS
-    require(0.0 < told <= most and told % WORDS == 0.0, f"{told:g} words of asperities", "a block of them")
-    return int(told)
+    require(0.0 < words <= most and words % WORDS == 0.0, f"{words:g} words of asperities", "a block of them")
+    return int(words)
 
 
 def joined_in(m: Model, block: Floats) -> Floats:

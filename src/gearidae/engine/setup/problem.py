@@ -36,7 +36,7 @@ from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Extremes, first_sample
 
 ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
-PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
+PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps of high order
 FELT = 0.1  # of the tolerance of a speed
 
 
@@ -57,7 +57,7 @@ class Problem:
     skipped : dict
         What this scene does not need.
     digest : tuple of four floats
-        Tells this scene's checkpoints from others.
+        Identifies this scene's checkpoints.
     depth : int
         0 for the asperity model, 1 and more for the layouts of the elastic model.
     elastic : callable, optional
@@ -104,9 +104,9 @@ class Problem:
         """Set the tolerance and the number of samples of a run, and return the model.
 
         Every state's error counts in absolute tolerances, `rtol` times its scale. At tight ones the energy balance
-        divides steps in flight: the error of its quadrature goes with the fourth power of a step, and a step with no
-        more than the eighth root of the tolerance. Torques that shake a gear by less than a share of the tolerance need
-        not be followed.
+        divides steps of high order: the error of its quadrature goes with the fourth power of a step, and a step with
+        no more than the eighth root of the tolerance. Torques that shake a gear by less than a share of the tolerance
+        need not be followed.
         """
         m = self.model
         s, first = m.scene, m.scene.error_weights_at
@@ -114,7 +114,7 @@ class Problem:
         s.first_sample = first_sample(float(s.start), float(s.end), samples)
         m.rows[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
         s.balance_error = ERRORS * rtol
-        s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
+        s.step_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
         if s.kind == GEARS:
             felt = FELT * rtol * float(self.tolerance_scale[V])
             s.torque_omega = max(

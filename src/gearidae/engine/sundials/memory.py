@@ -31,7 +31,7 @@ SYSTEM: Final = "IDAGetNonlinearSystemData"
 
 
 def _system(typing: Any, solver: Any) -> Any:
-    """Type of what IDA lets a nonlinear solver see, and the code that asks for it."""
+    """Type of what IDA lets a nonlinear solver see, and the code that reads it."""
     kinds = [types.float64, *[types.int64] * 5, types.float64, types.int64]
 
     def ask(context: Any, builder: Any, signature: Any, values: Any) -> Any:

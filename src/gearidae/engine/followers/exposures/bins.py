@@ -24,6 +24,14 @@ def bin_at(m: Model, inside: float) -> int:
     return min(int(m.scene.bins_per_pitch * inside), m.scene.bins - 1)
 
 
+@compiled
+def row_of(m: Model, coast: int, pair: int) -> int:
+    """Where the exposures of the pinion's tooth of a pair begin among the rows."""
+    teeth = int(m.scene.pinion_teeth)
+    tooth = (pair + int(m.state.turns)) % teeth
+    return m.scene.exposures_at + (coast * teeth + tooth) * ROWS.total * m.scene.bins
+
+
 @compiled(inline=True)
 def share_at_edge(m: Model, here: int, start: float, end: float) -> float:
     """Share of the way from one point of the path to another at which a contact leaves a place, given by its index."""

@@ -17,6 +17,9 @@ For both flanks of every tooth of the pinion and every place along the path of c
 An elastic contact is looked at as often as the energy balance closes an interval. Where a contact passes from one place
 to the next in such an interval, what it has joined is divided by its gap there, on the cubic of the gap; of elastic
 contacts, and of sliding work, in proportion to the way. Contacts on the tip relief count at the end of the path.
+
+Asperities of a population are counted one by one, each at its own place (the module `asperities` of this room); sliding
+work and pressure are those of the whole pair, where it touches.
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.elastic.nodes import node_force
 from gearidae.engine.events.pair_events import PairEvent
-from gearidae.engine.followers.exposures.bins import ROWS, bin_at, way_to_edge
+from gearidae.engine.followers.exposures.bins import bin_at, row_of, way_to_edge
 from gearidae.engine.followers.exposures.contacts import (
     adds_often,
     begin_contacts,
@@ -57,6 +60,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pair_gap,
     pairs_near,
 )
+from gearidae.engine.population.forces import pair_load
 
 
 @compiled_once(EXPOSURES)
@@ -74,7 +78,7 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
         _begin_pair(m, t, k, noted.pair, noted.position)
         begin_contacts(m, y, k, noted.position, noted.gap)
         sliding = sliding_speeds(m, y, yp[V], yp[W])
-        push = noted.force, noted.slope * noted.gap_rate
+        push = noted.force, noted.slope * noted.gap_rate + noted.drift
         add_sliding(m, t, k, sliding, noted.position, (noted.gap, noted.gap_rate), push)
         see_pressure(m, t, k, noted.position, push)
 
@@ -110,7 +114,7 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
         _begin_new(m, k, noted.pair, noted.position)
         widened = -moved if k < m.scene.slots else moved
         gap = noted.gap + widened
-        push, rate = noted.force + noted.slope * widened, noted.slope * noted.gap_rate
+        push, rate = noted.force + noted.slope * widened, noted.slope * noted.gap_rate + noted.drift
         if ends:
             if joins_here(m, k, noted.position, gap) or (whole and m.state.history[k].direction <= 0.0):
                 join(m, t, y, k, noted.position, (gap, noted.gap_rate))
@@ -135,6 +139,8 @@ def step(m: Model, t: float, y: Floats, yp: Floats, root: bool) -> None:
     if m.scene.nodes > 0:
         if m.work.quadrature.time == t:
             _follow(m, t, y, yp, False)
+    elif root and m.scene.population.flanks != 0:  # forces may jump here
+        _follow(m, t, y, yp, True)
     elif not root:
         exposing.steps += 1
         if exposing.steps >= exposing.wanted:
@@ -229,10 +235,7 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     own.gap, own.side = m.scene.cutoff, 1
     for material in range(MATERIALS):
         own.front[material] = own.added[material] = 0.0
-    coast = 0 if k < m.scene.slots else 1
-    teeth = int(m.scene.pinion_teeth)
-    tooth = (pair + int(m.state.turns)) % teeth
-    own.row = m.scene.exposures_at + (coast * teeth + tooth) * ROWS.total * m.scene.bins
+    own.row = row_of(m, 0 if k < m.scene.slots else 1, pair)
 
 
 @compiled
@@ -244,7 +247,13 @@ def _note_forces(m: Model, t: float, y: Floats) -> None:
         coast, pair = pair_at(reach, i)
         k = history_of(m, coast, pair)
         gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-        if gap < m.scene.cutoff and m.state.history[k].pair == pair:
+        if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
+            continue
+        if m.scene.population.flanks != 0:
+            load, slope, drift = pair_load(m, y, coast, pair)
+            note_force(m, k, pair, inside, (gap, rate), (load, slope))
+            m.work.notes.pair[m.work.notes.count - 1].drift = drift
+        else:
             force = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
             note_force(m, k, pair, inside, (gap, rate), force)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled
+from gearidae.contact.history import extreme_gap
 from gearidae.engine.followers.exposures.bins import ROWS, bin_at
 from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import Model
@@ -27,6 +28,11 @@ def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, 
     own, here = m.work.exposing.pair[k], bin_at(m, inside)
     if force[0] > 0.0:
         note_pressure(m, k, here, inside, force[0])
+    if m.scene.population.flanks != 0 and t > own.seen_time and own.force_rate > 0.0 > force[1]:
+        # its turning points are no events
+        peak = extreme_gap(t - own.seen_time, own.force, own.force_rate, force[0], force[1])
+        if peak > 0.0 and here == own.seen_bin:
+            note_pressure(m, k, here, inside, peak)
     if here != own.seen_bin:
         if own.force > 0.0 or force[0] > 0.0:
             _note_crossings(m, t, k, inside, force)

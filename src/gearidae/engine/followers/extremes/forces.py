@@ -1,7 +1,7 @@
 """Largest and smallest force: of accepted steps from the equations of motion, between them from the contact law.
 
 Most extremes of the force lie where a pair turns round, which is an event and hence an accepted time. What is left are
-maxima of adhesion, passed within a few steps. A parabola through three accepted forces tells whether one was passed
+maxima of adhesion, passed within a few steps. A parabola through three accepted forces shows whether one was passed
 that may be a record. Only then the contact law is evaluated between these times.
 """
 
@@ -28,7 +28,7 @@ _CLOSE: Final = 1e-3
 
 @compiled(inline=True)
 def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
-    """Force along the line of action, mesh damping included, that the pinion's acceleration tells; of a roller, on it.
+    """Force along the line of action, mesh damping included, from the pinion's acceleration; of a roller, on it.
 
     See `gearidae.engine.motion.residual`, whose first equation is solved for the force.
     """

@@ -1,0 +1,44 @@
+"""Whether runs are gears with surfaces of their own, and the sentence that says so."""
+
+from __future__ import annotations
+
+import json
+from typing import Final
+
+import xarray as xr
+
+from gearidae.archive.select import is_roller, scene_of
+
+SEED: Final = "contact.seed"
+_MEANS: Final = "gearidae ensemble CASE --vary contact.seed=seeds --size 20 gives means and standard errors"
+
+
+def has_seeds(ds: xr.Dataset) -> bool:
+    """Whether the runs of a dataset differ in their seeds."""
+    try:
+        return SEED in json.loads(ds.attrs.get("swept", "{}"))
+    except (TypeError, ValueError):
+        return False
+
+
+def specimen_note(ds: xr.Dataset) -> str:
+    """Say in a sentence that a run with real asperities is one specimen of its design; empty for other contact models.
+
+    Raises
+    ------
+    SceneError
+        If the dataset carries no scene.
+    """
+    if scene_of(ds).get("contact", {}).get("model") != "population":
+        return ""
+    if has_seeds(ds):
+        return f"Runs of different seeds are specimens of one design: {_MEANS}."
+    what = "roller" if is_roller(ds) else "gear"
+    return f"This is one specimen: another contact.seed is another {what} of the same design. {_MEANS}."
+
+
+def specimen_label(ds: xr.Dataset) -> str:
+    """Name the specimen of a run in few words, such as ``one specimen, seed 0``; empty where there is none."""
+    if not specimen_note(ds) or has_seeds(ds):
+        return ""
+    return f"one specimen, seed {scene_of(ds)['contact'].get('seed', 0)}"

@@ -1,0 +1,102 @@
+"""Run summary and energy balance of a single run as rows of names, values and remarks.
+
+The terminal and the report show these rows, in these words; the names are those of the archive.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any, Final, TypeAlias
+
+import xarray as xr
+
+from gearidae.archive.energy import balance_in_attributes, imbalance
+from gearidae.archive.run_summary import counted_over
+from gearidae.scene.prefixes import with_prefix
+
+Row: TypeAlias = tuple[str, str, str]
+"""Name, value and remark; a row without a value is a heading."""
+
+_BALANCE_ROWS: Final = (
+    ("drive_work", "input"),
+    ("radius_work", "input, from the change of the radii of curvature along the path of contact"),
+    ("model_change", "input, from the change to the elastic contact model"),
+    ("drag_loss", "lost"),
+    ("dry_loss", "lost"),
+    ("damping_loss", "lost"),
+    ("adhesion_loss", "lost"),
+    ("drive_friction_loss", "lost"),
+    ("coast_friction_loss", "lost"),
+    ("pinion_hub_loss", "lost"),
+    ("gear_hub_loss", "lost"),
+    ("stored_change", "stored in contacts"),
+    ("kinetic_change", "stored in motion"),
+)
+
+
+def summary_rows(ds: xr.Dataset) -> list[Row]:
+    """List the run summary and the energy balance of a dataset.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run; a roller has an energy balance only, a sweep neither.
+
+    Returns
+    -------
+    list of (str, str, str)
+    """
+    found: list[Row] = []
+    if "account" in ds.attrs:
+        found += _with_reach(ds, _summary_rows(json.loads(ds.attrs["account"])))
+    if numbers := balance_in_attributes(ds):
+        found += _with_reach(ds, _balance_rows(numbers))
+    return found
+
+
+def _with_reach(ds: xr.Dataset, rows: Iterator[tuple[str, Row]]) -> Iterator[Row]:
+    """Add to each named row of a run that goes on from another what it is counted over."""
+    for name, (words, value, remark) in rows:
+        over = counted_over(name, ds.attrs) if name else ""
+        yield words, value, "; ".join(filter(None, (remark, over)))
+
+
+def _summary_rows(kept: dict[str, Any]) -> Iterator[tuple[str, Row]]:
+    def row(name: str, unit: str, remark: str) -> tuple[str, Row]:
+        words = "time trapped by adhesion" if name == "time_adhering" else name.replace("_", " ")
+        return name, (words, number(name, unit), remark)
+
+    def number(name: str, unit: str) -> str:
+        if kept[name] is None:
+            return "-"
+        return f"{kept[name]:.4g} {unit}" if unit == "rad/s" else with_prefix(kept[name], unit, 4)
+
+    yield "", ("Run summary", "", "")
+    yield row("top_speed", "rad/s", "of the gear")
+    yield row("time_to_speed", "s", "first sample with 95 % of the largest")
+    held = f"held by {kept['held_by']} at the end" if kept["held_by"] else ""
+    times = "once" if kept["sticks"] == 1 else f"{kept['sticks']} times"
+    holder = "dry resistance or friction" if kept.get("friction_loss") else "dry resistance"
+    yield row("time_at_rest", "s", f"held by {holder}, stuck {times}; {held}".rstrip("; "))
+    yield row("time_adhering", "s", "rocking within half a pitch")
+    if kept["largest_force"] is not None:
+        yield row("largest_force", "N", f"at {number('largest_force_time', 's')}")
+    if kept.get("friction_loss"):
+        share = f"{100.0 * kept['efficiency']:.4g} %"
+        yield "efficiency", ("efficiency", share, "drag and dry resistance over all losses")
+
+
+def _balance_rows(kept: dict[str, float]) -> Iterator[tuple[str, Row]]:
+    yield "", ("Energy balance", "", "")
+    for name, remark in _BALANCE_ROWS:
+        if kept.get(name, 0.0) != 0.0:
+            yield name, (name.replace("_", " "), with_prefix(kept[name], "J", 5), remark)
+    bound = with_prefix(kept["residual_bound"], "J", 2)
+    out_by = imbalance(kept["residual"], kept["residual_bound"])
+    remark = (
+        f"{out_by:.2g} times its bound of {bound}: do not rely on this run"
+        if out_by > 1.0
+        else f"bound {bound}"
+    )
+    yield "residual", ("residual", with_prefix(kept["residual"], "J", 2), remark)

@@ -1,0 +1,282 @@
+"""Starting torques of a population: their distribution over the gears of one design."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.provenance import provenance
+from gearidae.archive.variables import SAM_FRACTION
+from gearidae.arrays import Floats
+from gearidae.errors import SceneError
+from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
+from gearidae.runs.kept_runs import KeptRuns
+from gearidae.studies.products import open_product
+from gearidae.studies.starting_ramp import (
+    RESTS,
+    constant,
+    laid,
+    least_damping,
+    pilot,
+    pitch_of,
+    place_of_seed,
+    ramp,
+    ramp_end,
+    ramp_rate,
+    run_from_rest,
+)
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
+
+KIND: Final = "starting_torques"
+SEEDS: Final = 20
+QUANTILES: Final = (0.1, 0.5, 0.9)
+_MOST_SEEDS: Final = 10_000
+_CHANGE: Final = 0.1
+"""Change of the median by half the rate at which a rate is slow enough."""
+_HALVINGS: Final = 4
+"""Times that the rate is halved at most."""
+_STAGES: Final = 4
+"""Runs of each gear, where the first two rates agree."""
+
+
+_ALONG: Final = ("sam_fraction",)
+_VARIABLES: Final[dict[str, tuple[tuple[str, ...], str, str]]] = {
+    "starting_torque": (
+        (*_ALONG, "seed"),
+        "N m",
+        "torque at the last moment of rest; NaN if the gear did not start",
+    ),
+    "starts": (
+        (*_ALONG, "seed"),
+        "1",
+        "whether the drive's own torque turns the gear from rest by one pitch",
+    ),
+    "place": (("seed",), "1", "place of the start, in pitches"),
+    "quantiles": (
+        (*_ALONG, "quantile"),
+        "N m",
+        "quantiles of the starting torque, gears that did not start included; NaN beyond the ramp",
+    ),
+    "not_started": (_ALONG, "1", "share that had not started when the ramp ended"),
+    "chance": (_ALONG, "1", "share that the drive's own torque starts"),
+    "rate": (_ALONG, "N m s-1", "rise of the torque"),
+    "ramp_end": (_ALONG, "N m", "torque at which the ramp ended"),
+    "median_change": (_ALONG, "1", "change of the median by half the rate"),
+    "damping": (_ALONG, "N s m-1", "damping of the mesh"),
+}
+_SUMMARY: Final = (
+    "Torques on the pinion at which gears with real asperities start from rest: the torque rises linearly, and that of "
+    "the last moment of rest before one pitch counts."
+)
+
+
+@dataclass
+class _Design:
+    """Gears of one coverage on their way.
+
+    Attributes
+    ----------
+    scene : Scene
+        With the coverage.
+    laid : list of Scene
+        One for each seed.
+    scale : float
+        Median starting torque beyond the dry resistance, by the pilots [N m].
+    halvings : int
+        Times that the rate has been halved.
+    torques : ndarray, shape (seeds,)
+        Starting torques at the slowest rate so far [N m]; infinite where the gear has not started.
+    change : float
+        Relative change of their median by the last halving.
+    starts : ndarray, shape (seeds,)
+        Whether the gear starts at the drive's own torque, 0 or 1; NaN if the drive has none.
+    """
+
+    scene: Scene
+    laid: list[Scene]
+    scale: float = math.nan
+    halvings: int = 0
+    torques: Floats = field(default_factory=lambda: np.empty(0))
+    change: float = math.nan
+    starts: Floats = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the rate is slow enough, or has been halved as often as is allowed."""
+        return self.change < _CHANGE or self.halvings == _HALVINGS
+
+    def learn(self, torques: Floats) -> None:
+        """Take in the starting torques at the next rate."""
+        if self.torques.size:
+            self.halvings += 1
+            before, now = (_quantiles(each)[1] - pitch_of(self.scene).dry for each in (self.torques, torques))
+            # medians that no gear reaches are the same
+            self.change = (
+                0.0 if before == now else abs(now / before - 1.0) if math.isfinite(before) else math.inf
+            )
+        self.torques = torques
+
+
+class _Runs:
+    """Runs side by side, with their progress."""
+
+    def __init__(
+        self,
+        how: Execution,
+        kept: KeptRuns | None,
+        executor: Executor | None,
+        report: SweepProgress,
+        usual: int,
+    ) -> None:
+        self._how, self._kept, self._executor = how, kept, executor
+        self._report, self._usual, self._done = report, usual, 0
+
+    def torques(self, scenes: Sequence[Scene]) -> Floats:
+        """Torques of runs from rest [N m]; infinite where the gear has not turned."""
+        found = []
+        for _, word in solutions(self._kept, self._executor, run_from_rest, scenes, self._how.backend):
+            found.append(math.inf if word == RESTS else float(word))
+            self._done += 1
+            self._report(float(min(self._done, self._usual)), self._usual)
+        return np.array(found)
+
+
+def starting_torques(
+    base: Scene, fractions: Sequence[float], scenes: Sequence[Scene], seeds: int | None, how: Execution
+) -> xr.Dataset:
+    """Distribution of the starting torques over seeds, for `starting_torque`.
+
+    Parameters
+    ----------
+    base : Scene
+        With a population.
+    fractions, scenes
+        Coverages, and the scene with each of them.
+    seeds : int or None
+        Number of gears, whose seeds count from ``contact.seed`` on; None for `SEEDS`.
+    how : Execution
+
+    Raises
+    ------
+    SceneError
+        If a setting is not allowed.
+    """
+    count = SEEDS if seeds is None else seeds
+    if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= _MOST_SEEDS:
+        raise SceneError("seeds", seeds, f"must be a whole number in 1..{_MOST_SEEDS}")
+    numbers = range(base.contact.seed, base.contact.seed + count)
+
+    def work(kept: KeptRuns | None) -> xr.Dataset:
+        designs = [_Design(each, [laid(each, seed) for seed in numbers]) for each in scenes]
+        usual = _STAGES * count * len(designs)
+        with sweep_progress(how.progress, usual) as report, how.computing(usual) as executor:
+            _find_all(designs, _Runs(how, kept, executor, report, usual))
+        return _dataset(base, fractions, numbers, designs)
+
+    return run_kept(
+        how,
+        lambda target: KeptRuns(target, base, how.driver),
+        work,
+        {**origin_of(base), "settings": json.dumps([KIND, list(fractions), count])},
+        read=lambda path: open_product(path, KIND)[0],
+    )
+
+
+def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
+    """Find the scale of each design, the torques at rates that are halved until they agree, and who starts at once."""
+    pilots = runs.torques([pilot(at) for one in designs for at in one.laid])
+    for one, torques in _in_parts(designs, pilots):
+        dry = pitch_of(one.scene).dry
+        started = torques[np.isfinite(torques)] - dry
+        if not started.size:
+            raise SceneError("scene", one.scene.name, "has no gear that any torque starts")
+        one.scale = float(np.median(started))
+    waiting = list(designs)
+    while waiting:
+        halvings = [one.halvings + (one.torques.size > 0) for one in waiting]
+        slow = [ramp(at, one.scale, n) for one, n in zip(waiting, halvings, strict=True) for at in one.laid]
+        for one, torques in _in_parts(waiting, runs.torques(slow)):
+            one.learn(torques)
+        waiting = [one for one in waiting if not one.is_settled]
+    for one in designs:
+        assert one.scene.drive is not None
+        torque, dry = one.scene.drive.torque, pitch_of(one.scene).dry
+        one.starts = np.full(len(one.laid), 0.0 if torque > 0.0 else math.nan)
+        if torque > dry:
+            found = runs.torques([constant(at, one.scale, torque) for at in one.laid])
+            one.starts = np.isfinite(found).astype(np.float64)
+
+
+def _in_parts(designs: Sequence[_Design], values: Floats) -> list[tuple[_Design, Floats]]:
+    return list(zip(designs, np.split(values, len(designs)), strict=True))
+
+
+def _quantiles(torques: Floats) -> Floats:
+    """Quantiles of torques, interpolated between the ordered ones; infinite from the first that is."""
+    ordered = np.sort(torques)
+    place = np.array(QUANTILES) * (ordered.size - 1)
+    low, high = ordered[np.floor(place).astype(int)], ordered[np.ceil(place).astype(int)]
+    with np.errstate(invalid="ignore"):
+        between = low + (place % 1.0) * (high - low)
+    return np.where(np.isfinite(high), between, np.inf)
+
+
+def _dataset(
+    base: Scene, shares: Sequence[float], numbers: Sequence[int], designs: Sequence[_Design]
+) -> xr.Dataset:
+    assert base.drive is not None
+    columns = _columns(designs) | {"place": [place_of_seed(base, number) for number in numbers]}
+    coords = {
+        "sam_fraction": ("sam_fraction", np.array(shares), SAM_FRACTION.attributes),
+        "seed": ("seed", np.array(numbers), {"units": "1", "long_name": "contact.seed of the gear"}),
+        "quantile": (
+            "quantile",
+            np.array(QUANTILES),
+            {"units": "1", "long_name": "share of the gears below"},
+        ),
+    }
+    return xr.Dataset(
+        {
+            name: (dims, np.asarray(columns[name]), {"units": units, "long_name": words})
+            for name, (dims, units, words) in _VARIABLES.items()
+        },
+        coords=coords,
+        attrs={
+            **provenance(base, "found starting torques of a population", swept=("contact.seed",)),
+            "title": f"{base.name}: starting torque of {len(numbers)} gears",
+            "summary": _SUMMARY,
+            "drive_torque": base.drive.torque,
+        },
+    )
+
+
+def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
+    """Values of the variables, design by design."""
+    torques = np.stack([one.torques for one in designs])
+    starts = np.stack([one.starts for one in designs])
+    finite = np.where(np.isfinite(torques), torques, np.nan)
+    quantiles = np.stack([_quantiles(each) for each in torques])
+    pitches = [pitch_of(one.scene) for one in designs]
+    return {
+        "starting_torque": finite,
+        "starts": starts,
+        "quantiles": np.where(np.isfinite(quantiles), quantiles, np.nan),
+        "not_started": np.isnan(finite).mean(axis=1),
+        "chance": starts.mean(axis=1),
+        "rate": [
+            ramp_rate(pitch, one.scale, one.halvings) for pitch, one in zip(pitches, designs, strict=True)
+        ],
+        "ramp_end": [ramp_end(pitch, one.scale) for pitch, one in zip(pitches, designs, strict=True)],
+        "median_change": [one.change for one in designs],
+        "damping": [least_damping(one.scene) for one in designs],
+    }

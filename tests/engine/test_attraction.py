@@ -1,0 +1,204 @@
+"""Attraction across the gap in runs: closed forms, both flanks, the materials' shares, and the energy balance."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.contact import attraction_energy, attraction_force
+from gearidae.mesh.involute import curvature_radii
+from gearidae.runs.plausibility import doubts
+
+HAMAKER = 5e-20
+ROLLER = gd.preset("roller_slow").replace(
+    {
+        "surface.hamaker": HAMAKER,
+        "surface.roughness": "1 nm",
+        "contact.model": "asperity",
+        "roller.height": "60 nm",
+        "roller.mass": 1e-14,
+        "run.duration": 3e-6,
+        "run.rtol": 1e-9,
+    }
+)
+GEARS = gd.preset("teodorescu2009").replace(
+    {
+        "surface.hamaker": HAMAKER,
+        "coating.hamaker": 2e-20,
+        "coating.sam_fraction": 0.6,
+        "coating.thickness": "1 nm",
+        "coating.pairing": "independent",
+        "mesh.radius_force": True,
+        "contact.model": "asperity",
+        "run.samples": 51,
+    }
+)
+TABLE = [[1.0, 0.4, 0.8]] + [[0.5, 0.9, 0.3]] * 18
+
+
+def balance(ds):
+    found = json.loads(ds.attrs["energy_balance"])
+    assert abs(found["residual"]) <= found["residual_bound"]
+    return found
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+@pytest.mark.parametrize("model", ["asperity", "population"])
+def test_a_roller_that_falls_towards_a_plane(backend, model):
+    """Beyond the asperities force and energy of motion are closed forms; 30 nm are 30 roughnesses, where none touch.
+
+    The energy of motion doubles on the way, and a run at 1e-9 keeps it to 1e-7.
+    """
+    scene = ROLLER.replace({"contact.model": model})
+    ds = gd.simulate(scene, backend=backend)
+    far = ds.height.values > 30e-9
+    pair = (scene.roller.radius, scene.roller.width, HAMAKER)
+    height, speed = ds.height.values[far], ds.speed.values[far]
+    np.testing.assert_allclose(ds.force.values[far], attraction_force(height, *pair), rtol=1e-10)
+    stored = attraction_energy(height, *pair)
+    energy = 0.5 * scene.roller.mass * speed**2 + stored
+    assert np.ptp(energy) < 1e-6 * np.ptp(stored)
+    assert np.ptp(stored) > 1e-19
+    balance(ds)
+
+
+def pairs_of(scene, phase, u):
+    """Gap and reduced radius of every pair of both flanks, ten on either side, from the gears' geometry."""
+    geometry, b, rho = scene.geometry, 0.5 * scene.mesh.backlash, scene.mesh.tip_relief_radius
+    for number in range(-10, 11):
+        place = (phase - number) * geometry.base_pitch
+        mirrored = 2.0 * geometry.approach + (0.5 + number - phase) * geometry.base_pitch
+        for sign, along in ((1, place), (-1, mirrored)):
+            inside = min(max(along, 0.0), geometry.path_length)
+            gap = b - sign * u + (along - inside) ** 2 / (2.0 * rho)
+            yield gap, float(curvature_radii(geometry, inside)[2])
+
+
+def energy_of(scene, phase, u):
+    return sum(
+        part.share
+        * float(
+            attraction_energy(gap + part.gap_offset, radius, scene.gears.face_width, part.surface.hamaker)
+        )
+        for gap, radius in pairs_of(scene, phase, u)
+        for part in scene.materials()
+    )
+
+
+@pytest.mark.parametrize("model", ["asperity", "population"])
+@pytest.mark.parametrize("phase", [0.3, 0.8])
+def test_gears_apart_are_pulled_by_both_flanks_and_along_the_path(model, phase):
+    """Forces at the start are slopes of the sum of all pairs' energies in u and in the phase at fixed u.
+
+    Gears leave out what is below 1e-6 of the load for each pair: here, at a millionth of the preset's torque, of 15 pN
+    less than 1e-7. The forces are differences of energies, to 1e-5.
+    """
+    scene = GEARS.replace(
+        {
+            "contact.model": model,
+            "contact.asperity": "hertz",
+            "surface.asperity_density": "1 / um^2",
+            "initial.gap": "60 nm",
+            "initial.mesh_phase": phase,
+            "initial.gear_speed": 0.0,
+            "drive": {"torque": 2.43e-17},
+            "load": {},
+            "run.duration": 1e-9,
+            "run.samples": 2,
+        }
+    )
+    ds = gd.simulate(scene)
+    u, pitch = float(ds.transmission_error[0]), scene.geometry.base_pitch
+    force = float(ds.mesh_force[0])
+    step = 1e-12
+    slope = (energy_of(scene, phase, u + step) - energy_of(scene, phase, u - step)) / (2.0 * step)
+    assert force == pytest.approx(slope, rel=2e-5, abs=0)
+    along = float(ds.gear_contact_torque[0]) / scene.geometry.base_radius_gear - force
+    ahead, behind = (energy_of(scene, phase + way, u) for way in (1e-6, -1e-6))
+    expected = -(ahead - behind) / (2e-6 * pitch)
+    assert along == pytest.approx(expected, rel=2e-4, abs=0)
+    assert abs(along) > 1e-5 * abs(force)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"mesh.radius_force": False},
+        {"coating.pinion_table": TABLE},
+        {"coating.pairing": "patches", "contact.asperity": "maugis"},
+        {"contact.model": "population"},
+        {"contact.model": "population", "coating.pinion_table": TABLE, "mesh.damping": 7e-6},
+    ],
+)
+def test_energy_is_kept(changes):
+    """To what the balance allows itself, and to 1e-5 of what the attraction stores where nothing is lost at random."""
+    scene = GEARS.replace({"run.duration": 5e-5, "run.rtol": 1e-7} | changes)
+    found = balance(gd.simulate(scene))
+    assert abs(found["residual"]) < 1e-7 * found["throughput"]
+
+
+def test_both_drivers_agree_with_attraction():
+    scene = GEARS.replace({"run.duration": 2e-5, "run.rtol": 1e-8})
+    one, other = (gd.simulate(scene, backend=backend) for backend in ("native", "sksundae"))
+    np.testing.assert_allclose(one.gear_speed.values, other.gear_speed.values, rtol=1e-6)
+
+
+def test_nothing_changes_where_no_material_has_a_constant():
+    """Not a bit: a constant of a material that the flanks do not have is none."""
+    bare = GEARS.replace(
+        {
+            "coating.pairing": "patches",
+            "coating.sam_fraction": 1.0,
+            "coating.hamaker": 0.0,
+            "run.duration": 2e-5,
+        }
+    )
+    without, beside = (gd.simulate(bare.replace({"surface.hamaker": value})) for value in (0.0, HAMAKER))
+    assert not bare.attracts
+    for name in ("gear_speed", "mesh_force", "event_time"):
+        np.testing.assert_array_equal(without[name].values, beside[name].values)
+
+
+def test_estimates_have_it_too():
+    """The static law of a pair and the drawn teeth pull as the run does."""
+    scene = GEARS.replace({"coating.thickness": 0.0, "coating.hamaker": HAMAKER})
+    from gearidae.runs.pair_contact import pair_contact
+    from gearidae.studies.equilibrium import pair_law
+
+    contact = pair_contact(scene)
+    gap = 60e-9  # ten roughnesses
+    pull = float(attraction_force(gap, contact.radius, contact.width, HAMAKER))
+    assert float(contact.force(gap)) == pytest.approx(pull, rel=1e-10, abs=0)
+    assert pair_law(scene)(gap, gap, contact.radius) == pytest.approx(pull, rel=1e-10, abs=0)
+    (state,) = gd.studies.tooth_contacts(gd.simulate(scene.replace({"run.duration": 5e-5})), 4e-5)
+    assert state.mismatch < 1e-5
+
+
+def test_elastic_bodies_are_refused_and_auto_says_that_they_stay_rigid():
+    with pytest.raises(
+        gd.SceneError, match=r"contact\.model = elastic: cannot be used with surface\.hamaker"
+    ):
+        GEARS.replace({"contact.model": "elastic"})
+    assert any("keeps the teeth rigid" in words for words in doubts(GEARS.replace({"contact.model": "auto"})))
+    assert not doubts(GEARS)
+
+
+def test_a_pull_that_reaches_too_many_teeth_is_refused():
+    weak = gd.preset("teodorescu2009_low_speed").replace(
+        {
+            "surface.hamaker": 1e-17,
+            "coating.sam_fraction": 0.0,
+            "contact.model": "asperity",
+            "drive.torque": 1e-22,
+            "load.drag": 0.0,
+        }
+    )
+    with pytest.raises(
+        gd.SceneError, match=r"surface\.hamaker = 1e-17: attraction is felt .* away"
+    ) as caught:
+        gd.simulate(weak)
+    assert caught.value.key == "surface.hamaker"
+    assert math.isfinite(caught.value.value)

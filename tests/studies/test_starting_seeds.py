@@ -1,0 +1,186 @@
+"""Starting torques of a population: one barrier by statics, then their distribution as a prototype found it."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.optimize import brentq
+
+import gearidae as gd
+from gearidae.cli import main
+from gearidae.engine import solve
+from gearidae.errors import Interrupted
+from gearidae.populations.first_touch import first_touch
+from gearidae.studies import starting_ramp
+from gearidae.studies._starting_seeds import _quantiles
+from reference.population import Contact, Tip
+from sweeps import without_times
+
+GEARS = gd.preset("teodorescu2009").replace({"contact.model": "population", "load.torque": 0.0})
+BARE = GEARS.replace({"coating.sam_fraction": 0.0})
+FEW = {"seeds": 2, "jobs": 1}
+
+
+def _barrier(seed, half=50e-9):
+    """Two bare asperities `half` before and behind the start, among lower ones on every tooth that do not adhere."""
+    whole, phase = divmod(starting_ramp.place_of_seed(GEARS, seed), 1.0)
+    arc = Contact(GEARS).at(phase * GEARS.geometry.base_pitch)["arc"]
+    low = np.arange(-0.5e-6, 7.2e-6, 100e-9)
+    listed = {
+        "arc": [arc - half, arc + half, *low],
+        "height": [15e-9] * 2 + [3e-9] * low.size,
+        "q": [1.0] * 2 + [0.0] * low.size,
+        "tooth": [int(whole)] * 2 + [None] * low.size,
+    }
+    changes = {"contact.asperities": listed, "coating.sam_fraction": 0.5, "coating.energy": 0.0}
+    return GEARS.replace(changes), phase
+
+
+def _largest_static_torque(scene, phase):
+    """Largest torque at which both asperities hold the gear: W (1 - D) of both vanishes, and M = R1 W."""
+    contact, tip = Contact(scene), Tip(scene.surface, scene.surface.asperity_radius)
+    arcs, height = scene.contact.asperities.columns["arc"][:2], 15e-9
+    torques = []
+    for xi in phase * scene.geometry.base_pitch + np.linspace(0.0, 1.2e-6, 601):
+        lowest = min(contact.overlap(xi, 0.0, arc, height)[0] for arc in arcs)
+
+        def loads(gap, xi=xi):
+            met = [contact.overlap(xi, gap, arc, height) for arc in arcs]
+            return [(float(tip.load(max(delta, -tip.detach))), along) for delta, along in met]
+
+        def held(gap, loads=loads):
+            return sum(load * (1.0 - along) for load, along in loads(gap))
+
+        widest = lowest + tip.detach
+        if held(widest) > 0.0:  # the one behind detaches before the gear is held
+            break
+        gap = brentq(held, widest - 10e-9, widest, xtol=1e-18)
+        torques.append(scene.geometry.base_radius_pinion * sum(load for load, _ in loads(gap)))
+    return max(torques)
+
+
+def test_two_asperities_hold_a_gear_as_statics_says():
+    """Statics knows no ramp: 1 % is what the torque rises while the last barrier is passed."""
+    scene, phase = _barrier(3)
+    assert 0.1 < phase < 0.6
+    at = starting_ramp.laid(scene, 3)
+    wanted = _largest_static_torque(scene, phase)
+    scale = float(starting_ramp.run_from_rest(starting_ramp.pilot(at), "auto")[1])
+    found = float(starting_ramp.run_from_rest(starting_ramp.ramp(at, scale, 0), "auto")[1])
+    assert found == pytest.approx(wanted, rel=0.01, abs=0)
+    assert scale == pytest.approx(wanted, rel=0.1, abs=0)
+    for share, turns in ((0.5, False), (1.2, True)):
+        word = starting_ramp.run_from_rest(starting_ramp.constant(at, scale, share * wanted), "auto")[1]
+        assert (word != starting_ramp.RESTS) is turns
+
+
+def test_a_gear_is_laid_down_where_the_first_asperity_is_about_to_join():
+    for seed in (0, 4):  # another pair is in mesh too, and not
+        at = starting_ramp.laid(
+            BARE.replace({"coating.thickness": "2 nm", "coating.sam_fraction": 0.5}), seed
+        )
+        assert first_touch(at) == at.initial.gap
+        joined = []
+        for nearer in (0.0, 1e-12):
+            moved = {"initial.gap": at.initial.gap - nearer, "run.duration": 1e-12, "run.samples": 2}
+            joined.append(solve(at.replace(moved)).samples["asperities_in_contact"][0])
+        assert joined == [0.0, 1.0]
+
+
+def test_whole_pitches_choose_the_tooth_and_nothing_else():
+    listed = {"arc": np.arange(0.0, 7e-6, 50e-9).tolist()}
+    listed["height"] = (12e-9 * np.sin(np.arange(len(listed["arc"])))).tolist()
+    scene = BARE.replace(
+        {"contact.asperities": listed, "run.duration": 40e-6, "run.samples": 21, "initial.mesh_phase": 0.25}
+    )
+    first = gd.simulate(scene)
+    assert first.sizes["event"] > 20
+    later = gd.simulate(scene.replace({"initial.mesh_phase": 20.25}))
+    assert np.array_equal(first.gear_speed, later.gear_speed)
+    assert np.array_equal(first.event_time, later.event_time)
+    flanks = first.event_flank.values >= 0
+    assert np.array_equal((first.event_tooth.values[flanks] + 1) % 19, later.event_tooth.values[flanks])
+    turned = (later.gear_angle - first.gear_angle) * 76 / (2.0 * math.pi)
+    np.testing.assert_allclose(turned, 20.0, rtol=1e-12)
+
+
+def test_quantiles_count_gears_that_did_not_start():
+    np.testing.assert_allclose(_quantiles(np.arange(11.0)), [1.0, 5.0, 9.0], rtol=1e-15)
+    found = _quantiles(np.array([4.0, math.inf, 1.0, 2.0, math.inf]))
+    assert found.tolist() == [pytest.approx(1.4), 4.0, math.inf]
+
+
+@pytest.fixture(scope="module")
+def found():
+    return gd.studies.starting_torque(BARE, **FEW)
+
+
+def test_each_gear_is_found_alone_and_by_threads_alike(found):
+    assert found.starting_torque.dims == ("sam_fraction", "seed")
+    at = starting_ramp.laid(BARE, 1)
+    assert float(found.place[1]) == at.initial.mesh_phase
+    scale, (rate,) = found.ramp_end.item() / 8.0, found.rate.values
+    assert rate == pytest.approx(
+        starting_ramp.ramp_rate(starting_ramp.pitch_of(at), scale, 1), rel=1e-12, abs=0
+    )
+    assert found.median_change.item() < 0.1
+    with ThreadPoolExecutor(2) as executor:
+        other = gd.studies.starting_torque(BARE, seeds=2, executor=executor)
+    xr.testing.assert_identical(without_times(other), without_times(found))
+
+
+def test_bare_teeth_hold_more_and_dry_resistance_adds_to_them():
+    """A dry resistance presses the teeth before they start: not much, as it is a tenth of what adhesion takes."""
+    weak = GEARS.replace({"drive.torque": 1e-13})
+    free = gd.studies.starting_torque(weak, [1.0, 0.0], seeds=1)
+    coated, bare = free.starting_torque.values[:, 0]
+    assert bare > 10.0 * coated
+    assert free.chance.values.tolist() == [float(coated < 1e-13), 0.0]
+    assert (free.not_started == 0.0).all()
+    dry = gd.studies.starting_torque(BARE.replace({"load.torque": 0.4 * bare}), seeds=1)
+    assert float(dry.starting_torque[0, 0]) == pytest.approx(1.1 * bare, rel=0.1, abs=0)
+
+
+def test_cut_off_and_resumed_it_ends_alike(found, tmp_path):
+    target = tmp_path / "out.nc"
+
+    def cut_off(done, total):
+        if done >= 3.0:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted, match="--resume"):
+        gd.studies.starting_torque(BARE, archive=target, progress=cut_off, **FEW)
+    whole = gd.studies.starting_torque(BARE, archive=target, resume=True, **FEW)
+    xr.testing.assert_identical(without_times(whole), without_times(found))
+    assert main(["plot", str(target), "-o", str(tmp_path / "out.png")]) == 0
+
+
+def test_bare_gears_start_as_those_of_a_prototype():
+    """A tenth is what half of its own rate may have changed the prototype's median, 1.1e-11 N m, by.
+
+    Eight of its gears started at 1e-11 N m at once. One more or less may: of those close to their limit, what is left
+    of the motion decides.
+    """
+    ds = gd.studies.starting_torque(BARE.replace({"drive.torque": 1e-11}), seeds=10)
+    assert float(ds.quantiles.sel(quantile=0.5)[0]) == pytest.approx(1.1e-11, rel=0.1, abs=0)
+    assert abs(int(ds.starts.sum()) - 8) <= 1
+
+
+def test_what_a_population_does_not_take_is_named():
+    cases = (
+        ({"impacts": 2}, "impacts"),
+        ({"lowest": 1e-20}, "lowest"),
+        ({"simulated": False}, "simulated"),
+        ({"tolerance": 0.5}, "tolerance"),
+        ({"seeds": 0}, "seeds"),
+        ({"sam_fraction": "all"}, "sam_fraction"),
+    )
+    for given, name in cases:
+        with pytest.raises(gd.SceneError, match=name):
+            gd.studies.starting_torque(BARE, **given)
+    with pytest.raises(gd.SceneError, match="population"):
+        gd.studies.starting_torque(gd.preset("teodorescu2009"), seeds=3)
