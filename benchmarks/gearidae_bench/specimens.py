@@ -1,7 +1,7 @@
 """The table of the page "The mean and the gear on the bench": gears of one design with real asperities.
 
-``python -m gearidae_bench.specimens [seeds]`` prints it: speeds and losses of 1 ms at high speed, undamped, and starting
-torques without dry resistance. Twenty gears take about two minutes on two cores.
+``python -m gearidae_bench.specimens [seeds]`` prints it: speeds and losses of 1 ms at high speed, undamped, and
+starting torques without dry resistance. Twenty gears take about two minutes on two cores.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ def rows(seeds: int) -> Iterator[tuple[str, ...]]:
     ds = gd.sweep(SCENE, over, keep=KEPT, progress=True)
     assert SCENE.gears is not None
     turned = ds.gear_angle.isel(time=-1) - ds.gear_angle.isel(time=0)
+    assert SCENE.gears is not None
     cycles = turned / (2.0 * np.pi / SCENE.gears.gear_teeth)
     speed = (turned / SCENE.run.duration).values
     yield "mean speed of 1 ms, rad/s", *map(with_error, speed)
@@ -79,9 +80,10 @@ def with_error(values: np.ndarray) -> str:
 def main() -> None:
     """Print the table."""
     seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 20
-    print("| | coated | half coated | bare |\n|---|---|---|---|")
+    sys.stdout.write("| | coated | half coated | bare |\n|---|---|---|---|\n")
     for row in rows(seeds):
-        print(f"| {' | '.join(row)} |", flush=True)
+        sys.stdout.write(f"| {' | '.join(row)} |\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":
