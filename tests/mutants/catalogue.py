@@ -539,4 +539,27 @@ MUTANTS = (
         "rate = 0.0 * w * turn",
         ("engine/test_friction.py::test_the_balance_closes_with_friction",),
     ),
+    Mutant(
+        "shares of the pairs in the loss to friction equal in place of those of the mean law",
+        "mesh/friction.py",
+        "share = (places < length) * (1.0 if equal_shares else np.sqrt(reduced))",
+        "share = (places < length) * np.ones_like(reduced)",
+        ("mesh/test_friction.py::test_numbers_of_the_preset",),
+    ),
+    Mutant(
+        "coefficients of two materials weighted by their shares in place of their forces",
+        "runs/rubbing.py",
+        "counted = contact.part_areas(gap) if shear else contact.part_forces(gap)",
+        "counted = [load * part.share for part in contact.parts]",
+        (
+            "studies/test_estimates.py::test_coefficients_of_two_materials_count_with_the_forces_that_they_carry",
+        ),
+    ),
+    Mutant(
+        "one pair that rolls counted as rest",
+        "archive/run_summary.py",
+        "if self._gear or len(self._flanks) > 1:",
+        "if self._gear or self._flanks:",
+        ("archive/test_run_summary.py::test_what_friction_takes_and_holds",),
+    ),
 )
