@@ -372,7 +372,7 @@ MUTANTS = (
     Mutant(
         "impacts that are no pitch apart taken for those of a speed without error",
         "analysis/impacts.py",
-        "    return spacing if told else 1.0",
+        "    return spacing if evident else 1.0",
         "    return 1.0",
         ("analysis/test_bad_records.py",),
     ),
