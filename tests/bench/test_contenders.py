@@ -36,6 +36,23 @@ def test_contender_agrees_with_the_reference(case, contender):
     assert outcome.steps > 0
 
 
+@pytest.mark.parametrize("name", ["population_sam", "population_worn", "population_bare"])
+def test_who_begins_anew_where_forces_jump_can_run_a_population(name):
+    """At a tolerance of 1e-9; a dip of an asperity between two steps that is missed is an error of a third."""
+    bench = SCENES[name]
+    problem = make_problem(bench.scene)
+    times = np.linspace(0.0, end_of(problem), bench.scene.run.samples)
+    reference = find_reference(bench)
+    for contender in all_contenders():
+        if not contender.jumps or contender.key == "portable" or contender.unavailable():
+            continue
+        outcome = contender.run(unused(problem), 1e-9, times)
+        error = run_error(
+            reference.speed, reference.position, outcome.speed, outcome.position, reference.length
+        )
+        assert error < 1e-4
+
+
 def test_the_c_loop_takes_the_native_steps(case):
     native, c_loop = engine_contenders()[0], c_contenders()[0]
     if reason := native.unavailable() or c_loop.unavailable():

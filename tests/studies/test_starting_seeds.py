@@ -79,10 +79,11 @@ def test_two_asperities_hold_a_gear_as_statics_says():
 
 
 def test_a_gear_is_laid_down_where_the_first_asperity_is_about_to_join():
-    for seed in (0, 4):  # another pair is in mesh too, and not
-        at = starting_ramp.laid(
-            BARE.replace({"coating.thickness": "2 nm", "coating.sam_fraction": 0.5}), seed
-        )
+    patches = {"coating.sam_fraction": 0.5}
+    teeth = {"coating.pairing": "independent", "coating.gear_table": [[0.0], [1.0]] * 38}
+    for seed, covered in ((0, patches), (4, patches), (0, teeth), (4, teeth), (7, teeth)):
+        scene = BARE.replace({"coating.thickness": "2 nm", **covered, "run.exposures": 4})
+        at = starting_ramp.laid(scene, seed)
         assert first_touch(at) == at.initial.gap
         joined = []
         for nearer in (0.0, 1e-12):

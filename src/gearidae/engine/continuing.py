@@ -28,6 +28,7 @@ from gearidae.engine.changeover import (
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
+from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import begin_sliding, settle_sliding
 from gearidae.engine.followers.balance import open_balance
@@ -237,13 +238,16 @@ def _materials(m: Model) -> Floats:
         numbers += [own.teeth, *m.tables[own.values_at : own.values_at + own.teeth * own.places]]
     for own in m.scene.material:
         force = own.force_scale * m.scene.force_unit
-        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset]
+        pull = own.attraction * m.scene.force_unit
+        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset, pull]
     return np.array(numbers)
 
 
 def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, changed: bool) -> None:
     """Carry what contacts remember to the new materials and nodes, and book the change of the stored energy."""
     source, m = old.model, new.model
+    if changed and m.scene.attracts != 0:
+        accept(m, float(m.state.time), y)  # pairs that have not been within reach
     if m.scene.population.flanks > 0:
         take_joined(m, y, joined_asperities(source))
         if changed:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import EngFormatter, StrMethodFormatter
+from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter, StrMethodFormatter
 
 from gearidae.analysis.map_model import require_map
 from gearidae.errors import SceneError
@@ -185,8 +185,8 @@ def starting_torques(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         )
     ax.set_xscale("log")
     ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
-    ax.xaxis.set_minor_formatter(EngFormatter(sep=" "))
-    ax.tick_params(axis="x", which="minor", labelsize="x-small")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set_ylim(0.0, 1.02)
     ax.set_xlabel("starting torque on the pinion (N m)")
     ax.set_ylabel(f"share of {count} gears")

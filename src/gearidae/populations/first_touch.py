@@ -39,11 +39,12 @@ def first_touch(scene: Scene) -> float:
     widest = -math.inf
     for pair in range(math.floor(phase - geometry.contact_ratio) - 1, 3):
         xi = (phase - pair) * geometry.base_pitch
-        one = flanks[2 * (int(pair + whole) % geometry.pinion_teeth)]
+        tooth = int(pair + whole)
+        one = flanks[2 * (tooth % geometry.pinion_teeth)]
         if not one.arc.size:
             continue
         reach = {}
-        for number in np.unique(material := materials_at(scene, one, one.tooth)).tolist():
+        for number in np.unique(material := materials_at(scene, one, tooth)).tolist():
             own = by_name[MATERIAL_NAMES[number]]
             largest = own.surface.model_copy(update={"asperity_radius": float(one.radius.max())})
             reach[number] = law_of(scene.contact.asperity, largest).join * sigma - own.gap_offset

@@ -19,6 +19,7 @@ from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.studies.gear_answers import SLOW_ENOUGH
 from gearidae.studies.products import open_product
 from gearidae.studies.starting_ramp import (
     RESTS,
@@ -41,8 +42,6 @@ KIND: Final = "starting_torques"
 SEEDS: Final = 20
 QUANTILES: Final = (0.1, 0.5, 0.9)
 _MOST_SEEDS: Final = 10_000
-_CHANGE: Final = 0.1
-"""Change of the median by half the rate at which a rate is slow enough."""
 _HALVINGS: Final = 4
 """Times that the rate is halved at most."""
 _STAGES: Final = 4
@@ -71,7 +70,7 @@ _VARIABLES: Final[dict[str, tuple[tuple[str, ...], str, str]]] = {
     "chance": (_ALONG, "1", "share that the drive's own torque starts"),
     "rate": (_ALONG, "N m s-1", "rise of the torque"),
     "ramp_end": (_ALONG, "N m", "torque at which the ramp ended"),
-    "median_change": (_ALONG, "1", "change of the median by half the rate"),
+    "median_change": (_ALONG, "1", "relative change of the median from twice this rate"),
     "damping": (_ALONG, "N s m-1", "damping of the mesh"),
 }
 _SUMMARY: Final = (
@@ -113,7 +112,7 @@ class _Design:
     @property
     def is_settled(self) -> bool:
         """Whether the rate is slow enough, or has been halved as often as is allowed."""
-        return self.change < _CHANGE or self.halvings == _HALVINGS
+        return self.change < SLOW_ENOUGH or self.halvings == _HALVINGS
 
     def learn(self, torques: Floats) -> None:
         """Take in the starting torques at the next rate."""

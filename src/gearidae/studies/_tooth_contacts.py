@@ -195,8 +195,9 @@ def _states(
     contacts: list[list[ToothContact]] = [[] for _ in wanted]
     if real is not None:
         for near in _near(record, scene, limits, wanted):
+            pull = _attraction(scene, near)
             for k, place in enumerate(near.wanted):
-                contacts[place].append(_real_contact(record, near, k, real, limits.cutoff))
+                contacts[place].append(_real_contact(record, near, k, real, limits.cutoff, float(pull[k])))
     else:
         stretches = {name: _stretch_limit(law, scene) for name, law in material_laws(scene).items()}
         for pair in _followed(record, scene, limits, wanted):
@@ -268,15 +269,25 @@ def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Intege
             for name, law in laws.items()
         }
         ratios = _share_ratios(scene, near.flank, near.pair, near.place)
-        force = _force(scene, laws, near.gap, joined, near.radius, ratios)
+        force = _force(scene, laws, near.gap, joined, near.radius, ratios) + _attraction(scene, near)
         force[near.gap >= limits.cutoff] = 0.0
         yield _Followed(near, joined, force)
 
 
+def _attraction(scene: Scene, near: _Near) -> Floats:
+    """Attraction of a pair across its gap [N], whatever its asperities do."""
+    total = np.zeros_like(near.gap)
+    if scene.attracts:
+        ratios = _share_ratios(scene, near.flank, near.pair, near.place)
+        for name, law in material_laws(scene).items():
+            total += ratios[name] * law.attraction(near.gap, near.radius, scene)
+    return total
+
+
 def _real_contact(
-    record: ToothRecord, near: _Near, k: int, real: JoinedAsperities, cutoff: float
+    record: ToothRecord, near: _Near, k: int, real: JoinedAsperities, cutoff: float, pull: float
 ) -> ToothContact:
-    """Contact of a pair with real asperities at the k-th of its samples."""
+    """Contact of a pair with real asperities at the k-th of its samples, which is pulled across its gap besides."""
     pair, flank, place, gap = near.pair, near.flank, float(near.place[k]), float(near.gap[k])
     travel, error = (np.array([number]) for number in real.first_motion)
     first = record.place(flank, pair, travel)
@@ -297,7 +308,7 @@ def _real_contact(
         place,
         float(near.radius[k]),
         gap,
-        float(loads.sum()),
+        float(loads.sum()) + (pull if gap < cutoff else 0.0),
         {},
         states or {"bare": ContactState.OPEN},
         tuple(joined.tolist()),
@@ -344,10 +355,7 @@ def _force(
                 ]
             )
         )
-    force = np.sqrt(2.0 * radius * sigma) * total
-    if scene.attracts:
-        force += sum(ratios[name] * law.attraction(gap, radius, scene) for name, law in laws.items())
-    return force
+    return np.sqrt(2.0 * radius * sigma) * total
 
 
 def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, float]) -> ToothContact:

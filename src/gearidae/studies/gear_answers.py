@@ -15,6 +15,8 @@ import xarray as xr
 from gearidae.archive.specimen import SEED
 from gearidae.scene.prefixes import with_prefix
 
+SLOW_ENOUGH: Final = 0.1
+"""Change of the median by half the rate below which a rate is slow enough."""
 Rows: TypeAlias = Iterator[tuple[str, str, str]]
 
 FIGURES: Final = (
@@ -94,8 +96,15 @@ def starts_rows(ds: xr.Dataset) -> Rows:
             started = int(one["starts"].sum())
             own = f"turn one pitch at the drive's own {with_prefix(drive, 'N m', 4)}, there at once"
             yield "chance of starting", f"{started / count:.3g}", f"{started} of {count} {own}"
-        change = f"twice this rate changes the median by {100.0 * float(one['median_change']):.2g} %"
-        yield "rate of the torque", f"{with_prefix(1e-3 * float(one['rate']), 'N m', 3)} per ms", change
+        change = float(one["median_change"])
+        words = f"twice this rate changes the median by {100.0 * change:.2g} %"
+        words += "" if change < SLOW_ENOUGH else ": not slow enough to rely on it"
+        yield "rate of the torque", f"{with_prefix(1e-3 * float(one['rate']), 'N m', 3)} per ms", words
+        yield (
+            "damping of the mesh",
+            f"{float(one['damping']):.3g} N s/m",
+            "at least 3 % of critical in this study",
+        )
 
 
 def _torque(value: xr.DataArray, one: xr.Dataset) -> str:

@@ -101,6 +101,7 @@ _KINDS: Final = {
             "chance": "sam_fraction",
             "rate": "sam_fraction",
             "median_change": "sam_fraction",
+            "damping": "sam_fraction",
         },
     ),
     "sticking_threshold": _Kind(

@@ -123,6 +123,7 @@ def laid(scene: Scene, seed: int) -> Scene:
             "run.stop": f"turns {1.0 / scene.gears.gear_teeth!r}",
             "run.asperity_events": False,
             "run.balance": False,
+            "run.exposures": 0,
             "run.checkpoints": [],
         }
     )

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import POPULATION
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, W
 from gearidae.engine.pairs.coverage import WHOLE, attraction_energies, attraction_of, shares_of, weighed
-from gearidae.engine.pairs.lengths import weighed_length
+from gearidae.engine.pairs.lengths import length_and_rates, weighed_length
 from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pair_at, pairs_near
 from gearidae.engine.population.spots import Pair, pair_now
 
@@ -20,6 +20,19 @@ from gearidae.engine.population.spots import Pair, pair_now
 def _inside(m: Model, now: Pair) -> float:
     """Path position of a pair, clipped to the path."""
     return min(max(now.place, 0.0), m.scene.contact_ratio)
+
+
+@compiled
+def pair_attraction(m: Model, y: Floats, coast: int, pair: int, now: Pair) -> tuple[float, float, float]:
+    """Attraction of a gear pair, its slope in the gap, and its rate at that gap with the length, scaled."""
+    if now.gap >= m.scene.cutoff:
+        return 0.0, 0.0, 0.0
+    inside = _inside(m, now)
+    pull, slope = attraction_of(m, now.gap, shares_of(m, coast, pair, inside))
+    length, rate = contact_length(m, inside), 0.0
+    if now.moves:
+        rate = length_and_rates(m, coast, pair, y[PHASE], y[W], 0.0)[1]
+    return length * pull, length * slope, rate * pull
 
 
 @compiled_once(POPULATION)
@@ -33,10 +46,9 @@ def attraction_sums(m: Model, y: Floats) -> tuple[float, float, float, float, fl
         now = pair_now(m, coast, pair, y)
         if now.gap >= m.scene.cutoff or m.state.history[history_of(m, coast, pair)].pair != pair:
             continue
-        sign, inside = 1.0 - 2.0 * coast, _inside(m, now)
-        length, along = contact_length(m, inside), now.slope / turn
-        pull, slope = attraction_of(m, now.gap, shares_of(m, coast, pair, inside))
-        load, by_u = sign * length * pull, -length * slope
+        sign, along = 1.0 - 2.0 * coast, now.slope / turn
+        pull, slope, _ = pair_attraction(m, y, coast, pair, now)
+        load, by_u = sign * pull, -slope
         by_phase = -by_u * along
         force += load
         force_u += by_u

@@ -15,6 +15,7 @@ from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.notes import note_force
 from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pairs_near
+from gearidae.engine.population.attraction import pair_attraction
 from gearidae.engine.population.layout import (
     ARC,
     HEIGHT,
@@ -171,7 +172,11 @@ def pair_load(m: Model, y: Floats, coast: int, pair: int) -> tuple[float, float,
     """Force of a pair along the line of action, its slope in the gap, and its rate at that gap, scaled."""
     now = pair_now(m, coast, pair, y)
     sums = _sums(m, history_of(m, coast, pair), now)
-    return sums.load, -sums.stiffness, sums.stiffness_d * now.place_rate
+    load, slope, rate = sums.load, -sums.stiffness, sums.stiffness_d * now.place_rate
+    if m.scene.attracts != 0:
+        pull, change, growth = pair_attraction(m, y, coast, pair, now)
+        return load + pull, slope + change, rate + growth
+    return load, slope, rate
 
 
 @compiled_once(POPULATION)

@@ -15,13 +15,26 @@ from gearidae.contact.kernels.layout import GAP_LOW
 from gearidae.contact.kernels.single import asperity_table
 from gearidae.engine.model.state import Floats, Record
 from gearidae.engine.population.candidates import LEVELS
-from gearidae.engine.population.layout import FIELDS, K_DETACH, K_JOIN, KINDS
+from gearidae.engine.population.layout import (
+    FIELDS,
+    K_AREA,
+    K_DETACH,
+    K_ENERGY,
+    K_FRICTION,
+    K_JOIN,
+    K_LOAD,
+    K_MATERIAL,
+    K_OFFSET,
+    K_SCALE,
+    K_TABLE,
+    KINDS,
+)
 from gearidae.engine.setup.build_contact import add_fractions
 from gearidae.engine.setup.tables import Tables
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import FlankAsperities, flanks_digest, flanks_of
 from gearidae.populations.materials import materials_met
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene import MATERIAL_NAMES, Scene, Surface
 from gearidae.scene.friction import friction_values
 
 Integers = NDArray[np.int64]
@@ -108,44 +121,76 @@ def _kinds(
     material = np.concatenate([materials_met(scene, one) for one in flanks], axis=1)
     both = len(MATERIAL_NAMES) * of_radius.ravel() + material
     pairs, kinds = np.unique(both.ravel(), return_inverse=True)
-    sigma, by_name = scene.surface.roughness, {one.name: one for one in scene.materials()}
-    highest = float(s.population.highest) - GAP_LOW
-    tips, friction = [], friction_values(scene)
+    return _numbers(
+        s, tables, scene, radii[pairs // len(MATERIAL_NAMES)], pairs % len(MATERIAL_NAMES)
+    ), kinds.reshape(both.shape)
+
+
+def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: Integers) -> Floats:
+    """Numbers of kinds that have these radii and materials; the tables of their laws are added."""
+    sigma, force = scene.surface.roughness, float(s.force_unit)
+    numbers, highest = np.empty((radii.size, KINDS)), float(s.population.highest) - GAP_LOW
+    parts: list[tuple[Integers, list[AsperityLaw], Integers]] = []
     reach: dict[AsperityLaw, float] = {}
-    for pair in pairs.tolist():
-        radius, one = radii[pair // len(MATERIAL_NAMES)], by_name[MATERIAL_NAMES[pair % len(MATERIAL_NAMES)]]
-        tip = asperity_of(one.surface.model_copy(update={"asperity_radius": float(radius)}))
-        unit = tip.stretch_limit if tip.stretch_limit > 0.0 else sigma
-        law = law_of_tip(scene.contact.asperity, tip, unit)
-        strength = (
-            math.pi * float(radius) / float(s.force_unit)
-        )  # times the unit of length and the shear strength
-        tips.append((law, tip.hertz_factor, unit, one.gap_offset, friction[one.name], strength))
-        reach[law] = max(reach.get(law, 0.0), highest * sigma / unit)
-        if len(reach) > MOST_LAWS:
-            raise SceneError(
-                "contact.asperity",
-                scene.contact.asperity,
-                f"has another law for each radius, of {radii.size}: there may be {MOST_LAWS} at most, or the law jkr",
-            )
+    friction, shear = friction_values(scene), scene.contact.friction_law == "shear"
+    for one in scene.materials():
+        index = MATERIAL_NAMES.index(one.name)
+        rows = np.flatnonzero(materials == index)
+        if rows.size == 0:
+            continue
+        tip, ratio = asperity_of(one.surface), radii[rows] / one.surface.asperity_radius
+        units = tip.stretch_limit * np.cbrt(ratio) if tip.stretch_limit > 0.0 else np.full(rows.size, sigma)
+        laws, which = _laws(scene.contact.asperity, one.surface, radii[rows], sigma)
+        for number, law in enumerate(laws):
+            far = highest * sigma / float(units[which == number].min())
+            reach[law] = max(reach.get(law, 0.0), far)
+        load = tip.hertz_factor * np.sqrt(ratio) * units**1.5 / force
+        join, detach = (
+            np.array([getattr(law, name) for law in laws])[which] * units / sigma
+            for name in ("join", "detach")
+        )
+        numbers[rows, K_SCALE], numbers[rows, K_LOAD], numbers[rows, K_ENERGY] = (
+            sigma / units,
+            load,
+            load * units / sigma,
+        )
+        numbers[rows, K_JOIN], numbers[rows, K_DETACH] = join, detach - RELEASED * (detach - join)
+        numbers[rows, K_OFFSET], numbers[rows, K_MATERIAL] = one.gap_offset / sigma, index
+        # contact areas are in units of pi times radius times unit of length
+        numbers[rows, K_FRICTION] = friction[one.name] * (
+            math.pi * radii[rows] * units / force if shear else 1.0
+        )
+        parts.append((rows, laws, which))
     places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
-    numbers = np.empty((pairs.size, KINDS))
-    shear = scene.contact.friction_law == "shear"
     areas = {
         law: tables.add(asperity_table(ContactArea(law), far)) if shear else 0 for law, far in reach.items()
     }
-    for row, (pair, (law, factor, unit, offset, value, strength)) in enumerate(zip(pairs, tips, strict=True)):
-        load, join, detach = factor * unit**1.5, law.join * unit / sigma, law.detach * unit / sigma
-        numbers[row] = (
-            places[law],
-            sigma / unit,
-            load / float(s.force_unit),
-            load * unit / (float(s.force_unit) * sigma),
-            join,
-            detach - RELEASED * (detach - join),
-            offset / sigma,
-            pair % len(MATERIAL_NAMES),
-            strength * unit * value if shear else value,
-            areas[law],
+    for rows, laws, which in parts:
+        numbers[rows, K_TABLE] = np.array([places[law] for law in laws])[which]
+        numbers[rows, K_AREA] = np.array([areas[law] for law in laws])[which]
+    return numbers
+
+
+def _laws(name: str, surface: Surface, radii: Floats, sigma: float) -> tuple[list[AsperityLaw], Integers]:
+    """Laws of tips of different radii, and which each has; one if those of the smallest and the largest are the same.
+
+    Raises
+    ------
+    SceneError
+        If there are more than can be tabulated.
+    """
+
+    def law_at(radius: float) -> AsperityLaw:
+        tip = asperity_of(surface.model_copy(update={"asperity_radius": float(radius)}))
+        return law_of_tip(name, tip, tip.stretch_limit if tip.stretch_limit > 0.0 else sigma)
+
+    least, most = law_at(radii.min()), law_at(radii.max())
+    if least == most:
+        return [least], np.zeros(radii.size, np.int64)
+    if radii.size > MOST_LAWS:
+        raise SceneError(
+            "contact.asperity",
+            name,
+            f"has another law for each radius, of {radii.size}: there may be {MOST_LAWS} at most, or the law jkr",
         )
-    return numbers, kinds.reshape(both.shape)
+    return [law_at(radius) for radius in radii], np.arange(radii.size)
