@@ -1,7 +1,7 @@
 """How much of the coating is left, judged by a measured speed?
 
-A map is made once for a pair of gears at one torque. A signal, here a simulated one with noise on it in the place of a
-measurement, is then held against it.
+A map is computed once for a pair of gears at one torque. A signal is then compared with it; here a simulated one with
+noise takes the place of a measurement.
 """
 
 import numpy as np

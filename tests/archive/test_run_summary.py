@@ -169,6 +169,7 @@ def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
             "uncertainty",
         ),
         *("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound"),
+        *("friction_loss", "efficiency"),
     }
     assert {name: value for name, value in told.items() if name not in energies} == {
         name: value for name, value in whole.items() if name not in energies
@@ -207,3 +208,34 @@ def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tm
     assert outcome.max_speed == found.max_gear_speed
     assert outcome.verdict == "sticks"
     assert outcome.stick_time == found.stick_time
+
+
+def test_what_friction_takes_and_holds():
+    """A loaded train that rings down to rest; its drive is held by the load and by the teeth."""
+    scene = gd.preset("teodorescu2009").replace(
+        {
+            "contact.model": "asperity",
+            "contact.friction": 0.5,
+            "load.torque": 1e-12,
+            "drive.torque": 2.6e-13,
+            "drive.harmonic": None,
+            "initial.gear_speed": 2.0,
+            "initial.gap": 2.3e-8,
+            "mesh.damping": 2e-5,
+            "run.duration": 40e-6,
+            "run.samples": 401,
+        }
+    )
+    ds = gd.simulate(scene)
+    told, kept = account(ds), json.loads(ds.attrs["energy_balance"])
+    assert told.held_by == "dry resistance and flank friction"
+    speed = ds.gear_speed.values
+    assert told.time_at_rest == pytest.approx((speed == 0.0).mean() * 40e-6, abs=2e-7)
+    assert 0.0 < told.friction_loss == kept["drive_friction_loss"] + kept["coast_friction_loss"]
+    lost = told.drag_loss + told.dry_loss + told.damping_loss + told.adhesion_loss + told.friction_loss
+    assert told.efficiency == pytest.approx((told.drag_loss + told.dry_loss) / lost, rel=1e-12)
+    given = told.drive_work - told.kinetic_change
+    assert lost + told.contact_loss - told.adhesion_loss == pytest.approx(given, rel=1e-4, abs=0.0)
+    waiting = {"initial.gear_speed": 0.0, "drive.torque": 1e-14, "initial.gap": 1e-7, "run.duration": 1e-7}
+    still = account(gd.simulate(scene.replace(waiting)))
+    assert (still.held_by, still.time_at_rest) == ("dry resistance", 1e-7)

@@ -99,7 +99,7 @@ def test_smallest_speed_of_a_gear_at_rest_is_zero(capfd):
     assert -1e-6 * float(ds.max_gear_speed) < float(ds.min_gear_speed) < 0.0
     show_outcomes(ds)
     assert re.search(r"mesh exits\) 0 rad/s 262\.7 rad/s ", words(capfd))
-    assert ">0<" in outcome_table(ds)
+    assert ">0 rad/s<" in outcome_table(ds)
     turned_back = ds.assign(min_gear_speed=-1e-5 * ds.max_gear_speed)
     show_outcomes(turned_back)
     assert " -0.00" in words(capfd)
@@ -125,3 +125,19 @@ def test_digits_tell_the_ends_of_a_bracket_apart(sticks, passes, shown):
     )
     found["limit"].attrs.update(units=unit, long_name="sticking limit of drive.torque")
     assert any(shown in remark for _, _, remark in answer(found, "sticking_threshold").rows)
+
+
+def test_check_estimates_what_friction_takes(capfd):
+    """In closed form; nothing is said of friction where there is none."""
+    hubs = ["--set", "gears.hub_friction=0.3", "--set", "gears.gear_hub_radius=6um"]
+    assert main(["check", "teodorescu2009", "--set", "contact.friction=0.3", *hubs]) == 0
+    said = capfd.readouterr().out
+    assert "4.36 %" in said  # 0.145249 times 0.3
+    assert "1.3 %" in said  # 0.3 times 6 um over the gear's base radius
+    assert "7.598e-12 N m" in said
+    shear = ["--set", "contact.friction_law=shear", "--set", "contact.shear_strength=10 MPa"]
+    assert main(["check", "teodorescu2009", *shear, "--set", "drive.torque=0"]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert "unknown" in next(line for line in lines if "lost to flank friction" in line)
+    assert main(["check", "teodorescu2009"]) == 0
+    assert "friction" not in capfd.readouterr().out

@@ -13,7 +13,7 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.analysis.verdict.headline import headline
 from gearidae.cli import main
-from gearidae.cli.outset import announce_draws
+from gearidae.cli.outset import draw_words
 from sweeps import without_times
 
 FRACTIONS = [1.0, 0.5, 0.45]
@@ -105,11 +105,11 @@ def test_a_sweep_that_cannot_be_meant_is_refused_before_anything_is_said(argumen
     assert not list(folder.iterdir())
 
 
-def test_the_time_of_many_runs(capsys):
+def test_the_time_of_many_runs():
     """20,000 times the time that `check` expects of one, four at a time."""
     scene = LOW.replace({"run.duration": 10.0})
-    announce_draws("Ensemble", scene, {"load.drag": "uniform(8e-18, 8.001e-18)"}, 20_000, 4)
-    found = re.search(r"20000 runs, .*; some ([\d.]+) min with 4 at a time", capsys.readouterr().out)
+    words = draw_words(scene, {"load.drag": "uniform(8e-18, 8.001e-18)"}, 20_000, 4)
+    found = re.search(r"20000 runs, .*; some ([\d.]+) min with 4 at a time", words)
     assert float(found[1]) == pytest.approx(5000 * gd.studies.run_time(scene).seconds / 60.0, rel=0.1)
 
 

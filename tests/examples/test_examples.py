@@ -23,6 +23,10 @@ ANSWERS = {
         set(),
     ),
     "how_worn_may_it_be": (r"4\.5e-18 N m: sticks at 0\.47 and below", {"worn.png"}),
+    "laboratory_record": (
+        r"drive torque: 4\.8e-18 \+- 1e-19 N m\nclear: 0\.66 of the monolayer(.|\n)*0\.66\d\)\nreport: worn\.html",
+        {"new.csv", "worn.csv", "worn.html"},
+    ),
     "long_run": (r"interrupted after \d+ samples(.|\n)*finished after 15001 samples", {"start_up.nc"}),
     "own_gears": (r"turns smoothly", {"own_gears.nc", "own_gears.toml"}),
     "read_with_dask": (r"SAM 1: a tooth leaves every 55\.\d ms", {"sweep.nc"}),

@@ -6,11 +6,15 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import gearidae as gd
+from gearidae.asperities.tip import asperity_of
 from gearidae.contact import line_force
+from gearidae.contact.psi import psi
 from gearidae.mesh.involute import curvature_radii
 from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
+from gearidae.runs.rubbing import flank_coefficient
 from gearidae.studies.equilibrium import natural_frequency
 
 LOW = gd.preset("teodorescu2009_low_speed")
@@ -34,6 +38,59 @@ def test_scheduled_torques_count_with_their_mean():
     assert natural_frequency(start_up) == pytest.approx(natural_frequency(constant), rel=1e-3, abs=0)
     loaded = HIGH.replace({"load.torque": 0.0, "load.schedule": [[0.0, 0.0], [1e-3, 6e-11]]})
     assert steady_speed(loaded) == pytest.approx(steady_speed(HIGH), rel=1e-3, abs=0)
+
+
+@pytest.mark.parametrize(("coefficient", "speed"), [(0.1, 2867.67), (0.3, 2805.45)])
+def test_steady_speed_with_friction_of_the_flanks(coefficient, speed):
+    """By a separate program, to the digits it printed."""
+    assert steady_speed(HIGH.replace({"contact.friction": coefficient})) == pytest.approx(speed, abs=5.1e-3)
+
+
+def test_steady_speed_with_friction_of_the_hubs():
+    """M2 = M1 (R2 - mu r_h2) / (R1 + mu r_h1); a drive that holds a speed gives the same torque at the same speed."""
+    hubs = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
+    ratio = (138.86 - 0.3 * 6) / (34.715 + 0.3 * 3)
+    wanted = math.sqrt((ratio * 2.43e-11 - 3e-11) / 8e-18)
+    assert steady_speed(HIGH.replace(hubs)) == pytest.approx(wanted, rel=1e-12, abs=0)
+    held = hubs | {
+        "drive.torque": 0.0,
+        "drive.speed": 4.0 * wanted + 2.43e-11 / 1e-14,
+        "drive.speed_gain": 1e-14,
+    }
+    assert steady_speed(HIGH.replace(held)) == pytest.approx(wanted, rel=1e-9, abs=0)
+
+
+def test_coefficients_of_two_materials_count_with_the_forces_that_they_carry():
+    """At one gap, by the readable force law; where both have the same, it is that."""
+    worn = HIGH.replace({"coating.sam_fraction": 0.3, "contact.friction": 0.4, "coating.friction": 0.1})
+    radius = float(curvature_radii(worn.geometry, worn.geometry.approach)[2])
+    coated, bare = (
+        share * float(line_force(resting_gap(worn), 0.0, radius, worn.gears.face_width, surface))
+        for share, surface in ((0.3, worn.coated_surface), (0.7, worn.surface))
+    )
+    wanted = (0.1 * coated + 0.4 * bare) / (coated + bare)
+    load = 2.43e-11 / worn.gears.pinion_base_radius
+    # the difference of large forces carries the load, see above
+    assert flank_coefficient(worn, load) == pytest.approx(wanted, rel=1e-5)
+    assert flank_coefficient(worn.replace({"coating.friction": 0.4}), load) == 0.4
+    assert flank_coefficient(HIGH, load) == 0.0
+
+
+def test_shear_strength_over_pressure():
+    """Strength times area over force: of asperities without adhesion, both integrals of powers of the overlap."""
+    scene = HIGH.replace(
+        {"contact.asperity": "hertz", "contact.friction_law": "shear", "contact.shear_strength": 1e7}
+    )
+    load, sigma, tip = 7e-7, 6e-9, asperity_of(scene.surface)
+    gap = resting_gap(scene) / sigma
+
+    def moment(power):
+        return quad(lambda x: x**power * psi(np.array(gap + x)), 0.0, 12.0, epsrel=1e-10)[0]
+
+    area = math.pi * tip.radius * sigma * moment(1.0)
+    force = tip.hertz_factor * sigma**1.5 * moment(1.5)
+    assert flank_coefficient(scene, load) == pytest.approx(1e7 * area / force, rel=1e-3)
+    assert math.isnan(flank_coefficient(scene, 0.0))
 
 
 def test_effective_mass():

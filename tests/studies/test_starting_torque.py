@@ -10,6 +10,7 @@ import pytest
 import gearidae as gd
 from gearidae.analysis import starting_torque, static_starting_torque
 from gearidae.contact import line_force
+from gearidae.mesh.friction import starting_ratio
 from gearidae.studies.equilibrium import pair_law
 from gearidae.studies.release import holding_forces
 
@@ -107,3 +108,39 @@ def test_wrong_settings_are_named():
     ):
         with pytest.raises(gd.SceneError, match=message):
             call()
+
+
+def test_static_torque_with_friction():
+    """Dry resistance alone: the ratio of the worst place; adhesion, too, is overcome through it."""
+    hertz = gd.preset("teodorescu2009").replace({"contact.asperity": "hertz"})
+    rubbing = hertz.replace(
+        {
+            "contact.friction": 0.3,
+            "gears.hub_friction": 0.3,
+            "gears.pinion_hub_radius": 3e-6,
+            "gears.gear_hub_radius": 6e-6,
+        }
+    )
+    ratio = starting_ratio(hertz.geometry, 0.3, 0.3, (3e-6, 6e-6))
+    assert static_starting_torque(hertz) == pytest.approx(3e-11 / 4, rel=1e-12, abs=0.0)
+    assert static_starting_torque(rubbing) == pytest.approx(3e-11 * ratio, rel=1e-12, abs=0.0)
+    assert ratio > 0.25 * 1.03  # 7.7955e-12 N m of the hubs alone, and the flanks
+    smooth = static_starting_torque(at(0.5))
+    rough = static_starting_torque(at(0.5, **{"contact.friction": 0.3}))
+    assert 4.0 * starting_ratio(SCENE.geometry, 0.3, 0.0, (0.0, 0.0)) * smooth < rough < 1.5 * smooth
+
+
+def test_simulated_torque_with_friction_is_between_the_hubs_and_the_worst_place():
+    """Inertia takes the gear past the worst places."""
+    scene = gd.preset("teodorescu2009").replace(
+        {
+            "contact.asperity": "hertz",
+            "contact.friction": 0.5,
+            "initial.gap": 2e-8,
+            "mesh.damping": 2e-5,
+            "drive.harmonic": None,
+        }
+    )
+    ds = starting_torque(scene, "own", impacts=1, tolerance=0.1)
+    simulated, static = ds.simulated_torque.item(), ds.static_torque.item()
+    assert 1.01 * 7.5e-12 < simulated <= 1.01 * static

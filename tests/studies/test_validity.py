@@ -232,3 +232,19 @@ def test_neither_numba_nor_the_engine_is_needed():
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
     )
     assert done.stdout.strip() == "[]"
+
+
+def test_friction_near_locking():
+    """The gear's teeth lock the pinion at 1.615; a hub at its base radius over its own radius."""
+    assert not {"locking_teeth", "locking_hubs"} & set(gd.studies.validity(HIGH).index)
+    hubs = {"gears.hub_friction": 0.5, "gears.gear_hub_radius": 6e-6}
+    rows = gd.studies.validity(HIGH.replace({"contact.friction": 0.3, **hubs}))
+    assert rows.number["locking_teeth"] == 0.3
+    assert rows.bound["locking_teeth"] == pytest.approx(0.5 * 1.615, rel=5e-4)
+    assert rows.holds["locking_teeth"]
+    assert rows.bound["locking_hubs"] == pytest.approx(0.5 * 138.86 / 6.0, rel=1e-9)
+    near = gd.studies.validity(HIGH.replace({"contact.friction": 1.4, "coating.friction": 1.2}))
+    assert near.number["locking_teeth"] == 1.2  # the coating covers all of it
+    assert not near.holds["locking_teeth"]
+    assert "near self-locking" in near.verdict["locking_teeth"]
+    assert "locking_hubs" not in near.index

@@ -106,7 +106,7 @@ class Assessment:
 
     @property
     def conclusive(self) -> bool:
-        """Whether the signal tells the fraction."""
+        """Whether the signal determines the fraction."""
         return self.verdict == "clear"
 
     def __str__(self) -> str:
@@ -143,7 +143,7 @@ def assess(
         Cut-off frequency of a low-pass filter before the sampling [Hz]. Without it, ringing above half the sampling
         rate may be in the record, at another frequency than its own.
     calibration : float or str, optional
-        Relative standard uncertainty of the speed that the sensor tells [1], or ``"4 %"``; at most 10 %.
+        Relative standard uncertainty of the measured speed [1], or ``"4 %"``; at most 10 %.
     offset : float or str, optional
         Standard uncertainty of the sensor's zero [rad/s], or with a unit.
     **reading

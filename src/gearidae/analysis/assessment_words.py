@@ -1,4 +1,4 @@
-"""What an assessment of the coating says: why a record tells nothing, and what it rests on where it tells."""
+"""Words of an assessment of the coating: why a record determines no fraction, and what the fraction rests on."""
 
 from __future__ import annotations
 

@@ -11,9 +11,9 @@ With :math:`x = \ln f`, a fraction :math:`\varphi` explains a record as well as
 is small. :math:`X_\varphi` interpolates the map, :math:`s_n` joins the measurement's uncertainty with that of the map,
 and c is an error that all impacts share. If the record begins with the map's start, :math:`n_0 = 0`. Otherwise
 :math:`n_0` is free: a worn contact is pressed deeper by each impact, from wherever it began, and it is the step from
-one impact to the next that tells the fraction.
+one impact to the next that determines the fraction.
 
-The torque :math:`\tau` is not known. The gear's speed :math:`\omega` tells it, since the low-speed steady state is
+The torque :math:`\tau` is not known. The gear's speed :math:`\omega` determines it, since the low-speed steady state is
 :math:`M_{10} = (R_1/R_2)\,\alpha\,\omega^2`: a map over torque is searched along :math:`\tau`, with :math:`u = 0`. A
 map at one torque has no :math:`\tau`; there u may lie anywhere between 0 and
 :math:`\tfrac12\ln(\tau/\tau_{\mathrm{map}}) = \ln(\omega/\Omega_\varphi)`, because the frequency goes with the torque

@@ -72,7 +72,7 @@ def impact_windows(
     Raises
     ------
     SceneError
-        If there is no gear speed, or nothing tells the impacts.
+        If there is no gear speed, or nothing determines the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
     found = [windows_of(each.forward(), check_width(width)) for each in batch.signals]
@@ -214,8 +214,8 @@ def unlike_pitch(signal: Signal) -> float:
         return 1.0
     spacing, score = bursts.best(1.0 - _FURTHEST, 1.0 + _FURTHEST)
     expected = bursts.best(1.0 - signal.calibration, 1.0 + signal.calibration)[1]
-    told = bursts.score(spacing)[2] >= _FEWEST_BURSTS and score > expected + _CLEARLY
-    return spacing if told else 1.0
+    evident = bursts.score(spacing)[2] >= _FEWEST_BURSTS and score > expected + _CLEARLY
+    return spacing if evident else 1.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,7 +97,7 @@ def characteristic_frequency(
     Raises
     ------
     SceneError
-        If there is no gear speed, or nothing tells the impacts.
+        If there is no gear speed, or nothing determines the impacts.
 
     Notes
     -----
@@ -158,7 +158,7 @@ def impact_frequencies(
     Raises
     ------
     SceneError
-        If there is no gear speed, or nothing tells the impacts.
+        If there is no gear speed, or nothing determines the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
     found = [rings_of(each.forward(), check_width(width)) for each in batch.signals]
@@ -208,7 +208,7 @@ def impact_spectrum(
     Raises
     ------
     SceneError
-        If there is no gear speed, or nothing tells the impacts.
+        If there is no gear speed, or nothing determines the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
     windows = [windows_of(each.forward(), check_width(width)) for each in batch.signals]

@@ -269,7 +269,7 @@ def _gear_teeth(attrs: Mapping[Any, Any]) -> int | None:
 def _exits_of(
     data: xr.Dataset | xr.DataArray, array: xr.DataArray, dims: tuple[str, ...]
 ) -> Callable[[tuple[int, ...]], Floats | None]:
-    """Return what tells the mesh exits of the run at a place among the swept dimensions."""
+    """Return the source of the mesh exits of the run at a place among the swept dimensions."""
     names = ("event_time", "event_kind", "event_flank")
     if not isinstance(data, xr.Dataset) or not all(name in data for name in names):
         return lambda _: None

@@ -87,7 +87,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
 
 
 def _asperities_digest(scene: Scene) -> dict[str, str]:
-    """Attribute that tells the asperities of a population from others."""
+    """Attribute that identifies the asperities of a population."""
     if scene.contact.model != "population":
         return {}
     return {"asperities_sha256": flanks_digest(flanks_of(scene))}

@@ -12,7 +12,7 @@ from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.records import Solution
 from gearidae.scene import Scene
 
-_YOUNGER: Final = ("drive_friction_loss", "coast_friction_loss", "pinion_hub_loss", "gear_hub_loss")
+FRICTION_LOSSES: Final = ("drive_friction_loss", "coast_friction_loss", "pinion_hub_loss", "gear_hub_loss")
 """Losses that older archives do not have, as there was no friction."""
 
 
@@ -56,7 +56,7 @@ def balance_of(ds: xr.Dataset) -> dict[str, float] | None:
     """
     if numbers := balance_in_attributes(ds):
         return {name: float(numbers.get(name, 0.0)) for name in ENERGY_BALANCE}
-    known = [name for name in ENERGY_BALANCE if name in ds.variables or name not in _YOUNGER]
+    known = [name for name in ENERGY_BALANCE if name in ds.variables or name not in FRICTION_LOSSES]
     if all(name in ds.variables and not ds[name].dims for name in known):
         found = dict.fromkeys(ENERGY_BALANCE, 0.0) | {name: float(ds[name]) for name in known}
         return None if any(map(math.isnan, found.values())) else found

@@ -1,4 +1,4 @@
-"""The account of a run: how long it took to speed, stood still and adhered, what forces it met, where energy went.
+"""Run summary: time to speed, times at rest and trapped by adhesion, largest force, and energies of one run.
 
 Read from a dataset of any length in pieces; it stands beside the other readers of datasets, because the report needs it
 as well as the runs do. Times at rest come from the stick and slip events and are as exact as these. Extremes, the time
@@ -18,12 +18,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.energy import balance_of
+from gearidae.archive.energy import FRICTION_LOSSES, balance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.arrays import Floats
 from gearidae.records import EventKind, Extremes
 from gearidae.scene import Scene
+from gearidae.scene.friction import has_flank_friction, has_hub_friction
 
 Read = Callable[[str, slice], NDArray[Any]]
 
@@ -32,7 +33,7 @@ PIECE = 2**18
 AT_SPEED = 0.95
 """Share of its largest sampled speed from which a gear counts as up to speed."""
 OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "time_at_rest", "impacts"})
-"""Rows of the account that begin with a run that goes on from another; everything else goes on over the chain."""
+"""Rows of the run summary that begin with a run that goes on from another; everything else goes on over the chain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +50,15 @@ class Account:
         Time of the first sample with `AT_SPEED` of the largest sampled speed. NaN without samples, and of a gear that
         never turns. An impact shorter than the interval between samples has no part in it.
     sticks, slips : int
-        How often dry resistance took hold of the gear, and gave way.
+        How often dry resistance, with friction in the gear's hub, took hold of the gear, and gave way.
     time_at_rest : float
-        Held at rest by dry resistance.
+        Held at rest by them, or by friction of two pairs of flanks.
     time_adhering : float
         Held by adhesion: turned back by teeth that cling to each other, again and again within half a pitch.
         Counted from one turning back to the next there, and to the end if the gear is there still.
     held_by : str
-        What holds the gear at the end: ``dry resistance``, ``adhesion``, or nothing.
+        What holds the gear at the end: ``dry resistance``, ``hub friction``, ``flank friction``, those that act
+        together joined by "and", ``adhesion``, or nothing.
     impacts : int
         Contacts made.
     largest_force, largest_force_time : float
@@ -65,6 +67,11 @@ class Account:
         Done by the torque on the pinion.
     drag_loss, dry_loss, damping_loss : float
         Taken by the drag and the dry resistance at the gear, and by the mesh's viscous damping.
+    friction_loss : float
+        Taken by friction of flanks and hubs.
+    efficiency : float
+        What drag and dry resistance at the gear have taken over all that has been lost; 1 without losses in mesh and
+        hubs. NaN where nothing has been lost.
     kinetic_change : float
         Kinetic energy of both gears at the end less that at the start.
     contact_loss : float
@@ -99,19 +106,21 @@ class Account:
     radius_work: float = math.nan
     model_change: float = math.nan
     residual_bound: float = math.nan
+    friction_loss: float = math.nan
+    efficiency: float = math.nan
 
     def as_plain(self) -> dict[str, Any]:
-        """Return the account as data fit for JSON, which has no NaN."""
+        """Return the run summary as data fit for JSON, which has no NaN."""
         plain = asdict(self)
         return {name: None if isinstance(v, float) and math.isnan(v) else v for name, v in plain.items()}
 
     def as_json(self) -> str:
-        """Return the account as the dataset's attribute ``account`` holds it."""
+        """Return the run summary as the dataset's attribute ``account`` holds it."""
         return json.dumps(self.as_plain(), allow_nan=False)
 
 
 def account(ds: xr.Dataset) -> Account | None:
-    """Give an account of a run.
+    """Summarise a run.
 
     Parameters
     ----------
@@ -144,7 +153,7 @@ def account(ds: xr.Dataset) -> Account | None:
 
 
 def counted_over(name: str, attributes: Mapping[Hashable, Any]) -> str:
-    """Say what a row of the account or of the energy balance is counted over; nothing of a run with its own beginning.
+    """Say what a row of the run summary or energy balance is counted over; nothing of a run with its own beginning.
 
     Parameters
     ----------
@@ -167,7 +176,7 @@ def account_of(
     balance: Mapping[str, float] | None = None,
     extremes: Extremes | None = None,
 ) -> Account:
-    """Give an account of a run that is kept anywhere.
+    """Summarise a run whose samples and events are stored anywhere.
 
     Parameters
     ----------
@@ -186,16 +195,15 @@ def account_of(
     """
     start, end = span
     incidents = _Events(scene, start)
-    for piece in _pieces(read, events, ("event_time", "event_kind")):
-        incidents.add(piece["event_time"], piece["event_kind"])
+    for piece in _pieces(read, events, ("event_time", "event_kind", "event_pair", "event_flank")):
+        incidents.add(*piece.values())
     top = last = math.nan
     for piece in _pieces(read, samples, ("time", "gear_speed")):
         top, last = float(np.fmax(top, piece["gear_speed"].max())), float(piece["time"][-1])
     found = extremes or Extremes()
     force, force_time = _largest_force(found)
-    at_rest, resting = incidents.rest(
-        max(end, incidents.time, np.nan_to_num(last)), still=found.final_speed == 0.0
-    )
+    still = found.final_speed == 0.0
+    at_rest, resting = incidents.rest(max(end, incidents.time, np.nan_to_num(last)), still=still)
     return Account(
         top_speed=found.max_gear_speed,
         time_to_speed=_time_to_speed(read, samples, top),
@@ -203,7 +211,7 @@ def account_of(
         slips=incidents.counts[EventKind.SLIP],
         time_at_rest=at_rest,
         time_adhering=found.time_adhering,
-        held_by="dry resistance" if resting else "adhesion" if found.turn_backs > 1 else "",
+        held_by=incidents.holds() if resting else "adhesion" if found.turn_backs > 1 else "",
         impacts=incidents.counts[EventKind.ONSET],
         largest_force=force,
         largest_force_time=force_time,
@@ -219,19 +227,27 @@ def _largest_force(extremes: Extremes) -> tuple[float, float]:
 
 
 def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
-    """Energies of the account from those of the energy balance; NaN without one."""
+    """Energies of the run summary from those of the energy balance; NaN without one."""
     own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
     parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
     if balance is None:
         return dict.fromkeys((*own, *parts, "contact_loss", "uncertainty"), math.nan)
+    friction = sum(balance[name] for name in FRICTION_LOSSES)
+    useful = balance["drag_loss"] + balance["dry_loss"]
+    lost = useful + balance["damping_loss"] + balance["adhesion_loss"] + friction
     energies = {name: balance[name] for name in (*own, *parts)}
     contact = balance["adhesion_loss"] + balance["stored_change"]
     contact -= balance["radius_work"] + balance["model_change"]
-    return energies | {"contact_loss": contact, "uncertainty": abs(balance["residual"])}
+    return energies | {
+        "contact_loss": contact,
+        "uncertainty": abs(balance["residual"]),
+        "friction_loss": friction,
+        "efficiency": useful / lost if lost > 0.0 else math.nan,
+    }
 
 
 def with_account(ds: xr.Dataset) -> xr.Dataset:
-    """Add the account of a run, if it has one, to its dataset's attributes."""
+    """Add the run summary, if there is one, to its dataset's attributes."""
     found = account(ds)
     return ds if found is None else ds.assign_attrs(account=found.as_json())
 
@@ -259,26 +275,53 @@ class _Events:
         assert scene.load is not None
         self.counts = dict.fromkeys(EventKind, 0)
         self._dry, self._start = scene.load.is_dry, start
+        self._hubs, self._rubs = has_hub_friction(scene), has_flank_friction(scene)
+        self._gear, self._flanks = False, set[tuple[int, int]]()  # what is held
         self._since: float | None = None  # when the gear came to rest
         self._total = 0.0
         self.time = 0.0  # of the last event
 
-    def add(self, time: Floats, kind: NDArray[np.int8]) -> None:
+    def add(self, time: Floats, kind: NDArray[np.int8], pair: NDArray[Any], flank: NDArray[Any]) -> None:
         self.time = float(time[-1])
         for one in EventKind:
             self.counts[one] += int(np.count_nonzero(kind == one))
-        for k in np.flatnonzero((kind == EventKind.STICK) | (kind == EventKind.SLIP)):
-            if kind[k] == EventKind.STICK:
-                self._since = float(time[k])
-            else:
-                # the first slip of a gear that was at rest from the start has no stick before it
-                self._total += float(time[k]) - (self._start if self._since is None else self._since)
-                self._since = None
+        wanted = [EventKind.STICK, EventKind.SLIP, EventKind.FLANK_STICK, EventKind.FLANK_SLIP]
+        if self.counts[EventKind.FLANK_STICK]:
+            wanted.append(EventKind.SEPARATION)
+        for k in np.flatnonzero(np.isin(kind, wanted)):
+            self._take(float(time[k]), kind[k], (int(pair[k]), int(flank[k])))
+
+    def _take(self, time: float, kind: int, where: tuple[int, int]) -> None:
+        if kind == EventKind.SLIP and self._since is None:
+            # the first slip of a gear that was at rest from the start has no stick before it
+            self._total += time - self._start
+        if kind in (EventKind.STICK, EventKind.SLIP):
+            self._gear = kind == EventKind.STICK
+        elif kind == EventKind.FLANK_STICK:
+            self._flanks.add(where)
+        else:
+            self._flanks.discard(where)
+        if self._gear or len(self._flanks) > 1:
+            self._since = time if self._since is None else self._since
+        elif self._since is not None:
+            self._total += time - self._since
+            self._since = None
 
     def rest(self, end: float, *, still: bool) -> tuple[float, bool]:
         """Time at rest, and whether it lasts; `still` says that the gear is exactly at rest at the end."""
         if self._since is not None:
             return self._total + end - self._since, True
-        if self._dry and still and not self.counts[EventKind.SLIP]:
+        rubs = self._hubs or self._rubs
+        moved = (EventKind.SLIP, EventKind.FLANK_STICK, EventKind.FLANK_SLIP, EventKind.SLIDING_REVERSAL)
+        if (self._dry or rubs) and still and not any(self.counts[one] for one in moved):
             return end - self._start, True
-        return self._total, False
+        return self._total, still and rubs
+
+    def holds(self) -> str:
+        """What holds a gear that rests at the end; of one that has never moved, what can."""
+        from_start = self._since is None
+        shaft = self._gear or from_start
+        held = ["dry resistance"] if shaft and self._dry else []
+        held += ["hub friction"] if shaft and self._hubs else []
+        held += ["flank friction"] if self._flanks or (from_start and self._rubs and not held) else []
+        return " and ".join(held)

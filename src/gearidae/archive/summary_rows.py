@@ -77,10 +77,14 @@ def _summary_rows(kept: dict[str, Any]) -> Iterator[tuple[str, Row]]:
     yield row("time_to_speed", "s", "first sample with 95 % of the largest")
     held = f"held by {kept['held_by']} at the end" if kept["held_by"] else ""
     times = "once" if kept["sticks"] == 1 else f"{kept['sticks']} times"
-    yield row("time_at_rest", "s", f"held by dry resistance, stuck {times}; {held}".rstrip("; "))
+    holder = "dry resistance or friction" if kept.get("friction_loss") else "dry resistance"
+    yield row("time_at_rest", "s", f"held by {holder}, stuck {times}; {held}".rstrip("; "))
     yield row("time_adhering", "s", "rocking within half a pitch")
     if kept["largest_force"] is not None:
         yield row("largest_force", "N", f"at {number('largest_force_time', 's')}")
+    if kept.get("friction_loss"):
+        share = f"{100.0 * kept['efficiency']:.4g} %"
+        yield "efficiency", ("efficiency", share, "drag and dry resistance over all losses")
 
 
 def _balance_rows(kept: dict[str, float]) -> Iterator[tuple[str, Row]]:

@@ -205,7 +205,7 @@ def assess(
         ),
     ] = None,
     calibration: Annotated[
-        str | None, Parameter(help="Relative uncertainty of the speed that the sensor tells. Default: 1.5 %.")
+        str | None, Parameter(help="Relative uncertainty of the measured speed. Default: 1.5 %.")
     ] = None,
     offset: Annotated[
         str | None, Parameter(help="Uncertainty of the sensor's zero, such as '0.06 rad/s'. Default: 0.")

@@ -17,6 +17,7 @@ from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
+from gearidae.scene.friction import has_flank_friction, has_hub_friction
 from gearidae.scene.validity_row import contact_subject, mean_note
 
 if TYPE_CHECKING:
@@ -99,6 +100,7 @@ def _estimates(scene: Scene) -> Rows:
         yield "gear speed", f"{speed:.5g} rad/s", f"{speed * 30 / math.pi:.4g} rpm"
         yield "mesh frequency", f"{speed * scene.gears.gear_teeth / (2 * math.pi):.5g} Hz", "teeth per second"
         yield "turns in the run", f"{speed * scene.run.duration / (2 * math.pi):.4g}", "of the gear"
+    yield from _friction(scene)
     yield "effective mass", f"{effective_mass(scene):.4g} kg", "of the transmission error"
     gap = resting_gap(scene)
     if not math.isnan(gap):
@@ -112,6 +114,31 @@ def _estimates(scene: Scene) -> Rows:
             "natural frequency",
             f"{natural_frequency(scene):.4g} Hz",
             "of small oscillations about the equilibrium gap",
+        )
+
+
+def _friction(scene: Scene) -> Rows:
+    from gearidae.mesh.friction import hub_share, hub_starting_torque
+    from gearidae.runs.estimates import mean_force
+    from gearidae.runs.rubbing import flank_loss, hub_radii
+
+    assert scene.gears is not None
+    assert scene.load is not None
+    geometry, coefficient, radii = scene.geometry, scene.gears.hub_friction, hub_radii(scene)
+    if has_flank_friction(scene):
+        loss = flank_loss(scene, mean_force(scene))
+        if math.isnan(loss):
+            yield "lost to flank friction", "unknown", "no mean torque presses the teeth together"
+        else:
+            yield "lost to flank friction", f"{100 * loss:.3g} %", "of the drive's work, at a constant force"
+    if has_hub_friction(scene):
+        lost = 1.0 - hub_share(geometry, coefficient, radii)
+        yield "lost to hub friction", f"{100 * lost:.3g} %", "of the drive's work"
+        start = hub_starting_torque(geometry, scene.load.torque, coefficient, radii)
+        yield (
+            "starting torque",
+            f"{start:.4g} N m",
+            "of the pinion: dry resistance and hubs, without the teeth",
         )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearidae.archive import check_target
-from gearidae.cli.output import is_quiet, say
+from gearidae.cli.output import say
 from gearidae.progress import in_words
 
 if TYPE_CHECKING:
@@ -19,8 +19,19 @@ _TRIED: Final = 8
 """Runs whose time is estimated."""
 
 
-def check_new(target: Path, *, resume: bool, overwrite: bool) -> None:
-    """Refuse a file that is in the way; where runs of an unfinished study are kept, the study says more.
+def begin(
+    title: str, scene: Scene, words: str, target: Path, *, resume: bool = False, overwrite: bool = False
+) -> None:
+    """Say what will be run, unless a file is in the way.
+
+    Where runs of an unfinished study are kept, the study itself says what to do with its file.
+
+    Parameters
+    ----------
+    title, words : str
+        What is made, and of which runs.
+    target : Path
+        File to be written.
 
     Raises
     ------
@@ -29,22 +40,17 @@ def check_new(target: Path, *, resume: bool, overwrite: bool) -> None:
     """
     if not resume and not Path(f"{target}.runs").exists():
         check_target(target, overwrite=overwrite)
+    if words:
+        say(f"{title} of {scene.name}: {words}")
 
 
-def announce(title: str, scene: Scene, words: str) -> None:
-    """Say what will be run."""
-    say(f"{title} of {scene.name}: {words}")
-
-
-def announce_grid(
-    title: str, scene: Scene, over: Mapping[str, Sequence[Any]], workers: int | None, *, zipped: bool = False
-) -> None:
+def grid_words(
+    scene: Scene, over: Mapping[str, Sequence[Any]], workers: int | None, *, zipped: bool = False
+) -> str:
     """Say how many runs there are over which values, and how long they take by the estimate of ``gearidae check``.
 
     Parameters
     ----------
-    title : str
-        What is made.
     scene : Scene
         What the runs have in common.
     over : mapping of str to sequence
@@ -63,16 +69,16 @@ def announce_grid(
 
     scenes = plan_sweep(scene, over, zipped=zipped).scenes
     ranges = " and ".join(f"{key} {_range(values)}" for key, values in over.items())
-    _announce_runs(title, ranges, scenes[:: -(-len(scenes) // _TRIED)], len(scenes), workers)
+    return _words(ranges, scenes[:: -(-len(scenes) // _TRIED)], len(scenes), workers)
 
 
-def announce_draws(title: str, scene: Scene, keys: Mapping[str, str], runs: int, workers: int | None) -> None:
+def draw_words(scene: Scene, keys: Mapping[str, str], runs: int, workers: int | None) -> str:
     """Say how many runs there are of which distributions, and how long they take.
 
     Parameters
     ----------
-    title, scene, workers
-        As for `announce_grid`.
+    scene, workers
+        As for `grid_words`.
     keys : mapping of str to str
         Distribution of each key.
     runs : int
@@ -84,19 +90,21 @@ def announce_draws(title: str, scene: Scene, keys: Mapping[str, str], runs: int,
         If a key or a distribution is not allowed.
     """
     from gearidae.studies.distributions import read_distributions
+    from gearidae.studies.seeds import without_seeds
 
-    drawn = read_distributions(scene, keys)
+    own = without_seeds(scene, keys)
+    drawn = read_distributions(scene, own) if own or own is keys else ()
     quantiles = (np.arange(_TRIED) + 0.5) / _TRIED
     columns = {each.key: each.quantiles(quantiles).tolist() for each in drawn}
     scenes = [
         scene.replace(dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)
     ]
-    _announce_runs(title, " and ".join(f"{key} {text}" for key, text in keys.items()), scenes, runs, workers)
+    return _words(
+        " and ".join(f"{key} {text}" for key, text in keys.items()), scenes or [scene], runs, workers
+    )
 
 
-def _announce_runs(title: str, over: str, tried: Sequence[Scene], runs: int, workers: int | None) -> None:
-    if is_quiet():
-        return
+def _words(over: str, tried: Sequence[Scene], runs: int, workers: int | None) -> str:
     from gearidae.runs.run_time import run_time
 
     at_a_time = min(workers or 1, runs)
@@ -105,7 +113,7 @@ def _announce_runs(title: str, over: str, tried: Sequence[Scene], runs: int, wor
     if seconds >= 1.0:
         side_by_side = f" with {at_a_time} at a time" if at_a_time > 1 else ""
         long = f"some {in_words(seconds)}{side_by_side}, within a factor of about three"
-    announce(title, tried[0], f"{many}, {over}; {long}")
+    return f"{many}, {over}; {long}"
 
 
 def _range(values: Sequence[Any]) -> str:

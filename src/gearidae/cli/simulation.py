@@ -11,7 +11,7 @@ from gearidae.archive.select import run_value, runs
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
-from gearidae.cli.outset import announce_grid, check_new
+from gearidae.cli.outset import begin, grid_words
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
 from gearidae.cli.values import default_output, sweep_values
 from gearidae.errors import SceneError, SolverError
@@ -125,8 +125,8 @@ def sweep_case(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    check_new(target, resume=resume, overwrite=overwrite)
-    announce_grid("Sweep", scene, values, workers if dask is None else None, zipped=zipped)
+    words = grid_words(scene, values, workers if dask is None else None, zipped=zipped)
+    begin("Sweep", scene, words, target, resume=resume, overwrite=overwrite)
     with dask_executor(dask) as executor:
         ds = gd.sweep(
             scene,

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
+from gearidae.archive.specimen import SEED
 from gearidae.cli.case import check_dask, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
-from gearidae.cli.outset import announce, announce_draws, announce_grid, check_new
+from gearidae.cli.outset import begin, draw_words, grid_words
 from gearidae.cli.request import Request
 from gearidae.cli.tables import name_failures
 from gearidae.cli.values import assignments, default_output, quantity, sweep_values, texts
@@ -36,7 +37,7 @@ def conduct(
     *arguments: Any,
     keys: Mapping[str, Any] | Sequence[str] = (),
     members: int = 0,
-    outset: Callable[[Scene, int | None], None] | None = None,
+    outset: Callable[[Scene, int | None], str] | None = None,
     **options: Any,
 ) -> int:
     """Conduct a study of a case, keep it, show what it has found.
@@ -69,9 +70,8 @@ def conduct(
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
-    check_new(target, resume=request.resume, overwrite=request.overwrite)
-    if outset is not None:
-        outset(scene, workers if request.dask is None else None)
+    words = "" if outset is None else outset(scene, workers if request.dask is None else None)
+    begin(title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
     with request.executor(keys, members) as executor:
         ds = study(
             scene,
@@ -120,9 +120,7 @@ def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
         key,
         (ends[0], ends[1]),
         exits,
-        outset=lambda scene, _: announce(
-            "Threshold", scene, f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits"
-        ),
+        outset=lambda *_: f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits",
     )
 
 
@@ -164,7 +162,7 @@ def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
         "Operating map",
         gd.studies.operating_map,
         values,
-        outset=lambda scene, workers: announce_grid("Operating map", scene, values, workers),
+        outset=lambda scene, workers: grid_words(scene, values, workers),
     )
 
 
@@ -186,7 +184,8 @@ def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any)
     keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
     size, of = drawn["size"], drawn.get("of")
     check_design(size, drawn["design"], drawn["seed"], indices=of is not None)
-    runs = size if of is None else size * (len(keys) + 2)  # the matrices of the Sobol' indices
+    drawn_keys = [key for key in keys if key != SEED]
+    runs = size if of is None else size * (len(drawn_keys) + 2)  # the matrices of the Sobol' indices
     drawn |= {"keys": keys, "members": size}
     return conduct(
         case,
@@ -195,7 +194,7 @@ def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any)
         "Ensemble",
         gd.studies.ensemble,
         keys,
-        outset=lambda scene, workers: announce_draws("Ensemble", scene, keys, runs, workers),
+        outset=lambda scene, workers: draw_words(scene, keys, runs, workers),
         **drawn,
     )
 

@@ -1,4 +1,4 @@
-"""One gear pair: the geometry of the mesh and the torques on it, on plain numbers in SI units."""
+"""One gear pair: geometry of the mesh, and its friction in closed form (`friction`), on plain numbers in SI units."""
 
 from gearidae.mesh.involute import (
     Geometry,

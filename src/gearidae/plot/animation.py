@@ -35,7 +35,7 @@ def animate_teeth(
     ds : xarray.Dataset
         One run of a gear pair; from a sweep, one selected with ``sel``.
     path : path-like
-        File to write; its ending tells the format: gif or webp, or mp4 or webm where ffmpeg is installed.
+        File to write; its extension determines the format: gif or webp, or mp4 or webm where ffmpeg is installed.
     start, stop : float, optional
         First and last time [s]; by default the whole record.
     frames : int, optional

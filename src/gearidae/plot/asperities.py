@@ -3,7 +3,7 @@
 The model puts the roughness of both flanks on one, and knows of its asperities density, tip radius and the
 distribution of their heights; the single asperities drawn are a sample of these. Which of a sample would be pressed,
 stretched or free follows from the gap and the joined height. A population's asperities are drawn as they are, all that
-stand side by side across the face width; a record tells which of them are joined.
+stand side by side across the face width; the archive determines which of them are joined.
 """
 
 from __future__ import annotations

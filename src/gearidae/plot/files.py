@@ -28,7 +28,7 @@ def write(
     figure : matplotlib Figure
         From one of the functions of `gearidae.plot` (``ax.figure`` for those that return axes).
     path : path-like
-        File to write; its ending tells the format (png, pdf, svg and whatever else matplotlib knows).
+        File to write; its extension determines the format (png, pdf, svg and whatever else matplotlib knows).
     overwrite : bool, optional
         Whether a file that is there may be replaced.
     dpi : float, optional

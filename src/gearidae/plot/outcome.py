@@ -23,7 +23,7 @@ from gearidae.plot.style import new_axes, scale_for, scaled, tidy
 
 @dataclass(frozen=True, slots=True)
 class _Look:
-    """How a verdict looks: colour, marker of a run, hatch of a field; each tells it without the others."""
+    """How a verdict looks: colour, marker of a run, hatch of a field; each identifies it without the others."""
 
     colour: str
     marker: str

@@ -93,7 +93,7 @@ def _factor(values: Floats, places: Floats) -> float:
 
 
 def _cells(ds: xr.Dataset, names: list[str], axes: list[_Key]) -> Callable[[list[int]], Floats]:
-    """Make what tells the share of the posterior in the cells of one or two keys."""
+    """Make a function that returns the share of the posterior in the cells of one or two keys."""
 
     def of_grid(chosen: list[int]) -> Floats:
         kept = [names[number] for number in chosen]

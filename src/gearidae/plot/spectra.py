@@ -111,7 +111,7 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     rings = [] if drive else sorted({ring for run in shown for ring in _rings(run)})
     lines = [line for line in (mesh, *drive) if line > 0.0]
     wide = bool(rings and lines) and rings[-1] > _MULTIPLES * max(lines)
-    # one segment: the lines stand still, and resolution tells them apart; zeros draw their shape instead of a zigzag
+    # one segment: the lines stand still, and the resolution separates them; zeros draw their shape instead of a zigzag
     for run in shown:
         part = _settled(run, START_UP if wide else _SETTLED)
         density = analysis.power_spectrum(

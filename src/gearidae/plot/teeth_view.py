@@ -79,7 +79,7 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
 
 
 def mesh_states(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
-    """Return what the pairs of teeth did at some times, as `gearidae.analysis.tooth_contacts` tells it.
+    """Return the states of the pairs of teeth at some times, from `gearidae.analysis.tooth_contacts`.
 
     The force law and what is compiled of it are loaded only here: the other pictures do without.
     """

@@ -19,7 +19,7 @@
   const slider = element("input", controls, "", { type: "range", min: 0, max: STEPS, step: 1, value: 0 });
   slider.setAttribute("aria-label", "passages of each tooth of the pinion");
   button("›", "next step", () => show(Math.min(...data.passages.filter((each) => each > at + 1e-9 * end), data.passages[last])));
-  const told = element("output", root, "");
+  const reading = element("output", root, "");
   const curves = sheet("Coverage (left) and frequency of the impact response (right) over passages");
   const flanks = tables.map((_, side) => sheet("Coverage of the " + data.sides[side] + " along the path of contact" + (data.teeth > 1 ? ", by tooth of the pinion" : "")));
 
@@ -62,8 +62,8 @@
       const rings = data.frequency && value(data.frequency, where);
       if (rings) words.push("rings at " + quantity(rings, "Hz"));
     }
-    told.textContent = Number(at.toPrecision(3)).toExponential() + " passages: " + words.join(", ");
-    slider.setAttribute("aria-valuetext", told.textContent);
+    reading.textContent = Number(at.toPrecision(3)).toExponential() + " passages: " + words.join(", ");
+    slider.setAttribute("aria-valuetext", reading.textContent);
     draw();
   }
 

@@ -71,7 +71,9 @@ def answer_tables(rows: Sequence[tuple[str, str, str]]) -> str:
         else:
             tables[-1][1].append(row)
     return "\n".join(
-        html.table(("", "value", ""), listed, caption=caption) for caption, listed in tables if listed
+        html.table(("quantity", "value", "remark"), listed, caption=caption)
+        for caption, listed in tables
+        if listed
     )
 
 

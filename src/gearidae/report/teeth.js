@@ -222,13 +222,13 @@
     pen.setLineDash([]);
     pen.beginPath(); pen.moveTo(width / 2, y(0)); pen.lineTo(width / 2, y(pair.gap)); pen.stroke();
     const factor = (height / (top + BELOW * sigma)) / (width / (2 * half));
-    box.caption.textContent = told(pair).join("; ");
+    box.caption.textContent = wordsOf(pair).join("; ");
     box.scale.textContent = quantity(2 * half, "m", 3) + " across; heights × " + factor.toPrecision(2);
   }
 
-  function told(pair) {
+  function wordsOf(pair) {
     const words = ["Pair " + pair.number + ", " + (pair.flank === COAST ? "coast" : "drive") + " flank: gap " + quantity(pair.gap, "m")];
-    if (!Number.isFinite(pair.force)) words.push("force not told by the record");
+    if (!Number.isFinite(pair.force)) words.push("force not recoverable from the archive");
     else words.push(pair.force === 0 ? "no force" : (pair.force > 0 ? "pushes with " : "pulls with ") + quantity(Math.abs(pair.force), "N"));
     const parts = [["bare", pair.bare], ["monolayer", pair.coated], ["monolayer on bare", pair.mixed]].filter((part) => !Number.isNaN(part[1]));
     const same = parts.every((part) => part[1] === parts[0][1]);

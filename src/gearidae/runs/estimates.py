@@ -11,6 +11,7 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.pair_contact import PairContact, pair_contact
+from gearidae.runs.rubbing import transmitted_share
 from gearidae.scene import Drive, Gears, Load, Scene
 
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
@@ -45,7 +46,7 @@ def rest_of(scene: Scene, error: float = 1e-12) -> Rest:
         roller = scene.roller
         gap = contact.closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
         return Rest(contact, gap, math.nan if math.isnan(gap) else float(contact.force(gap)), roller.mass)
-    load = mean_drive_torque(scene) / _tables(scene)[0].pinion_base_radius
+    load = mean_force(scene)
     return Rest(contact, contact.resting_gap(load, error), load, effective_mass(scene))
 
 
@@ -86,8 +87,9 @@ def steady_speed(scene: Scene) -> float:
     float
         w2 of ``(M1 + g (w - w2 R2/R1)) R2/R1 = M2 + c w2 + alpha w2^2`` [rad/s], with the constants and the means of
         the schedules as torques M1 and M2, the viscous drag c and a drive that holds the mean speed w with the gain g;
-        0 if the drive does not overcome the dry resistance, infinite if nothing slows the gear down. Harmonics and
-        laws are left out. (Teodorescu et al. 2009, Eq. 3, prints the ratio upside down.)
+        0 if the drive does not overcome the dry resistance, infinite if nothing slows the gear down. Friction leaves
+        the gear `transmitted_share` of the left side. Harmonics and laws are left out. (Teodorescu et al. 2009, Eq. 3,
+        prints the ratio upside down.)
 
     Raises
     ------
@@ -100,13 +102,17 @@ def steady_speed(scene: Scene) -> float:
 
 def balanced_speed(scene: Scene, torque: float) -> float:
     """Speed of the gear [rad/s] at which a constant torque of the pinion [N m] is balanced, see `steady_speed`."""
+    return _balance(scene, torque, transmitted_share(scene, mean_force(scene)))
+
+
+def _balance(scene: Scene, torque: float, transmitted: float) -> float:
     gears, drive, load = _tables(scene)
     ratio = gears.gear_teeth / gears.pinion_teeth
     held = _mean_size(_over_run(scene, 0.0, drive.speed_knots()))
-    surplus = (torque + drive.speed_gain * held) * ratio - _mean_resistance(scene)
+    surplus = (torque + drive.speed_gain * held) * ratio * transmitted - _mean_resistance(scene)
     if surplus <= 0.0:
         return 0.0
-    linear = load.viscous + drive.speed_gain * ratio**2
+    linear = load.viscous + drive.speed_gain * ratio**2 * transmitted
     slowing = linear + math.sqrt(linear**2 + 4.0 * load.drag * surplus)
     return 2.0 * surplus / slowing if slowing > 0.0 else math.inf
 
@@ -169,7 +175,8 @@ def mean_drive_torque(scene: Scene) -> float:
     -------
     float
         Mean over ``run.duration`` of the size of the constant part plus the schedule [N m]; of a drive that holds a
-        speed, what the load takes at that speed; of one with a law, at least what the load takes at the initial speed.
+        speed, what the load takes at that speed without friction; of one with a law, at least what the load takes at
+        the initial speed.
 
     Raises
     ------
@@ -181,10 +188,15 @@ def mean_drive_torque(scene: Scene) -> float:
     if drive.speed is None and drive.law is None:
         return mean
     assert scene.initial is not None
-    speed = abs(scene.initial.gear_speed) if drive.speed is None else balanced_speed(scene, mean)
+    speed = abs(scene.initial.gear_speed) if drive.speed is None else _balance(scene, mean, 1.0)
     resistance = _mean_resistance(scene) + speed * (load.viscous + load.drag * speed)
     taken = resistance * gears.pinion_teeth / gears.gear_teeth
     return taken if drive.law is None else max(mean, taken)
+
+
+def mean_force(scene: Scene) -> float:
+    """Force of the teeth [N] under the `mean_drive_torque`."""
+    return mean_drive_torque(scene) / _tables(scene)[0].pinion_base_radius
 
 
 def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:

@@ -18,7 +18,7 @@ from gearidae.arrays import Floats
 from gearidae.asperities import law_of
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.attraction import attraction_force
-from gearidae.contact.line import line_force
+from gearidae.contact.line import line_area, line_force
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 
@@ -70,10 +70,8 @@ class PairContact:
     def force(self, gap: ArrayLike, stretch: ArrayLike = 0.0) -> Floats:
         """Force without bulk deflection [N] at gaps and stretches beyond joining [m], positive pushes apart."""
         total: Floats = np.zeros(np.broadcast_shapes(np.shape(gap), np.shape(stretch)))
-        for surface, share, offset, _ in self.parts:
-            stretched = np.asarray(stretch) + law_of(self.law, surface).join * surface.roughness
-            own_gap = np.asarray(gap) + offset
-            total = total + share * line_force(own_gap, stretched, self.radius, self.width, surface, self.law)
+        for part in self.parts:
+            total = total + self._part_force(part, gap, stretch)
         return total + self.attraction(gap) if self.attracts else total
 
     @property
@@ -89,6 +87,24 @@ class PairContact:
             own_gap = np.asarray(gap) + offset
             total = total + share * attraction_force(own_gap, self.radius, self.width, constant)
         return total
+
+    def part_forces(self, gap: float) -> list[float]:
+        """Forces of the parts [N] at a gap [m] of approaching flanks."""
+        return [float(self._part_force(part, gap, 0.0)) for part in self.parts]
+
+    def part_areas(self, gap: float) -> list[float]:
+        """Contact areas of the parts [m^2] at a gap [m] of approaching flanks, of a law that has one."""
+        return [
+            part.share
+            * float(line_area(gap + part.gap_offset, 0.0, self.radius, self.width, part.surface, self.law))
+            for part in self.parts
+        ]
+
+    def _part_force(self, part: Material, gap: ArrayLike, stretch: ArrayLike) -> Floats:
+        surface, law = part.surface, self.law
+        stretched = np.asarray(stretch) + law_of(law, surface).join * surface.roughness
+        own_gap = np.asarray(gap) + part.gap_offset
+        return part.share * line_force(own_gap, stretched, self.radius, self.width, surface, law)
 
     def resting_gap(self, load: float, error: float = 1e-12) -> float:
         """Outermost gap at which approaching flanks carry a load.

@@ -30,6 +30,7 @@ from gearidae.contact.surroundings import (
     thermal_amplitude,
 )
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
+from gearidae.runs.locking import locking_rows
 from gearidae.runs.pair_contact import PairContact
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
@@ -117,7 +118,7 @@ def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
         rows += [
             _attraction(scene, rest, behind, "attraction_behind", "attraction across the backlash behind")
         ]
-        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene)]
+        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene), *locking_rows(scene)]
     return tuple(rows)
 
 

@@ -167,12 +167,12 @@ def check_asperities(scene: Scene) -> None:
     contact, listed = scene.contact, scene.contact.asperities
     if not listed:
         return
-    key, told = "contact.asperities", f"({len(listed)} asperities)"
+    key, listing = "contact.asperities", f"({len(listed)} asperities)"
     if contact.model != "population":
-        raise SceneError(key, told, 'needs contact.model = "population"')
+        raise SceneError(key, listing, 'needs contact.model = "population"')
     along = "arc" if scene.roller is None else "x"
     if listed.along != along:
-        raise SceneError(key, told, f"must have the column {along} in place of {listed.along}")
+        raise SceneError(key, listing, f"must have the column {along} in place of {listed.along}")
     if contact.radius_spread != 0.0:
         raise SceneError(
             "contact.radius_spread",

@@ -40,7 +40,7 @@ def load_case(path: str | os.PathLike[str]) -> Scene:
         raise SceneError("case file", shorten(os.fspath(path)), f"is not TOML: {error}") from error
     if not data:
         raise SceneError("case file", shorten(os.fspath(path)), "is empty")
-    data.pop("$schema", None)  # tells editors where the schema of case files is
+    data.pop("$schema", None)  # for editors: where the schema of case files is
     data.setdefault("name", _stem(path))
     _find_files(data, Path(path).parent)
     return Scene.from_dict(data)

@@ -158,7 +158,7 @@ def value_text(key: str, value: object) -> str:
     Parameters
     ----------
     key : str
-        Dotted key, which tells the unit.
+        Dotted key, which determines the unit.
     value : object
         In SI.
     """

@@ -16,7 +16,7 @@ MOST_TABLES: Final = 1_000
 MOST_KNOTS: Final = 100_000
 """Knots of one schedule: the solver starts anew at each."""
 CLOSEST_KNOTS: Final = 1e-12
-"""Least distance of two knots over the time of the later: SUNDIALS tells times apart to 100 roundings, 2e-14, and
+"""Least distance of two knots over the time of the later: SUNDIALS distinguishes times to 100 roundings, 2e-14, and
 takes steps between the two."""
 
 

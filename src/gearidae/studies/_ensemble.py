@@ -23,7 +23,7 @@ from gearidae.studies.design import Design, check_design, pick_freeze_design, pl
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.indices import Indices, indices_of
 from gearidae.studies.members import along_members, member_plan, names_of
-from gearidae.studies.seeds import NO_INDEX, SEEDS, numbers_seeds, seed_numbers
+from gearidae.studies.seeds import NO_INDEX, SEEDS, seed_numbers, without_seeds
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -102,8 +102,8 @@ def ensemble(
     base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
-    seeded = numbers_seeds(base, vary)
-    own = {key: given for key, given in vary.items() if key != SEED} if seeded else vary
+    own = without_seeds(base, vary)
+    seeded = own is not vary
     if seeded and of is not None and not own:
         raise SceneError("of", of, f"needs keys beside {SEED}, which has no index")
     distributions = read_distributions(base, own) if own or not seeded else ()

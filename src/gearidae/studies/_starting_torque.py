@@ -18,9 +18,12 @@ from scipy.optimize import brentq
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError, SolverError
+from gearidae.mesh.friction import hub_starting_torque, starting_ratio
 from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.runs.estimates import mean_force
 from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.rubbing import flank_coefficient, hub_radii
 from gearidae.runs.running import prepare, solve_to_end, unsolved
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.products import open_product
@@ -60,8 +63,10 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     -------
     float
         Torque on the pinion [N m]: the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
-        `gearidae.studies.release`. What the dry resistance takes (0 without one) if adhesion does not hold the gear
-        even at the lowest torque; infinite if it does at any.
+        `gearidae.studies.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20)`` with the ratio i of
+        `gearidae.mesh.friction.starting_ratio`, friction of the flanks being that under the scene's own torque. What
+        the dry resistance takes (0 without one) if adhesion does not hold the gear even at the lowest torque; infinite
+        if it does at any.
 
     Raises
     ------
@@ -69,12 +74,13 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
         If the scene has no gears, or a setting is not allowed.
     """
     _require(scene, impacts)
-    dry, lowest = _dry(scene), _lowest(scene, lowest)
-    pinion = scene.geometry.base_radius_pinion
+    assert scene.load is not None
+    lowest, ratio, geometry = _lowest(scene, lowest), _ratio(scene), scene.geometry
+    dry, lever = scene.load.torque * ratio, geometry.base_radius_gear * ratio
 
     def surplus(logarithm: float) -> float:
-        adhesion = max(holding_forces(scene, (dry + math.exp(logarithm)) / pinion, impacts)) * pinion
-        return math.exp(logarithm) - adhesion
+        force = (dry + math.exp(logarithm)) / geometry.base_radius_pinion
+        return math.exp(logarithm) - max(holding_forces(scene, force, impacts)) * lever
 
     low = math.log(lowest)
     if surplus(low) > 0.0:
@@ -341,10 +347,19 @@ def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, st
 
 
 def _dry(scene: Scene) -> float:
-    """Drive torque that the dry resistance takes [N m]: ``M20 R1/R2``."""
+    """Drive torque that the dry resistance takes [N m] with the hubs, without friction of the flanks."""
     assert scene.load is not None
-    geometry = scene.geometry
-    return scene.load.torque * geometry.base_radius_pinion / geometry.base_radius_gear
+    assert scene.gears is not None
+    gears, radii = scene.gears, hub_radii(scene)
+    return hub_starting_torque(scene.geometry, scene.load.torque, gears.hub_friction, radii)
+
+
+def _ratio(scene: Scene) -> float:
+    """Torque of the pinion over the resistance of the gear that it overcomes: R1/R2, and more with friction."""
+    assert scene.gears is not None
+    coefficient = flank_coefficient(scene, mean_force(scene))
+    coefficient = 0.0 if math.isnan(coefficient) else coefficient
+    return starting_ratio(scene.geometry, coefficient, scene.gears.hub_friction, hub_radii(scene))
 
 
 def _lowest(scene: Scene, given: float | None) -> float:

@@ -147,8 +147,14 @@ def _ensemble_rows(ds: xr.Dataset) -> Rows:
     for name in FIGURES:
         if name in ds and np.isfinite(ds[name]).any():
             low, middle, high = np.nanquantile(ds[name].values, (0.05, 0.5, 0.95))
-            unit = str(ds[name].attrs["units"])
-            yield name, f"{middle:.4g} {unit}", f"90 % between {low:.4g} and {high:.4g}"
+            low, middle, high = (
+                _in_words(value, str(ds[name].attrs["units"])) for value in (low, middle, high)
+            )
+            yield name.replace("_", " "), middle, f"90 % between {low} and {high}"
+
+
+def _in_words(value: float, unit: str) -> str:
+    return f"{value:.4g} rad/s" if unit == "rad s-1" else with_prefix(value, unit, 4)
 
 
 def _uncertain(one: xr.Dataset, name: str) -> str:

@@ -24,8 +24,8 @@ NO_INDEX: Final = (
 )
 
 
-def numbers_seeds(scene: Scene, vary: Mapping[str, Any]) -> bool:
-    """Whether the members of an ensemble have seeds of their own.
+def without_seeds(scene: Scene, vary: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the keys of an ensemble that have distributions: all but the seed, which is numbered.
 
     Raises
     ------
@@ -33,14 +33,14 @@ def numbers_seeds(scene: Scene, vary: Mapping[str, Any]) -> bool:
         If the seed is given a distribution, or the scene has no population.
     """
     if not isinstance(vary, Mapping) or SEED not in vary:
-        return False
+        return vary
     given = vary[SEED]
     if given != SEEDS:
         allowed = f'must be "{SEEDS}": the seeds of the members are numbered from the scene\'s own on'
         raise SceneError(SEED, shorten(given), allowed)
     if scene.contact.model != "population":
         raise SceneError(SEED, given, 'needs contact.model = "population": other models draw nothing')
-    return True
+    return {key: text for key, text in vary.items() if key != SEED}
 
 
 def seed_numbers(scene: Scene, drawn: Design) -> NDArray[np.int64]:

@@ -137,7 +137,8 @@ class MeasuredSurface:
         Returns
         -------
         str
-            Table ``[surface]`` of a case file, without the keys that no height map tells (modulus, surface energy).
+            Table ``[surface]`` of a case file, without the keys that no height map determines
+            (modulus, surface energy).
 
         Raises
         ------

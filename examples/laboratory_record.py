@@ -1,0 +1,48 @@
+"""What does the record of a laboratory say about the drive and the coating of its gears?
+
+Four steps: read the files of the logger, calibrate the drive torque with a record of new gears, assess the coating from
+a record of worn gears, and write a report of the run that explains it.
+"""
+
+import numpy as np
+
+import gearidae as gd
+
+scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "150 ms", "run.samples": 15001})
+
+
+def log(name: str, **state: float) -> None:
+    """Write what a logger would have written: here a simulated speed with noise, in its own units and headings."""
+    run = gd.simulate(scene.replace({"drive.torque": 4.8e-18, **state}))
+    speed = run.gear_speed.values + np.random.default_rng(1).normal(0.0, 5e-3, run.sizes["time"])
+    table = np.column_stack([1e3 * run.time.values, 30.0 / np.pi * speed])
+    np.savetxt(name, table, delimiter=";", header="Time [ms];Gear [1/min]", comments="")
+
+
+log("new.csv")
+log("worn.csv", **{"coating.sam_fraction": 0.66})
+
+# 1. Read: units and separators are recognised, the dataset is in SI units.
+columns = ("Time [ms]", "Gear [1/min]")
+new = gd.analysis.read_signal("new.csv", columns=columns)
+steady = new.gear_speed.where(new.time > 0.05, drop=True)
+
+# 2. Calibrate: the steady speed of new gears gives the drive torque; the sensor is good to 1 %.
+seen = gd.studies.Observation(
+    of=gd.studies.steady_speed, value=float(steady.mean()), uncertainty=0.01 * float(steady.mean())
+)
+known = gd.studies.calibrate(scene, {"drive.torque": "uniform(4e-18, 6e-18)"}, [seen])
+torque = known.sel(parameter="drive.torque")
+print(f"drive torque: {float(torque['mean']):.3g} +- {float(torque.standard_deviation):.1g} N m")
+scene = scene.replace({"drive.torque": float(torque["mean"])})
+
+# 3. Assess: the ringing of the worn gears, compared with a map at that torque.
+chart = gd.analysis.coating_map(scene, np.round(np.arange(1.0, 0.555, -0.04), 4))
+found = gd.analysis.assess("worn.csv", chart, columns=columns)
+print(
+    f"{found.verdict}: {found.sam_fraction:.2f} of the monolayer is left ({found.low:.3f} to {found.high:.3f})"
+)
+
+# 4. Report: the run with this torque and coating, as one page.
+run = gd.simulate(scene.replace({"name": "worn_gears", "coating.sam_fraction": float(found.sam_fraction)}))
+print(f"report: {gd.write_report(run, 'worn.html', overwrite=True)}")
