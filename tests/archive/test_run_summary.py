@@ -16,6 +16,8 @@ from gearidae.archive import run_summary as account_module
 from gearidae.archive.end_state import end_state_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.run_summary import account
+from gearidae.archive.summary_rows import summary_rows
+from gearidae.scene.prefixes import with_prefix
 from reference.sampled_work import SampledWork
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -231,6 +233,10 @@ def test_what_friction_takes_and_holds():
     assert told.held_by == "dry resistance and flank friction"
     speed = ds.gear_speed.values
     assert told.time_at_rest == pytest.approx((speed == 0.0).mean() * 40e-6, abs=2e-7)
+    rows = {name: (value, remark) for name, value, remark in summary_rows(ds)}
+    assert rows["efficiency"][0] == f"{100.0 * told.efficiency:.4g} %"
+    assert "held by dry resistance and flank friction at the end" in rows["time at rest"][1]
+    assert rows["drive friction loss"][0] == with_prefix(told.friction_loss, "J", 5)
     assert 0.0 < told.friction_loss == kept["drive_friction_loss"] + kept["coast_friction_loss"]
     lost = told.drag_loss + told.dry_loss + told.damping_loss + told.adhesion_loss + told.friction_loss
     assert told.efficiency == pytest.approx((told.drag_loss + told.dry_loss) / lost, rel=1e-12)

@@ -80,7 +80,8 @@ def test_all_are_called_in_order(calls):
 
 
 @pytest.mark.parametrize(
-    ("balance", "exposures", "gone"), [(0, 0, {"joining", "rubbing", "balance", "exposures"}), (1, 0, {"exposures"})]
+    ("balance", "exposures", "gone"),
+    [(0, 0, {"joining", "rubbing", "balance", "exposures"}), (1, 0, {"exposures"})],
 )
 def test_what_is_not_wanted_is_not_called(calls, balance, exposures, gone):
     follow(balance, exposures)

@@ -11,7 +11,8 @@ from gearidae.engine.followers.exposures.bins import ROWS
 from gearidae.records import EventKind
 from gearidae.scene import preset
 from reference.population import NUMBERS
-from reference.rubbing import ListedAsperities, MeanLaw, RubbingGears, constraint, jkr, least_constraint
+from reference.rubbing import RubbingGears, constraint, least_constraint
+from reference.rubbing_contacts import ListedAsperities, MeanLaw, jkr
 
 HIGH = preset("teodorescu2009")
 TEN = np.array(NUMBERS["gear_explicit"]["list_arc_um_height_nm_radius_nm"]).T * [[1e-6], [1e-9], [1e-9]]
