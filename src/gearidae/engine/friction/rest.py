@@ -116,7 +116,8 @@ def _constraint(m: Model, pinion: float, gear: float, a: float, b: float) -> flo
     """What is least for the accelerations that follow."""
     found = m.work.rubbing
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    total = 0.5 * (a - a1 * pinion) ** 2 / a1 + 0.5 * (b - a2 * gear) ** 2 / a2
+    # less that of rest, which would swallow how small accelerations differ
+    total = 0.5 * (a * a / a1 + b * b / a2) - a * pinion - b * gear
     for j in range(found.count):
         other = found.element[j]
         total += other.limit * abs(other.pinion * a + other.gear * b)
