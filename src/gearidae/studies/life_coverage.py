@@ -132,7 +132,9 @@ _SIDES = ("pinion", "gear")
 def _exposure(numbers: Sequence[Floats]) -> Exposure:
     """Make an exposure of its arrays, pressures last; the work of friction before them is missing without friction."""
     contacts, adhesion, sliding, *friction, pressure = numbers
-    return Exposure(contacts, adhesion, sliding, pressure, friction[0] if friction else np.zeros_like(sliding))
+    return Exposure(
+        contacts, adhesion, sliding, pressure, friction[0] if friction else np.zeros_like(sliding)
+    )
 
 
 def _gathered(tables: Sequence[Floats], area: Floats, cycles: int, shape: tuple[int, int]) -> list[Floats]:

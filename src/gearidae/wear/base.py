@@ -99,7 +99,7 @@ class LossLaw(ABC):
             Of one passage, in the same shape.
         """
 
-    def check(self, scene: Scene) -> None:
+    def check(self, scene: Scene) -> None:  # noqa: B027  # most laws need nothing
         """Refuse a scene whose flanks are not exposed to what the law needs; all are accepted unless a law says so.
 
         Raises
