@@ -92,7 +92,7 @@ def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Ex
         return ""
     rows = ExposureRows.of(len(MATERIAL_NAMES))
     sums = np.array(extremes.exposures).reshape(
-        -1, rows.count(rubs=has_flank_friction(scene)), scene.run.exposures
+        -1, rows.per_tooth(rubs=has_flank_friction(scene)), scene.run.exposures
     )
     if not np.isfinite(sums).all() or (sums < 0.0).any():
         return "exposures that are negative or not finite"

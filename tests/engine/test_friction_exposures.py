@@ -103,9 +103,9 @@ def test_flanks_without_friction_keep_no_work_of_it(changes):
     ds = gd.simulate(SMOOTH.replace(changes))
     assert "friction_work" not in ds
     numbers = len(solve(SMOOTH.replace(changes)).extremes.exposures)
-    assert numbers == 2 * 19 * ROWS.count(rubs=False) * 8
+    assert numbers == 2 * 19 * ROWS.per_tooth(rubs=False) * 8
     rubbing = solve(RUBBING)
-    assert len(rubbing.extremes.exposures) == 2 * 19 * ROWS.count(rubs=True) * 8
+    assert len(rubbing.extremes.exposures) == 2 * 19 * ROWS.per_tooth(rubs=True) * 8
 
 
 @pytest.mark.parametrize("name", ["one coefficient", "asperities"])
@@ -124,7 +124,7 @@ def test_archives_and_resumed_runs_have_it(name, tmp_path, monkeypatch):
         gd.simulate(scene, archive=path, on_block=stop)
     resumed = gd.simulate(scene, archive=path, resume=True)
     np.testing.assert_array_equal(resumed.friction_work, whole.friction_work)
-    np.testing.assert_array_equal(gd.open(path).friction_work, whole.friction_work)
+    np.testing.assert_array_equal(gd.open_archive(path).friction_work, whole.friction_work)
 
 
 @pytest.mark.parametrize("name", ["one coefficient", "asperities"])
@@ -150,12 +150,21 @@ def test_a_continued_run_may_begin_with_friction_or_end_it():
     assert (third.sliding_work >= second.sliding_work).all()
 
 
-def test_sweeps_and_joined_runs_have_it():
-    ds = gd.sweep(SMOOTH, {"contact.friction": [0.0, 0.3]}, keep=["exposures", "scene"])
+def test_sweeps_and_joined_runs_have_it(tmp_path):
+    path = tmp_path / "sweep.nc"
+    ds = gd.sweep(SMOOTH, {"contact.friction": [0.0, 0.3]}, keep=["exposures", "scene"], archive=path)
     assert ds.friction_work.dims == ("friction", "flank", "tooth", "place")
     assert float(ds.friction_work.isel(friction=0).sum()) == 0.0
     alone = gd.simulate(RUBBING)
     np.testing.assert_array_equal(ds.friction_work.isel(friction=1), alone.friction_work)
+    np.testing.assert_array_equal(gd.open_archive(path).friction_work, ds.friction_work)
+    joined = gd.concat([alone, gd.simulate(RUBBING.replace({"contact.friction": 0.2}))])
+    np.testing.assert_array_equal(joined.friction_work[0], alone.friction_work)
+    older = gd.concat(
+        [alone.drop_vars("friction_work"), gd.simulate(RUBBING.replace({"contact.friction": 0.2}))]
+    )
+    assert "friction_work" not in older
+    assert "sliding_work" in older
 
 
 def test_a_life_by_friction_is_that_by_sliding_with_its_coefficient():

@@ -131,7 +131,7 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     assert scene.gears is not None
     rows = ExposureRows.of(len(MATERIAL_NAMES))
     rubs = has_flank_friction(scene)
-    shape = (len(FLANKS), scene.gears.pinion_teeth, rows.count(rubs=rubs), scene.run.exposures)
+    shape = (len(FLANKS), scene.gears.pinion_teeth, rows.per_tooth(rubs=rubs), scene.run.exposures)
     if solution.extremes is None or len(solution.extremes.exposures) != math.prod(shape):
         table = np.full(shape, math.nan)
     else:

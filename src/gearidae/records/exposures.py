@@ -30,6 +30,6 @@ class ExposureRows(NamedTuple):
         """Rows where so many materials may share the interface."""
         return cls(0, materials, 2 * materials, 2 * materials + 1, 2 * materials + 2)
 
-    def count(self, *, rubs: bool) -> int:
+    def per_tooth(self, *, rubs: bool) -> int:
         """Rows of a tooth whose flanks have friction, or have none."""
         return self.friction + int(rubs)

@@ -271,5 +271,5 @@ def gained(solution: Solution, before: Solution | None, scene: Scene) -> Floats:
 
 def _table(solution: Solution, scene: Scene) -> Floats:
     assert solution.extremes is not None
-    rows = _ROWS.count(rubs=has_flank_friction(scene))
+    rows = _ROWS.per_tooth(rubs=has_flank_friction(scene))
     return np.array(solution.extremes.exposures).reshape(-1, rows, scene.run.exposures)
