@@ -124,7 +124,7 @@ def extreme_population(seed: int, number: int, alive: Callable[[], None] | None 
         count, (low, high) = int(rng.choice([1, 10, 300])), flank_strip(scene)
         changes["contact.asperities"] = {
             "x" if scene.roller is not None else "arc": rng.uniform(low, high, count).tolist(),
-            "height": (sigma * rng.uniform(-1.0, 9.0, count)).tolist(),
+            "height": np.clip(sigma * rng.uniform(-1.0, 9.0, count), -0.1, 0.1).tolist(),
             "radius": np.clip(
                 scene.surface.asperity_radius * 10.0 ** rng.uniform(-2.0, 1.0, count), 1e-10, 0.1
             ).tolist(),

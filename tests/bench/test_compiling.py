@@ -16,7 +16,7 @@ def test_every_compiled_function_of_the_benchmark_is_kept_there():
     folder = str(own.cache_folder(compiling.SOURCES))
     declared = [one for one in vars(kinks).values() if isinstance(one, own.Function)]
     mine = [one for one in declared if one.py_func.__module__ == kinks.__name__]
-    assert {one.py_func.__name__ for one in mine} == {"arm", "watch"}
+    assert {one.py_func.__name__ for one in mine} == {"arm", "begin_step", "dip_in_step", "watch"}
     assert all(one.cache_path.startswith(folder) for one in mine)
     others = [one for one in declared if one not in mine]
     assert others

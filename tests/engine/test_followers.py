@@ -51,14 +51,14 @@ class Recorder:
 @pytest.fixture
 def calls(monkeypatch):
     found = []
-    for name in ("joining", "extremes", "balance", "exposures"):
+    for name in ("joining", "extremes", "rubbing", "balance", "exposures"):
         monkeypatch.setattr(in_turn, name, Recorder(name, found))
     return found
 
 
 def follow(balance, exposures):
     """Call every hook, for a pair that has turned round at a mesh mark."""
-    wanted = SimpleNamespace(balance=balance, extremes=1, exposures=exposures)
+    wanted = SimpleNamespace(balance=balance, friction=balance, extremes=1, exposures=exposures)
     m = SimpleNamespace(scene=SimpleNamespace(follow=wanted, kind=0))
     y, turned = np.zeros(max(V, W) + 1), SimpleNamespace(turns=True, coast=0, pair=0, k=0, gap=0.0)
     in_turn.begin.py_func(m, 0.0, y, y)
@@ -74,17 +74,19 @@ def test_all_are_called_in_order(calls):
         hook: [one.partition(".")[0] for one in calls if one.endswith(hook)] for hook in ("step", "finish")
     }
     assert hooks["step"] == ["joining", "extremes", "balance", "exposures"]
+    assert calls.index("extremes.step") < calls.index("rubbing.book_rubbing") < calls.index("balance.step")
     assert hooks["finish"] == ["balance", "exposures"]
     assert calls.index("joining.event") < calls.index("exposures.event")
 
 
 @pytest.mark.parametrize(
-    ("balance", "exposures", "gone"), [(0, 0, {"joining", "balance", "exposures"}), (1, 0, {"exposures"})]
+    ("balance", "exposures", "gone"),
+    [(0, 0, {"joining", "rubbing", "balance", "exposures"}), (1, 0, {"exposures"})],
 )
 def test_what_is_not_wanted_is_not_called(calls, balance, exposures, gone):
     follow(balance, exposures)
     called = {one.partition(".")[0] for one in calls}
-    assert called == {"joining", "extremes", "balance", "exposures"} - gone
+    assert called == {"joining", "extremes", "rubbing", "balance", "exposures"} - gone
 
 
 # -- a run without its energy balance --------------------------------------------------------------------------------

@@ -372,7 +372,7 @@ MUTANTS = (
     Mutant(
         "impacts that are no pitch apart taken for those of a speed without error",
         "analysis/impacts.py",
-        "    return spacing if told else 1.0",
+        "    return spacing if evident else 1.0",
         "    return 1.0",
         ("analysis/test_bad_records.py",),
     ),
@@ -561,5 +561,26 @@ MUTANTS = (
         "if self._gear or len(self._flanks) > 1:",
         "if self._gear or self._flanks:",
         ("archive/test_run_summary.py::test_what_friction_takes_and_holds",),
+    ),
+    Mutant(
+        "energy of the attraction across the gap too small by a half",
+        "engine/pairs/attraction.py",
+        "energy = -2.0 / 3.0 * pull * near",
+        "energy = -1.0 / 3.0 * pull * near",
+        ("engine/test_attraction.py::test_gears_apart_are_pulled_by_both_flanks_and_along_the_path",),
+    ),
+    Mutant(
+        "attraction along the path of contact with the other sign where asperities are real",
+        "engine/population/attraction.py",
+        "relief -= own.rate",
+        "relief += own.rate",
+        ("engine/test_attraction.py::test_gears_apart_are_pulled_by_both_flanks_and_along_the_path",),
+    ),
+    Mutant(
+        "drawn asperities that let go where they touch",
+        "studies/drawn_contact.py",
+        "held = joined & (last >= end)",
+        "held = joined & (last > end)",
+        ("studies/test_pull_off.py::test_one_asperity_has_the_pull_off_of_its_law",),
     ),
 )

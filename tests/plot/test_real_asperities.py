@@ -31,7 +31,7 @@ def test_joined_asperities_bear_the_recorded_force(run):
     times = run.time.values[::40]
     states = mesh_states(run, times)
     scale = np.abs(run.mesh_force.values).max()
-    assert all(state.told for state in states)
+    assert all(state.recovered for state in states)
     assert max(abs(state.mismatch) for state in states) < 1e-8 * scale
     counted = [sum(len(one.asperities) for one in state.contacts) for state in states]
     assert counted == run.asperities_in_contact.values[::40].tolist()
@@ -43,7 +43,7 @@ def test_joined_asperities_bear_the_recorded_force(run):
 def test_without_events_nothing_is_told():
     ds = gd.simulate(SCENE.replace({"run.asperity_events": False, "run.duration": 5e-6, "run.samples": 11}))
     (state,) = mesh_states(ds, [2e-6])
-    assert not state.told
+    assert not state.recovered
     assert all(one.asperities is None for one in state.contacts)
     gd.plot.teeth(ds)
     with pytest.raises(gd.SceneError, match=r"run.asperity_events = false: must be true"):

@@ -210,10 +210,10 @@ def test_last_sample_is_shown_by_default(run):
     assert gd.plot.teeth(cut).axes[0].get_title(loc="left").startswith("t = 50 ms")
 
 
-def test_untold_states_are_shown_as_such(run):
+def test_unrecoverable_states_are_shown_as_such(run):
     coarse = run.isel(time=slice(None, None, 200), event=slice(0, 0))
-    untold = next(state for state in tooth_contacts(coarse, coarse.time.values) if not state.told)
-    figure = gd.plot.teeth(coarse, time=untold.time)
+    unrecovered = next(state for state in tooth_contacts(coarse, coarse.time.values) if not state.recovered)
+    figure = gd.plot.teeth(coarse, time=unrecovered.time)
     assert "not recoverable from the archive" in " ".join(ax.get_title(loc="left") for ax in figure.axes)
 
 

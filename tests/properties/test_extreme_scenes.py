@@ -17,8 +17,8 @@ from gearidae.errors import SceneError
 from gearidae.scene.limits import MOST_PAIRS, check_reach, pairs_within_reach
 from gearidae_bench.attack import run_attack
 from gearidae_bench.attack_report import balance_rows, ending_rows, page, warned_rows
-from gearidae_bench.attack_worker import FAULTS, Outcome, judge
-from gearidae_bench.extreme_scenes import extreme_scene
+from gearidae_bench.attack_worker import FAULTS, Outcome, judge, run_scene
+from gearidae_bench.extreme_scenes import extreme_population, extreme_scene
 from gearidae_bench.random_scenes import random_scene
 
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
@@ -35,6 +35,17 @@ def test_an_extreme_scene_ends_with_a_name(number):
     assert outcome.status not in FAULTS, outcome.message
     assert outcome.status in NAMED
     assert reports or outcome.status == "refused"
+
+
+@pytest.mark.parametrize("number", [1, 3, 5, 9, 25, 27])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_an_extreme_population_ends_with_a_name(number):
+    """Drawn surfaces and a list; the same numbers give the same scene."""
+    extreme = extreme_population(1, number)
+    assert extreme == extreme_population(1, number)
+    assert extreme.scene.contact.model == "population"
+    followed = run_scene(extreme.scene, extreme.backend, 500, lambda: None)
+    assert followed.status in NAMED
 
 
 @pytest.mark.parametrize("law", ["roller", "gears"])

@@ -62,7 +62,7 @@ def test_forces_of_the_pairs_add_up_to_the_recorded_one(name, error, request):
     """The record has no part in them; they differ by the cubic between samples at turning points of the gap."""
     ds = request.getfixturevalue(name)
     states = tooth_contacts(ds, np.linspace(0.0, float(ds.time[-1]), 400))
-    assert all(state.told for state in states)
+    assert all(state.recovered for state in states)
     forces = np.array([state.mesh_force for state in states])
     mismatch = np.array([state.mismatch for state in states])
     assert np.sqrt(np.mean(mismatch**2)) < error * np.sqrt(np.mean(forces**2))
@@ -129,12 +129,12 @@ def test_a_state_does_not_depend_on_what_else_is_asked(fast):
 def test_what_a_record_does_not_tell_is_not_made_up(slow):
     coarse = slow.isel(time=slice(None, None, 200), event=slice(0, 0))
     states = tooth_contacts(coarse, coarse.time.values)
-    untold = [state for state in states if not state.told]
-    assert untold
-    for state in untold:
+    unrecovered = [state for state in states if not state.recovered]
+    assert unrecovered
+    for state in unrecovered:
         for one in state.contacts:
             assert math.isnan(one.force)
-            assert set(one.states.values()) <= {ContactState.UNTOLD, ContactState.OPEN}
+            assert set(one.states.values()) <= {ContactState.UNRECOVERABLE, ContactState.OPEN}
             assert math.isfinite(one.gap)
 
 
@@ -144,7 +144,7 @@ def test_static_error_is_part_of_the_recorded_motion():
     )
     ds = gd.simulate(scene, t_end=0.02)
     states = tooth_contacts(ds, np.linspace(0.0, 0.02, 50))
-    assert all(state.told for state in states)
+    assert all(state.recovered for state in states)
     assert sum(abs(state.mismatch) for state in states) < 0.01 * sum(
         abs(state.mesh_force) for state in states
     )

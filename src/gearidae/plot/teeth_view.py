@@ -22,7 +22,7 @@ from gearidae.scene import Scene
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
 STATE_WORDS = {
-    ContactState.UNTOLD: "not recoverable from the archive",
+    ContactState.UNRECOVERABLE: "not recoverable from the archive",
     ContactState.OPEN: "open",
     ContactState.LOADING: "loading",
     ContactState.PARTLY_STRETCHED: "partly stretched",
@@ -30,7 +30,7 @@ STATE_WORDS = {
 }
 """States of a contact in words."""
 _MARKS = {
-    ContactState.UNTOLD: ("X", "0.6"),
+    ContactState.UNRECOVERABLE: ("X", "0.6"),
     ContactState.OPEN: ("o", "white"),
     ContactState.LOADING: ("o", POSITIVE),
     ContactState.PARTLY_STRETCHED: ("^", "#E69F00"),
@@ -130,7 +130,7 @@ class TeethView:
             self.figure.add_axes((0.085 + k * width, 0.245, width - 0.1, 0.145)) for k in range(self._places)
         ]
         self._time_factor, self._cursor = _speed_strip(self.figure.add_axes((0.085, 0.055, 0.9, 0.08)), ds)
-        self._legend(all(each.told for each in states))
+        self._legend(all(each.recovered for each in states))
 
     def draw(self, state: MeshState) -> None:
         """Draw a state in place of the one before."""
@@ -147,9 +147,13 @@ class TeethView:
         self._cursor.set_xdata([state.time * self._time_factor] * 2)
         self._mesh.set_title(_headline(state), loc="left", fontsize="medium")
 
-    def _legend(self, told: bool) -> None:
+    def _legend(self, recovered: bool) -> None:
         """Explain the marks of the mesh, and below the close-ups their colours."""
-        marks = {state: mark for state, mark in _MARKS.items() if state != ContactState.UNTOLD or not told}
+        marks = {
+            state: mark
+            for state, mark in _MARKS.items()
+            if state != ContactState.UNRECOVERABLE or not recovered
+        }
         handles = [
             Line2D([], [], marker=mark, color="0.1", mfc=face, linestyle="", label=STATE_WORDS[state])
             for state, (mark, face) in marks.items()

@@ -8,7 +8,7 @@
   const data = JSON.parse(source.textContent);
   const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
   const BELOW = 3.5, ABOVE = 12; // roughnesses
-  const UNTOLD = -1, OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3, COAST = 1;
+  const UNRECOVERABLE = -1, OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3, COAST = 1;
   const PLAYED = 14; // seconds for what is in view
   const FRAME = data.columns.frame.length, PAIR = data.columns.pair.length;
   const still = window.matchMedia("(prefers-reduced-motion: reduce)");
@@ -145,7 +145,7 @@
     pen.beginPath();
     if (state === PARTLY) { pen.moveTo(a, b - 7); pen.lineTo(a + 7, b + 6); pen.lineTo(a - 7, b + 6); pen.closePath(); }
     else if (state === FULLY) pen.rect(a - 6, b - 6, 12, 12);
-    else if (state === UNTOLD) { pen.moveTo(a - 6, b - 6); pen.lineTo(a + 6, b + 6); pen.moveTo(a - 6, b + 6); pen.lineTo(a + 6, b - 6); }
+    else if (state === UNRECOVERABLE) { pen.moveTo(a - 6, b - 6); pen.lineTo(a + 6, b + 6); pen.moveTo(a - 6, b + 6); pen.lineTo(a + 6, b - 6); }
     else pen.arc(a, b, 6, 0, 2 * Math.PI);
     pen.fill();
     pen.stroke();

@@ -334,7 +334,7 @@ def _attraction(scene: Scene, rest: Rest, gap: float, name: str, quantity: str) 
         limit = f"{with_prefix(rest.load, 'N')}, {driven}"
         ratio = "" if rest.load == 0.0 else f", {_times(pull / rest.load)} that force"
         across = f"over {with_prefix(gap, 'm')}{ratio}"
-        missing = f"with {_USUAL_HAMAKER:g} J, left out of the scene"
+        missing = f"with an assumed {_USUAL_HAMAKER:g} J, left out of the scene"
         verdict = f"in the scene, {across}" if inside else f"{missing}, {across}"
     bound = rest.load if rest.contact.attracts else _LITTLE_ATTRACTION * rest.load
     return _row(name, quantity, pull, "N", limit, bound, holds, verdict)

@@ -207,8 +207,8 @@ def _states(
     for at, found in zip(wanted, contacts, strict=True):
         total = float(record.mesh_force[at])
         mismatch = sum(one.force * (1 if one.flank == Flank.DRIVE else -1) for one in found) - total
-        told = real is None or real.told
-        told &= abs(mismatch) <= AGREEMENT * max(sum(abs(one.force) for one in found), limits.load)
+        recovered = real is None or real.recovered
+        recovered &= abs(mismatch) <= AGREEMENT * max(sum(abs(one.force) for one in found), limits.load)
         states.append(
             MeshState(
                 time=float(record.time[at]),
@@ -217,8 +217,8 @@ def _states(
                 gear_speed=float(record.gear_speed[at]),
                 mesh_force=total,
                 mismatch=mismatch,
-                told=told,
-                contacts=tuple(found if told else map(_untold, found)),
+                recovered=recovered,
+                contacts=tuple(found if recovered else map(_unrecoverable, found)),
             )
         )
     return states
@@ -385,10 +385,10 @@ def _contact(pair: _Followed, k: int, limits: _Limits, stretches: dict[str, floa
     )
 
 
-def _untold(contact: ToothContact) -> ToothContact:
+def _unrecoverable(contact: ToothContact) -> ToothContact:
     """Keep of a contact what the record holds: its gap, and whether it is open."""
     states = {
-        name: state if state == ContactState.OPEN else ContactState.UNTOLD
+        name: state if state == ContactState.OPEN else ContactState.UNRECOVERABLE
         for name, state in contact.states.items()
     }
     unknown = dict.fromkeys(contact.joined, math.nan)

@@ -87,7 +87,7 @@ class JoinedAsperities:
 
     Attributes
     ----------
-    told : bool
+    recovered : bool
         Whether the events are there, and the asperities those of the run.
     first_motion : tuple of float
         Gear's travel and transmission error at the first sample [m].
@@ -110,7 +110,7 @@ class JoinedAsperities:
             float(run["transmission_error"][0]),
         )
         digest = flanks_digest(flanks_of(scene))
-        self.told = bool(scene.run.asperity_events and run.attrs.get("asperities_sha256") == digest)
+        self.recovered = bool(scene.run.asperity_events and run.attrs.get("asperities_sha256") == digest)
 
     def of(self, pair: int, flank: Flank, time: float, first: tuple[float, float]) -> Integers:
         """Return the asperities of a pair that are joined at a time, by their numbers on its flank.

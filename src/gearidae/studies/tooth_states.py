@@ -11,7 +11,7 @@ from gearidae.records import Flank
 class ContactState(IntEnum):
     """State of the asperities in a pair of teeth."""
 
-    UNTOLD = -1
+    UNRECOVERABLE = -1
     """Not recoverable from the record."""
     OPEN = 0
     """Too far apart to count as contact."""
@@ -84,7 +84,7 @@ class MeshState:
         Recorded force along the line of action, of all pairs [N].
     mismatch : float
         By how much the forces found for the pairs miss the recorded one [N].
-    told : bool
+    recovered : bool
         Whether that is small enough, so that forces and states are given.
     contacts : tuple of ToothContact
         Pairs on the path of contact of either flank, and those beside it that are near enough for a force.
@@ -96,5 +96,5 @@ class MeshState:
     gear_speed: float
     mesh_force: float
     mismatch: float
-    told: bool
+    recovered: bool
     contacts: tuple[ToothContact, ...]

@@ -11,11 +11,10 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.pair_events import PairEvent
-from gearidae.engine.followers import balance, joining
+from gearidae.engine.followers import balance, joining, rubbing
 from gearidae.engine.followers.exposures import follow as exposures
 from gearidae.engine.followers.exposures.asperities import add_flips
 from gearidae.engine.followers.extremes import follow as extremes
-from gearidae.engine.followers.rubbing import book_rubbing, note_rubbing
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import GEARS, Floats, Model, W
 
@@ -26,8 +25,8 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if m.scene.follow.balance != 0:
         joining.begin(m, t)
         balance.begin(m, t, y, yp)
-        if m.scene.friction.on != 0:
-            note_rubbing(m, t, y)
+    if m.scene.follow.friction != 0:
+        rubbing.note_rubbing(m, t, y)
     if m.scene.follow.extremes != 0:
         extremes.begin(m, t, y, yp)
     if m.scene.follow.exposures != 0:
@@ -55,9 +54,9 @@ def step(
         joining.step(m, t, y, yp[W] if m.scene.kind == GEARS else 0.0)
     if m.scene.follow.extremes != 0:
         extremes.step(m, t, y, yp, at[0], between[0])
+    if m.scene.follow.friction != 0:
+        rubbing.book_rubbing(m, t, y, at[1], between[0], between[1])
     if m.scene.follow.balance != 0:
-        if m.scene.friction.on != 0:
-            book_rubbing(m, t, y, at[1], between[0], between[1])
         balance.step(m, t, y, yp, at, between)
     if m.scene.follow.exposures != 0:
         exposures.step(m, t, y, yp, at[1])
@@ -96,8 +95,8 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
         if crossed:
             joining.resume(m, y)
         balance.resume(m, t, y, crossed, joined)
-        if m.scene.friction.on != 0:
-            note_rubbing(m, t, y)
+    if m.scene.follow.friction != 0:
+        rubbing.note_rubbing(m, t, y)
     if m.scene.follow.extremes != 0:
         extremes.resume(m, t, y)
 

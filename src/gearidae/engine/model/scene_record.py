@@ -101,6 +101,7 @@ FRICTION: Final = record_type(  # of flanks and hubs
 
 FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
     ("balance", INT),  # energy balance, and joining for it
+    ("friction", INT),  # losses by friction, for it
     ("extremes", INT),  # extremes of the run
     ("exposures", INT),  # exposures of the flanks
 )

@@ -325,6 +325,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         make_part_ready(FRICTION)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
+    s.follow.friction = int(scene.run.balance and s.friction.on != 0)
     if s.follow.balance != 0:
         open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]

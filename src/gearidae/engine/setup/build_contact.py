@@ -46,12 +46,11 @@ def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | 
     """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
     model = scene.contact.model
     s.lowest_gap = GAP_LOW  # where the tables of the force law end
-    if model == "auto" and scene.attracts:
+    if model == "auto" and (scene.attracts or rubs(scene)):
         model = "asperity"
     if model == "auto":
         lowest, enough = rigid_limit(scene, bounds)
-        # friction is not available with elastic contacts: where they would be needed, the run ends
-        model = "asperity" if enough or rubs(scene) else "elastic"
+        model = "asperity" if enough else "elastic"
         s.lowest_gap = lowest
     if model in ("asperity", "population"):
         return None
