@@ -158,11 +158,10 @@ def test_sweeps_and_joined_runs_have_it(tmp_path):
     alone = gd.simulate(RUBBING)
     np.testing.assert_array_equal(ds.friction_work.isel(friction=1), alone.friction_work)
     np.testing.assert_array_equal(gd.open_archive(path).friction_work, ds.friction_work)
-    joined = gd.concat([alone, gd.simulate(RUBBING.replace({"contact.friction": 0.2}))])
-    np.testing.assert_array_equal(joined.friction_work[0], alone.friction_work)
-    older = gd.concat(
-        [alone.drop_vars("friction_work"), gd.simulate(RUBBING.replace({"contact.friction": 0.2}))]
-    )
+    other = gd.simulate(RUBBING.replace({"contact.friction": 0.2}))
+    joined = gd.concat([alone, other], "contact.friction")
+    np.testing.assert_array_equal(joined.friction_work.sel(friction=0.3), alone.friction_work)
+    older = gd.concat([alone.drop_vars("friction_work"), other], "contact.friction")
     assert "friction_work" not in older
     assert "sliding_work" in older
 
