@@ -87,7 +87,7 @@ def sliding_guard(m: Model, t: float, y: Floats) -> float:
 def begin_sliding(m: Model, t: float, y: Floats) -> None:
     """Set all directions of slip from the speeds of a start, and decide on what stands still there."""
     state = m.state
-    state.hold, state.held_pair, state.reversals = FREE, 0, 0
+    state.hold, state.held_pair, state.reversals, state.bearing_load = FREE, 0, 0, 0.0
     for k in range(m.scene.histories):
         state.history[k].slide = 0
     state.pinion_slip, state.slip = _sign(pinion_speed(m, y)[0]), _sign(y[W])
@@ -142,6 +142,8 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
             _decide_at_rest(m, t, y)
             return True
         return jumped
+    if not fresh:
+        state.bearing_load = solve_shafts(m, t, y, turn, pinion, gear).hubs
     if kind == FREE and state.hold != FREE:
         if solve_shafts(m, t, y, turn, pinion, gear).margin >= -1.5 * NO_FORCE:
             return jumped

@@ -25,7 +25,8 @@ from gearidae.engine.model.state import COAST, Floats, Model, Record
 def list_elements(m: Model, t: float, y: Floats) -> None:
     """List the elements of gears at rest: the pairs that rub, the gear's resistance and hub, and the pinion's hub.
 
-    The load of the bearings is taken without friction of the flanks, which is not unique at rest.
+    Friction of the flanks is not unique at rest: the load of the bearings is that without it, or if that is larger
+    the one with which the gears have come to rest.
     """
     own, found, count = m.scene.friction, m.work.rubbing, 0
     drive = coast = 0.0
@@ -41,7 +42,7 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
             _set(found.element[count], first, -second, noted.limit, HELD_PAIR)
             found.element[count].history = noted.history
             count += 1
-    load = bearing_load(m, Mesh(drive, coast, 0.0, 0.0))
+    load = max(bearing_load(m, Mesh(drive, coast, 0.0, 0.0)), m.state.bearing_load)
     if has_gear_element(m):
         _set(found.element[count], 0.0, 1.0, dry_force(m, t, y) + own.gear_hub * load, HELD_GEAR)
         count += 1
@@ -115,7 +116,8 @@ def _constraint(m: Model, pinion: float, gear: float, a: float, b: float) -> flo
     """What is least for the accelerations that follow."""
     found = m.work.rubbing
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    total = 0.5 * (a - a1 * pinion) ** 2 / a1 + 0.5 * (b - a2 * gear) ** 2 / a2
+    # less that of rest, which would swallow how small accelerations differ
+    total = 0.5 * (a * a / a1 + b * b / a2) - a * pinion - b * gear
     for j in range(found.count):
         other = found.element[j]
         total += other.limit * abs(other.pinion * a + other.gear * b)

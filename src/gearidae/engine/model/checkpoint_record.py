@@ -131,4 +131,5 @@ STATE: Final = record_type(
     ("held_pair", INT),  # history of the pair that rolls, if that is held [index]
     ("pinion_slip", REAL),  # direction in which the pinion turns in its hub, -1 or +1; 0 while it is held
     ("reversals", INT),  # changes of sliding of the flanks since the last mesh mark [1]
+    ("bearing_load", REAL),  # of the bearings when gears have last come to rest [F]
 )
