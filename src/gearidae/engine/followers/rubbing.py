@@ -108,16 +108,7 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     hubs = m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0
     no_rates = (root and m.scene.population.flanks != 0) or (hubs and m.state.hold == HELD_PAIR)
     if no_rates and a.order_used > 0:
-        for point in range(3):
-            then = start + (0.5 + (point - 1) * _OUTER) * h
-            adams.between(a, then, between, rates)
-            note_rubbing(m, then, between)
-            weight = (8.0 if point == 1 else 5.0) / 18.0 * h
-            for i in range(_POWERS):
-                _book(m, i, weight * r.power[i], 0.0)
-            add_rubbing(m, weight, 0.0)
-            if keeps_rubbing(m):
-                divide_rubbing(m, between)
+        _book_inside(m, start, h, between, rates)
         note_rubbing(m, t, y)
         return
     middle, halved = first, a.order_used > 0
@@ -143,6 +134,21 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
             error = min(error, abs(parts - loss) / 15.0)
             loss = parts + (parts - loss) / 15.0
         _book(m, i, loss, error)
+
+
+@compiled
+def _book_inside(m: Model, start: float, h: float, between: Floats, rates: Floats) -> None:
+    """Add the losses of an interval from the powers at three points inside it, by the Gaussian rule."""
+    for point in range(3):
+        then = start + (0.5 + (point - 1) * _OUTER) * h
+        adams.between(m.work.adams, then, between, rates)
+        note_rubbing(m, then, between)
+        weight = (8.0 if point == 1 else 5.0) / 18.0 * h
+        for i in range(_POWERS):
+            _book(m, i, weight * m.work.rubbing.power[i], 0.0)
+        add_rubbing(m, weight, 0.0)
+        if keeps_rubbing(m):
+            divide_rubbing(m, between)
 
 
 @compiled(inline=True)
