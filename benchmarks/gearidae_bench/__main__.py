@@ -51,6 +51,7 @@ def bench(
         bool, Parameter(help="Run extreme but valid scenes instead, each in a monitored process.")
     ] = False,
     population: Annotated[bool, Parameter(help="Give the scenes of --attack real asperities.")] = False,
+    friction: Annotated[bool, Parameter(help="Give the scenes of --attack friction.")] = False,
     patience: Annotated[
         float,
         Parameter(help="Time without progress after which a scene of --attack counts as hung, in seconds."),
@@ -71,7 +72,9 @@ def bench(
             "bench", "--stress, --accuracy, --long, --attack, --forge, --kills", "say one of them"
         )
     if attack:
-        return bench_attack(runs, seed, jobs, output, patience, population=population)
+        return bench_attack(
+            runs, seed, jobs, output, patience, kind="friction" if friction else "population" * population
+        )
     if forge:
         return bench_forge(runs, seed, jobs)
     if kills:

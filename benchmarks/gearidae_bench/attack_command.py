@@ -13,18 +13,19 @@ from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae_bench.attack import Outcome, run_attack
 from gearidae_bench.attack_report import balance_rows, ending_rows, page
-from gearidae_bench.attack_worker import attack_one, attack_population
+from gearidae_bench.attack_worker import attack_friction, attack_one, attack_population
 from gearidae_bench.forge import is_forged, run_forge
 from gearidae_bench.kills import run_kills
 
 __all__ = ["ATTACK_BUDGET", "bench_attack", "bench_forge", "bench_kills"]
 
+_TARGETS = {"": attack_one, "population": attack_population, "friction": attack_friction}
 ATTACK_BUDGET = 20_000
 """Steps after which a scene of the attack is left alone."""
 
 
 def bench_attack(
-    runs: int, seed: int, jobs: int | None, output: Path | None, patience: float, *, population: bool = False
+    runs: int, seed: int, jobs: int | None, output: Path | None, patience: float, *, kind: str = ""
 ) -> int:
     """Run extreme scenes, print how they ended, and write the page about them if asked.
 
@@ -40,8 +41,8 @@ def bench_attack(
         Folder for ``attack.md``.
     patience : float
         Seconds without a report after which a scene is taken to hang.
-    population : bool, optional
-        Whether the scenes have real asperities.
+    kind : {"", "population", "friction"}, optional
+        Whether the scenes have real asperities, or friction.
 
     Returns
     -------
@@ -68,7 +69,7 @@ def bench_attack(
                 budget=ATTACK_BUDGET,
                 patience=patience,
                 report=note,
-                target=attack_population if population else attack_one,
+                target=_TARGETS[kind],
             )
         except KeyboardInterrupt:
             interrupted = True
@@ -82,9 +83,7 @@ def bench_attack(
         say(f"scene {outcome.number}: {outcome.status} {outcome.message}")
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
-        (output / "attack.md").write_text(
-            page(outcomes, seed, datetime.now(UTC).date(), runs, population=population)
-        )
+        (output / "attack.md").write_text(page(outcomes, seed, datetime.now(UTC).date(), runs, kind=kind))
         say(f"Report: {output / 'attack.md'}")
     if interrupted:
         raise KeyboardInterrupt(f"{len(outcomes)} of {runs} scenes done")

@@ -73,7 +73,7 @@ def page(
     day: date,
     runs: int | None = None,
     *,
-    population: bool = False,
+    kind: str = "",
 ) -> str:
     """Write the report.
 
@@ -85,8 +85,8 @@ def page(
         When they were run.
     runs : int, optional
         Number of scenes requested, if fewer were done.
-    population : bool, optional
-        Whether the scenes have real asperities.
+    kind : {"", "population", "friction"}, optional
+        Whether the scenes have real asperities, or friction.
 
     Returns
     -------
@@ -94,8 +94,8 @@ def page(
         Markdown.
     """
     faults = [outcome for outcome in outcomes if not outcome.sound]
-    drawn = "extreme_population" if population else "extreme_scene"
-    command = f"python -m gearidae_bench --attack{' --population' * population}"
+    drawn = f"extreme_{kind or 'scene'}"
+    command = f"python -m gearidae_bench --attack{f' --{kind}' * bool(kind)}"
     command += f" --runs {runs or len(outcomes)} --seed {seed}"
     done = f"; interrupted after {len(outcomes)} scenes" if runs and runs > len(outcomes) else ""
     silence = max((o.longest for o in outcomes), default=0.0)

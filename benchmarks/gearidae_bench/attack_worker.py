@@ -24,12 +24,13 @@ from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, EventKind, sampled_columns
 from gearidae.scene import Scene
-from gearidae_bench.extreme_scenes import Extreme, extreme_population, extreme_scene
+from gearidae_bench.extreme_scenes import Extreme, extreme_friction, extreme_population, extreme_scene
 
 __all__ = [
     "FAULTS",
     "Followed",
     "Outcome",
+    "attack_friction",
     "attack_one",
     "attack_population",
     "judge",
@@ -150,8 +151,13 @@ def attack_one(seed: int, number: int, budget: int, reports: Connection, trace: 
 
 
 def attack_population(seed: int, number: int, budget: int, reports: Connection, trace: str) -> None:
-    """Do the same with one of `extreme_population`."""
+    """Run one scene of `extreme_population` and report."""
     _attack(extreme_population, (seed, number), budget, reports, trace)
+
+
+def attack_friction(seed: int, number: int, budget: int, reports: Connection, trace: str) -> None:
+    """Run one scene of `extreme_friction` and report."""
+    _attack(extreme_friction, (seed, number), budget, reports, trace)
 
 
 def _attack(

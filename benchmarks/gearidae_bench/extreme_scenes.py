@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from gearidae.asperities.area import AREAS
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import GeometryError, mesh_geometry
 from gearidae.scene import Coating, Gears, Initial, Mesh, Roller, Run, Scene, Surface
@@ -23,7 +24,7 @@ from gearidae.scene.group import Group
 from gearidae.scene.quantity import Count, Quantity
 from gearidae.scene.strip import MOST, flank_strip
 
-__all__ = ["CORNER", "Extreme", "extreme_population", "extreme_scene"]
+__all__ = ["CORNER", "Extreme", "extreme_friction", "extreme_population", "extreme_scene"]
 
 CORNER = 0.2
 """Probability of a corner value where a key is free: a limit of its range, the number next to it, or zero."""
@@ -38,6 +39,8 @@ _ROLLERS = 0.15
 _SILICON = 2330.0  # [kg/m^3]
 _TRIES, _TRIES_EACH = 4000, 500  # with one share of free keys
 _MANY_KNOTS = 20_000
+_APART = 1_000_000
+"""Between the numbers of scenes that are tried until one is of gears."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +145,46 @@ def extreme_population(seed: int, number: int, alive: Callable[[], None] | None 
     mean = density * flanks[0] * (high - low) * flanks[1]
     changes["surface.asperity_density"] = density * min(most / mean, 1.0)
     return Extreme(scene.replace(changes), extreme.backend)
+
+
+def extreme_friction(seed: int, number: int, alive: Callable[[], None] | None = None) -> Extreme:
+    """Draw gears of `extreme_scene`, every second with real asperities, and give flanks and hubs friction.
+
+    Parameters
+    ----------
+    seed, number, alive
+        As for `extreme_scene`.
+
+    Raises
+    ------
+    SceneError
+        As `extreme_scene` does.
+    """
+    draw, rng = (
+        (extreme_population if number % 2 else extreme_scene),
+        np.random.default_rng([seed, number, 19]),
+    )
+    extreme = next(
+        one for k in range(_TRIES) if (one := draw(seed, number + k * _APART, alive)).scene.gears is not None
+    )
+    changes: dict[str, Any] = {"contact.model": "population" if number % 2 else "asperity"}
+    law = extreme.scene.contact.asperity
+    if law in AREAS and rng.random() < 0.3:
+        changes |= {"contact.friction_law": "shear", "contact.shear_strength": 10.0 ** rng.uniform(3.0, 10.0)}
+    else:
+        changes |= {
+            "contact.friction": 10.0 ** rng.uniform(-4.0, 0.0),
+            "coating.friction": float(rng.choice([0.0, 0.1, 0.9])),
+        }
+    if rng.random() < 0.5:
+        assert extreme.scene.gears is not None
+        radius = 0.3 * extreme.scene.gears.pinion_base_radius
+        changes |= {
+            "gears.hub_friction": 10.0 ** rng.uniform(-4.0, 0.0),
+            "gears.pinion_hub_radius": float(rng.choice([0.0, radius])),
+            "gears.gear_hub_radius": radius,
+        }
+    return Extreme(extreme.scene.replace(changes), extreme.backend)
 
 
 class _Draw:

@@ -18,7 +18,7 @@ from gearidae.scene.limits import MOST_PAIRS, check_reach, pairs_within_reach
 from gearidae_bench.attack import run_attack
 from gearidae_bench.attack_report import balance_rows, ending_rows, page, warned_rows
 from gearidae_bench.attack_worker import FAULTS, Outcome, judge, run_scene
-from gearidae_bench.extreme_scenes import extreme_population, extreme_scene
+from gearidae_bench.extreme_scenes import extreme_friction, extreme_population, extreme_scene
 from gearidae_bench.random_scenes import random_scene
 
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
@@ -44,6 +44,18 @@ def test_an_extreme_population_ends_with_a_name(number):
     extreme = extreme_population(1, number)
     assert extreme == extreme_population(1, number)
     assert extreme.scene.contact.model == "population"
+    followed = run_scene(extreme.scene, extreme.backend, 500, lambda: None)
+    assert followed.status in NAMED
+
+
+@pytest.mark.parametrize("number", [1, 2, 4, 5, 6, 7])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_extreme_friction_ends_with_a_name(number):
+    """Even numbers are of the mean law, odd ones of real asperities."""
+    extreme = extreme_friction(1, number)
+    friction, gears = extreme.scene.contact.friction, extreme.scene.gears
+    assert friction > 0.0 or extreme.scene.contact.shear_strength > 0.0
+    assert gears is not None
     followed = run_scene(extreme.scene, extreme.backend, 500, lambda: None)
     assert followed.status in NAMED
 
