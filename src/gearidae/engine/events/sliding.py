@@ -42,6 +42,8 @@ AT_ONCE: Final = 1e-7
 """Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest."""
 REVERSALS_HIGH: Final = 100_000
 """Changes of sliding from one mesh mark to the next, beyond which they are too many to follow."""
+PASSES_HIGH: Final = 20
+"""Decisions at one time, each of which lets a guard fall again, beyond which no choice is consistent."""
 
 
 @compiled(inline=True)
@@ -91,12 +93,45 @@ def begin_sliding(m: Model, t: float, y: Floats) -> None:
     for k in range(m.scene.histories):
         state.history[k].slide = 0
     state.pinion_slip, state.slip = _sign(pinion_speed(m, y)[0]), _sign(y[W])
-    settle_sliding(m, t, y, True)
+    settle_start(m, t, y, True)
+
+
+@compiled_once(FRICTION)
+def settle_start(m: Model, t: float, y: Floats, fresh: bool) -> None:
+    """Deal with all guards of friction that have fallen at a start, of which no events are recorded."""
+    for _ in range(PASSES_HIGH):
+        if not settle_sliding(m, t, y, fresh):
+            return
+        fresh = False
+    m.state.reversals = REVERSALS_HIGH + 1
+
+
+@compiled
+def follow_sliding(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
+    """Deal with all guards of friction that have fallen, and with those that fall by that; see `settle_sliding`.
+
+    A guard below zero at a start would never be found. Where they go on to fall, the run ends: see
+    `gearidae.engine.events.events.chatters`.
+
+    Returns
+    -------
+    count : int
+        New number of events.
+    restart : bool
+        Whether the integration must begin anew.
+    """
+    passes = 0
+    while passes <= PASSES_HIGH and settle_sliding(m, t, y, False):
+        count = record_sliding(m, t, events, count)
+        passes += 1
+    if passes > PASSES_HIGH:
+        m.state.reversals = REVERSALS_HIGH + 1
+    return count, passes > 0
 
 
 @compiled_once(FRICTION)
 def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
-    """Deal with all guards of friction that have fallen, for `record_sliding` to record.
+    """Deal with all guards of friction that have fallen, once, for `record_sliding` to record.
 
     Parameters
     ----------
@@ -196,12 +231,19 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
         _set_slip(m, state.hold, state.held_pair, 1.0)  # it has the same levers
     state.hold, state.held_pair = kind, history
     _set_slip(m, kind, history, 0.0)
+    _let_go(m, t, y)
+    _note_event(m, kind, history, before)
+
+
+@compiled
+def _let_go(m: Model, t: float, y: Floats) -> None:
+    """Let go of the element that is held, if that takes more friction than its limit."""
+    state = m.state
     turn, pinion, gear = forces_at_shafts(m, t, y)
     found = solve_shafts(m, t, y, turn, pinion, gear)
     if found.margin < -NO_FORCE:
-        state.hold = FREE
-        _set_slip(m, kind, history, _sign(found.held))
-    _note_event(m, kind, history, before)
+        kind, state.hold = state.hold, FREE
+        _set_slip(m, kind, state.held_pair, _sign(found.held))
 
 
 @compiled
@@ -230,6 +272,8 @@ def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
                 if one.hold == HELD_PAIR:
                     state.held_pair = one.history
             _set_slip(m, one.hold, one.history, slip)
+        if state.hold != FREE:  # bearings are loaded otherwise than at rest
+            _let_go(m, t, y)
     for i in range(found.count):
         one = found.element[i]
         _note_event(m, one.hold, one.history, one.before)
