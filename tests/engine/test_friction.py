@@ -473,6 +473,31 @@ def test_slow_gears_close_their_balance(hubs):
     assert rough.samples["gear_speed"][-1] == pytest.approx(sharp.samples["gear_speed"][-1], rel=1e-5, abs=0)
 
 
+def test_a_pinion_that_starts_alone_is_not_brought_back_to_rest():
+    """Unloaded hubs hold nothing, and mesh damping takes the gear along: R2 w = F t / (I1 / R1^2 + I2 / R2^2).
+
+    The gear follows in 3e-8 s, 3e-5 of the run.
+    """
+    scene = preset("teodorescu2009_low_speed").replace(
+        {
+            **HUBS,
+            "contact.friction": 0.1,
+            "initial.gear_speed": 0.0,
+            "initial.gap": 105e-9,
+            "mesh.damping": 1e-4,
+            "load.drag": 0.0,
+            "run.duration": 1e-3,
+            "run.samples": 2,
+        }
+    )
+    solution = run(scene)
+    assert solution.status == "finished"
+    assert not solution.events.kind.size
+    mass = scene.gears.pinion_inertia / R1**2 + scene.gears.gear_inertia / R2**2
+    speed = scene.drive.torque / R1 * 1e-3 / mass
+    assert solution.samples["gear_speed"][-1] * R2 == pytest.approx(speed, rel=1e-4, abs=0)
+
+
 # -- properties ------------------------------------------------------------------------------------------------------
 
 

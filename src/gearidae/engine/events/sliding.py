@@ -39,7 +39,7 @@ RUBS: Final = 1e-8
 STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
 AT_ONCE: Final = 1e-7
-"""Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest."""
+"""Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest, if they stay."""
 REVERSALS_HIGH: Final = 100_000
 """Changes of sliding from one mesh mark to the next, beyond which they are too many to follow."""
 PASSES_HIGH: Final = 20
@@ -222,12 +222,15 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
     excess = (first * turn + second * y[W]) / (a1 * first**2 + a2 * second**2)
     turn -= a1 * first * excess
     w = y[W] - a2 * second * excess
-    if max(abs(turn), abs(w)) <= AT_ONCE:
+    let_go = state.hold == kind and state.held_pair == history  # what moves has directions already
+    fastest = max(abs(turn), abs(w))
+    stops = not let_go and fastest <= AT_ONCE
+    if stops and (fastest == 0.0 or state.hold != FREE or _rests(m, t, y)):
         _decide_at_rest(m, t, y)
         return
     y[W], y[V] = w, turn * (1.0 - e1) - w
     before = _slip_of(m, kind, history)
-    if state.hold != FREE and (state.hold != kind or state.held_pair != history):
+    if state.hold != FREE and not let_go:
         _set_slip(m, state.hold, state.held_pair, 1.0)  # it has the same levers
     state.hold, state.held_pair = kind, history
     _set_slip(m, kind, history, 0.0)
@@ -244,6 +247,17 @@ def _let_go(m: Model, t: float, y: Floats) -> None:
     if found.margin < -NO_FORCE:
         kind, state.hold = state.hold, FREE
         _set_slip(m, kind, state.held_pair, _sign(found.held))
+
+
+@compiled
+def _rests(m: Model, t: float, y: Floats) -> bool:
+    """Whether gears that hardly move would be held where they are: bringing to rest what is not would not end."""
+    v, w = y[V], y[W]
+    y[V] = y[W] = 0.0
+    _, pinion, gear = forces_at_shafts(m, t, y)
+    list_elements(m, t, y)
+    y[V], y[W] = v, w
+    return bool(rest_margin(m, pinion, gear) >= -NO_FORCE)
 
 
 @compiled
