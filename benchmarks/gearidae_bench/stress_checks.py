@@ -17,6 +17,7 @@ from gearidae.contact.line import line_force
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.records import EnergyBalance, ExposureRows, Extremes
 from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene.friction import has_flank_friction
 
 __all__ = ["complaint_about", "complaint_about_exposures"]
 
@@ -90,7 +91,9 @@ def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Ex
     if not extremes.exposures or scene.gears is None:
         return ""
     rows = ExposureRows.of(len(MATERIAL_NAMES))
-    sums = np.array(extremes.exposures).reshape(-1, rows.total, scene.run.exposures)
+    sums = np.array(extremes.exposures).reshape(
+        -1, rows.per_tooth(rubs=has_flank_friction(scene)), scene.run.exposures
+    )
     if not np.isfinite(sums).all() or (sums < 0.0).any():
         return "exposures that are negative or not finite"
     if scene.coating.by_place or balance.model_change != 0.0:

@@ -31,7 +31,7 @@ def test_a_life_is_written_and_shown(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (["--law", "rust", "--parameter", "area=1"], "must be one of adhesion_work, contacts, sliding_work"),
+        (["--law", "rust", "--parameter", "area=1"], "must be one of adhesion_work, contacts, friction_work"),
         (["--law", "contacts", "--parameter", "energy=1"], "is no parameter of it"),
         (["--law", "contacts", "--parameter", "area=1e-20", "--arrhenius", "temperature=300 K"], "needs"),
     ],

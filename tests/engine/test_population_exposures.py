@@ -13,6 +13,7 @@ from gearidae.records import EventKind
 from gearidae.scene import MATERIAL_NAMES, preset
 from gearidae.scene.coating_table import met_teeth
 from reference.population import NUMBERS, Contact, Tip
+from reference.rubbing_contacts import ListedAsperities, jkr
 
 PLACES = 6
 GEARS = preset("teodorescu2009").replace(
@@ -134,6 +135,18 @@ def test_a_table_of_equal_teeth_is_one_number():
     assert np.array_equal(one.events.asperity, other.events.asperity)
 
 
+def spans_of(ds):
+    """Pair and asperity, start and end of each span in which an asperity of the drive flank is joined."""
+    joined, spans = {}, []
+    for kind, pair, coast, asperity, t in asperity_events(ds):
+        assert coast == 0
+        if kind == EventKind.ASPERITY_ONSET:
+            joined[pair, asperity] = t
+        else:
+            spans.append((pair, asperity, joined.pop((pair, asperity)), t))
+    return spans + [(pair, asperity, t, np.inf) for (pair, asperity), t in joined.items()]
+
+
 def test_sliding_work_and_pressure_are_those_of_the_samples():
     """Ten listed asperities, 20,001 samples: a sum over samples of forces that jump at events is good to 1e-4."""
     scene = GEARS.replace(
@@ -144,15 +157,8 @@ def test_sliding_work_and_pressure_are_those_of_the_samples():
     phase = (ds.gear_angle.values - ds.gear_angle.values[0]) * g.base_radius_gear
     phase += scene.initial.mesh_phase * g.base_pitch
     gap = 0.5 * scene.mesh.backlash - ds.transmission_error.values
-    forces, joined, spans = {}, {}, []
-    for kind, pair, coast, asperity, t in asperity_events(ds):
-        assert coast == 0
-        if kind == EventKind.ASPERITY_ONSET:
-            joined[pair, asperity] = t
-        else:
-            spans.append((pair, asperity, joined.pop((pair, asperity)), t))
-    spans += [(pair, asperity, t, np.inf) for (pair, asperity), t in joined.items()]
-    for pair, asperity, start, end in spans:
+    forces = {}
+    for pair, asperity, start, end in spans_of(ds):
         here = np.flatnonzero((time > start) & (time < end))
         arc, height, radius = (LISTED[name][asperity] for name in ("arc", "height", "radius"))
         xi = phase[here] - pair * g.base_pitch
@@ -175,6 +181,59 @@ def test_sliding_work_and_pressure_are_those_of_the_samples():
     np.testing.assert_allclose(ours, work, rtol=0, atol=1e-3 * work.max())
     largest = ds.largest_pressure.sel(flank="drive").values
     np.testing.assert_allclose(largest, pressure, rtol=0, atol=1e-2 * pressure.max())
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"contact.friction": 0.3},
+        {"contact.friction_law": "shear", "contact.shear_strength": "1 GPa"},
+    ],
+    ids=["net", "shear"],
+)
+def test_each_asperity_rubs_at_its_own_place(changes):
+    """Against samples: a sum over 20,001 of them, of forces that jump at events, is good to 1e-3."""
+    own = {"contact.asperities": LISTED, "coating.sam_fraction": 0.0, "run.samples": 20_001, "run.rtol": 1e-8}
+    ds = gd.simulate(GEARS.replace(own | changes))
+    scene = ds.gearidae.scene
+    contact, g, time = Contact(scene), scene.geometry, ds.time.values
+    law = ListedAsperities(scene, [LISTED[name] for name in ("arc", "height", "radius")], 0.3, 1e9)
+    phase = (ds.gear_angle.values - ds.gear_angle.values[0]) * g.base_radius_gear
+    phase += scene.initial.mesh_phase * g.base_pitch
+    gap = 0.5 * scene.mesh.backlash - ds.transmission_error.values
+    first = g.base_radius_pinion * np.tan(scene.gears.pressure_angle) - g.approach
+    loads, limits = {}, {}
+    for pair, one, start, end in spans_of(ds):
+        here = np.flatnonzero((time > start) & (time < end))
+        xi = phase[here] - pair * g.base_pitch
+        overlap = [
+            contact.overlap(*at, law.arcs[one], law.heights[one])[0] for at in zip(xi, gap[here], strict=True)
+        ]
+        cube = jkr(np.maximum(np.array(overlap) / law.dc[one], -1.0))
+        load = 2.0 * law.pc[one] * (cube - np.sqrt(2.0 * cube))
+        area = np.pi * (3.0 * law.radii[one] * law.pc[one] / (2.0 * law.modulus) * cube) ** (2 / 3)
+        for table, values in ((loads, load), (limits, 1e9 * area)):
+            table.setdefault(pair, np.zeros((time.size, len(law.arcs))))[here, one] += values
+    work = np.zeros((19, PLACES))
+    for pair, load in loads.items():
+        inside = first + np.clip(phase - pair * g.base_pitch, 0.0, g.path_length)
+        both = (g.base_radius_pinion + g.base_radius_gear) * np.tan(scene.gears.pressure_angle)
+        speed = np.abs(inside * ds.pinion_speed.values - (both - inside) * ds.gear_speed.values)
+        if "contact.friction" in changes:  # the pair's friction is shared by those that push
+            pushes = np.maximum(load, 0.0)
+            total = pushes.sum(axis=1, keepdims=True)
+            share = np.divide(pushes, total, out=np.zeros_like(pushes), where=total > 0.0)
+            power = 0.3 * np.maximum(load.sum(axis=1, keepdims=True), 0.0) * share
+        else:
+            power = limits[pair]
+        along = np.sqrt(2.0 * g.base_radius_pinion * law.arcs) - first
+        place = np.minimum((np.clip(along / g.path_length, 0.0, 1.0) * PLACES).astype(int), PLACES - 1)
+        work[pair % 19] += np.bincount(place, (power * speed[:, None]).sum(axis=0) * time[1], PLACES)
+    ours = (ds.friction_work * ds.flank_area).sel(flank="drive").values
+    total = json.loads(ds.attrs["energy_balance"])["drive_friction_loss"]
+    assert ours.sum() == pytest.approx(total, rel=1e-12, abs=0)  # the same quadrature, added up otherwise
+    assert (work.sum(axis=0) > 0.0).sum() > 1
+    np.testing.assert_allclose(ours, work, rtol=0, atol=2e-3 * work.max())
 
 
 @pytest.mark.parametrize("energy", ["10 J/m^2", "1e-3 J/m^2"])

@@ -11,7 +11,7 @@ from gearidae.archive import save
 from gearidae.cli import main
 from gearidae.errors import Interrupted
 from gearidae.report.page import build_report
-from gearidae.runs import kept_validity, validity
+from gearidae.runs import validity
 from gearidae.runs.kept_validity import validity_of
 from gearidae.runs.validity import validity_attribute, validity_rows
 
@@ -50,7 +50,7 @@ def test_reading_takes_what_is_kept(path, monkeypatch):
     def forbidden(scene):
         raise AssertionError("computed again")
 
-    monkeypatch.setattr(kept_validity, "validity_rows", forbidden)
+    monkeypatch.setattr(validity, "validity_rows", forbidden)
     assert validity_of(ds)[0].number == pytest.approx(5.13e-8, rel=2e-3)  # checked independently
     ds.attrs["validity"] = "[1]"
     with pytest.raises(AssertionError, match="computed again"):
@@ -71,7 +71,7 @@ def test_a_run_in_memory_does_not_wait_for_them(monkeypatch):
 def test_they_are_computed_once_for_a_run(path, monkeypatch):
     computed = []
     whole = validity._asperities
-    monkeypatch.setattr(validity, "_asperities", lambda rest: computed.append(rest) or whole(rest))
+    monkeypatch.setattr(validity, "_asperities", lambda *of: computed.append(of) or whole(*of))
     gd.simulate(LOW.replace({"surface.roughness": 6.01e-9}), archive=path)
     assert len(computed) == 1
 

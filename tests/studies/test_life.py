@@ -60,7 +60,7 @@ def test_blocks_that_fluctuate_are_averaged(monkeypatch):
     seen = []
 
     def blocks(*contacts):
-        seen[:] = [np.full((2, ROWS.total, 4), each) for each in contacts]
+        seen[:] = [np.full((2, ROWS.per_tooth(rubs=False), 4), each) for each in contacts]
         return steady_exposures(seen, 0.01)
 
     assert blocks(1.0) is None

@@ -18,20 +18,43 @@ from gearidae.wear import (
 )
 from gearidae.wear.base import parameter
 
-SEEN = Exposure(*(np.array([1.0, 2.0]) * unit for unit in (1e12, 1e-3, 2e-3, 1e6)))
+SEEN = Exposure(*(np.array([1.0, 2.0]) * unit for unit in (1e12, 1e-3, 2e-3, 1e6, 5e-4)))
 F = np.array([0.5, 0.25])
 
 
 def test_each_law_is_its_formula():
-    assert loss_law_names() == ("adhesion_work", "contacts", "sliding_work")
+    assert loss_law_names() == ("adhesion_work", "contacts", "friction_work", "sliding_work")
     np.testing.assert_allclose(loss_law("contacts", area=1e-20).rate(F, SEEN), [-5e-9, -5e-9])
     np.testing.assert_allclose(loss_law("adhesion_work", energy=10.0).rate(F, SEEN), [-5e-5, -5e-5])
     np.testing.assert_allclose(loss_law("sliding_work", coefficient=3.0).rate(F, SEEN), [-6e-3, -12e-3])
 
+    np.testing.assert_allclose(loss_law("friction_work", coefficient=3.0).rate(F, SEEN), [-1.5e-3, -3e-3])
 
-def test_archard_ends_where_nothing_is_left():
-    law = loss_law("sliding_work", coefficient=3.0)
+
+@pytest.mark.parametrize("name", ["sliding_work", "friction_work"])
+def test_archard_ends_where_nothing_is_left(name):
+    law = loss_law(name, coefficient=3.0)
     np.testing.assert_array_equal(law.rate(np.zeros(2), SEEN), 0.0)
+
+
+@pytest.mark.parametrize("hot", [False, True])
+def test_a_law_of_friction_needs_friction(hot):
+    law, smooth = loss_law("friction_work", coefficient=3.0), gd.preset("teodorescu2009")
+    if hot:
+        law = Arrhenius(law, "1 eV", "50 nm^3", "300 K")
+    with pytest.raises(gd.SceneError, match="above 0 for the loss law friction_work") as error:
+        gd.studies.life(smooth, law)
+    assert error.value.key == "contact.friction"
+    with pytest.raises(gd.SceneError, match="above 0 for the loss law friction_work"):
+        gd.studies.lives(smooth, law, {"drive.torque": "uniform(2.9e-11, 3e-11)"}, 2)
+    law.check(smooth.replace({"contact.friction": 0.1}))
+    law.check(smooth.replace({"contact.friction_law": "shear", "coating.shear_strength": "1 MPa"}))
+    loss_law("sliding_work", coefficient=3.0).check(smooth)
+
+
+def test_an_exposure_without_friction_has_no_work_of_it():
+    seen = Exposure(SEEN.contacts, SEEN.adhesion_work, SEEN.sliding_work, SEEN.pressure)
+    np.testing.assert_array_equal(loss_law("friction_work", coefficient=3.0).rate(F, seen), 0.0)
 
 
 def test_arrhenius_multiplies_a_law():

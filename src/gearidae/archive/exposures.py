@@ -14,6 +14,7 @@ from gearidae.records import ExposureRows, Solution
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at
+from gearidae.scene.friction import has_flank_friction
 
 FLANKS = ("drive", "coast")
 _POINTS = 64  # in each place, for means over it
@@ -118,6 +119,8 @@ def exposure_variables(
     parts = [_per_area(own, each) for own, each in zip(scenes, solutions, strict=True)]
     made: dict[Hashable, Any] = {}
     for name, variable in EXPOSURES.items():
+        if name == "friction_work" and not any(has_flank_friction(each) for each in scenes):
+            continue
         values = np.stack([part[name] for part in parts])
         made[name] = ((*dims, *variable.dims), values.reshape(*shape, *values.shape[1:]), variable.attributes)
     return made
@@ -127,7 +130,8 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     """Exposures of one run, per area of the pinion's flanks."""
     assert scene.gears is not None
     rows = ExposureRows.of(len(MATERIAL_NAMES))
-    shape = (len(FLANKS), scene.gears.pinion_teeth, rows.total, scene.run.exposures)
+    rubs = has_flank_friction(scene)
+    shape = (len(FLANKS), scene.gears.pinion_teeth, rows.per_tooth(rubs=rubs), scene.run.exposures)
     if solution.extremes is None or len(solution.extremes.exposures) != math.prod(shape):
         table = np.full(shape, math.nan)
     else:
@@ -152,6 +156,7 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
         "adhesion_work": np.divide(lost, shares, out=np.zeros_like(lost), where=shares > 0.0),
         "sliding_work": table[:, :, rows.sliding] / area,
         "largest_pressure": table[:, :, rows.pressure] / (width * unit),
+        "friction_work": (table[:, :, rows.friction] if rubs else np.zeros(shape[:2] + shape[3:])) / area,
     }
 
 

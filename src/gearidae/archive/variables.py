@@ -240,6 +240,13 @@ _EXPOSURES = (
         "largest force of a pair over face width and sqrt(2 R sigma)",
         comment="nominal: the asperities share it",
     ),
+    Variable(
+        "friction_work",
+        _FLANKS,
+        "J m-2",
+        "energy lost to friction of the flanks, per area; only of scenes with it",
+        comment=_OF_PINION,
+    ),
 )
 _PLACES = (
     Variable("place", ("place",), "m", "place along the path of contact, from its beginning at the pinion"),

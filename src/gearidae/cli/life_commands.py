@@ -9,7 +9,7 @@ from cyclopts import Parameter
 from gearidae.cli.app import Case, app
 from gearidae.cli.study_commands import USUAL, Design, Seed, Usual, Vary
 
-Law = Annotated[str, Parameter(help="Loss law: contacts, adhesion_work or sliding_work.")]
+Law = Annotated[str, Parameter(help="Loss law: contacts, adhesion_work, sliding_work or friction_work.")]
 _PARAMETER = Parameter(
     name="--parameter",
     help="Parameter of the law, such as energy='2 J/m^2'; repeatable.",

@@ -9,7 +9,7 @@ import numpy as np
 from gearidae.engine.elastic.histories import book_points, init_nodes
 from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
 from gearidae.engine.followers.balance import carry_balance
-from gearidae.engine.followers.exposures.bins import exposures_of
+from gearidae.engine.followers.exposures.bins import exposure_table
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
 from gearidae.engine.pairs.tooth_pairs import set_joined
@@ -165,9 +165,14 @@ def lighten(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
 
 
 def carry_exposures(source: Model, m: Model) -> None:
-    """Take over what the flanks have been exposed to, if the new model keeps as many places; else it begins anew."""
-    if source.scene.exposures == m.scene.exposures:
-        exposures_of(m)[:] = exposures_of(source)
+    """Take over what the flanks have been exposed to, if the new model keeps as many places; else it begins anew.
+
+    The work of friction begins with friction, and ends with it.
+    """
+    if source.scene.bins == m.scene.bins > 0:
+        before, after = exposure_table(source), exposure_table(m)
+        both = min(before.shape[1], after.shape[1])
+        after[:, :both] = before[:, :both]
 
 
 def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:

@@ -32,7 +32,7 @@ from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import begin_sliding, settle_start
 from gearidae.engine.followers.balance import open_balance
-from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
+from gearidae.engine.followers.exposures.bins import ROWS, exposure_table, exposures_of
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
@@ -204,7 +204,7 @@ class _Units:
     def convert_exposures(self, m: Model) -> None:
         """Put what the flanks have been exposed to into the new units, in place; numbers of asperities have none."""
         if m.scene.bins:
-            table = exposures_of(m).reshape(-1, ROWS.total, int(m.scene.bins))
+            table = exposure_table(m)
             table[:, ROWS.adhesion :] *= (
                 self.energy
             )  # forces have the same unit, as lengths are in roughnesses

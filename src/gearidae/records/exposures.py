@@ -15,17 +15,21 @@ class ExposureRows(NamedTuple):
         is one for each material.
     sliding, pressure : int
         Row of the sliding work, and of the largest pressure.
-    total : int
-        Rows of a tooth.
+    friction : int
+        Row of the work of friction, the last one; only where flanks have friction.
     """
 
     contacts: int
     adhesion: int
     sliding: int
     pressure: int
-    total: int
+    friction: int
 
     @classmethod
     def of(cls, materials: int) -> Self:
         """Rows where so many materials may share the interface."""
         return cls(0, materials, 2 * materials, 2 * materials + 1, 2 * materials + 2)
+
+    def per_tooth(self, *, rubs: bool) -> int:
+        """Rows of a tooth whose flanks have friction, or have none."""
+        return self.friction + int(rubs)

@@ -200,7 +200,8 @@ class Extremes:
     exposures : array of float
         Exposures of the flanks, in the order flank, tooth of the pinion, quantity, place: for each
         material asperities joined over those of a unit contact length, for each the energy they lost [J], sliding work
-        [J], largest force over contact length [N]. Empty if ``run.exposures`` is 0.
+        [J], largest force over contact length [N], and where flanks have friction its work [J]. Empty if
+        ``run.exposures`` is 0.
     """
 
     min_gear_speed: float = math.nan

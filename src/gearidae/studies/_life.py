@@ -234,6 +234,7 @@ def _check(
     require_constant(scene, "a life", "its windows stand for all passages")
     if not isinstance(law, LossLaw):
         raise SceneError("law", type(law).__name__, "must be a loss law, see gearidae.wear.loss_law")
+    law.check(scene)
     if not 0.0 < passages < math.inf:
         raise SceneError("passages", passages, "must be positive")
     if not 0.0 <= fraction < 1.0:

@@ -134,6 +134,8 @@ def lives(
     values = {each.key: drawn[:, number] for number, each in enumerate(distributions)}
     laws = drawn_laws(law, values, int(size), texts)
     members = list(zip(_scenes(base, values, int(size), texts), laws, strict=True))
+    for scene_of_member, law_of_member in members:
+        law_of_member.check(scene_of_member)
     how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
 

@@ -108,24 +108,33 @@ class Coverage:
             dict(zip(names, found[name][1][0], strict=True))
             for name in ("asperity_contacts", "adhesion_work")
         )
-        shared = (found["sliding_work"][1][0], found["largest_pressure"][1][0])
+        shared = [found[name][1][0] for name in ("sliding_work", "friction_work") if name in found]
+        shared.append(found["largest_pressure"][1][0])
         area = exposure_coordinates(scene)["flank_area"][1]
         if not self.independent:
             tables = (contacts["coated"], work["coated"], *shared)
-            return Exposure(*(each.ravel() for each in _gathered(tables, area, cycles, self.shapes[0])))
+            return _exposure([each.ravel() for each in _gathered(tables, area, cycles, self.shapes[0])])
         sides = []
         for other, shape in zip(self.split(np.clip(state, 0.0, 1.0))[::-1], self.shapes, strict=True):
             # what is covered meets a covered or a bare place of the other side
             met = [other * each["coated"] + (1.0 - other) * each["mixed"] for each in (contacts, work)]
             sides.append(_gathered((*met, *shared), area, cycles, shape))
         ratio = _gear_over_pinion(scene, self.places)
-        gear = [each * ratio for each in sides[1][:3]] + [sides[1][3]]
-        return Exposure(
-            *(np.concatenate([a.ravel(), b.ravel()]) for a, b in zip(sides[0], gear, strict=True))
+        gear = [each * ratio for each in sides[1][:-1]] + sides[1][-1:]
+        return _exposure(
+            [np.concatenate([a.ravel(), b.ravel()]) for a, b in zip(sides[0], gear, strict=True)]
         )
 
 
 _SIDES = ("pinion", "gear")
+
+
+def _exposure(numbers: Sequence[Floats]) -> Exposure:
+    """Make an exposure of its arrays, pressures last; the work of friction before them is missing without friction."""
+    contacts, adhesion, sliding, *friction, pressure = numbers
+    return Exposure(
+        contacts, adhesion, sliding, pressure, friction[0] if friction else np.zeros_like(sliding)
+    )
 
 
 def _gathered(tables: Sequence[Floats], area: Floats, cycles: int, shape: tuple[int, int]) -> list[Floats]:

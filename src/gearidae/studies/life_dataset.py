@@ -12,6 +12,7 @@ import xarray as xr
 from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
+from gearidae.scene.friction import friction_values
 from gearidae.studies.cycle_jump import Life
 from gearidae.studies.life_coverage import Coverage
 from gearidae.studies.life_signals import signal_of
@@ -24,6 +25,7 @@ _EXPOSURES = {
     "contacts": ("m-2", "asperity contacts made on coated flank in a passage, per area of it"),
     "adhesion_work": ("J m-2", "energy lost to adhesion on coated flank in a passage, per area of it"),
     "sliding_work": ("J m-2", "normal force times sliding distance in a passage, per area"),
+    "friction_work": ("J m-2", "energy lost to friction of the flanks in a passage, per area"),
     "pressure": ("Pa", "largest nominal pressure"),
 }
 
@@ -64,7 +66,10 @@ def life_dataset(
             _about("rad s-1", "smallest speed of the gear"),
         ),
     }
+    rubs = any(friction_values(scene).values())
     for name, (unit, meaning) in _EXPOSURES.items():
+        if name == "friction_work" and not rubs:
+            continue
         values = np.array([coverage.table(_mean(each, name, len(states[0]))) for each in seen])
         together = values.max(axis=(2, 3)) if name == "pressure" else values.mean(axis=(2, 3))
         variables[f"passage_{name}"] = (dims, together, _about(unit, meaning))

@@ -21,6 +21,7 @@ from gearidae.records import ExposureRows
 from gearidae.runs.estimates import steady_speed
 from gearidae.runs.running import solve_to_end, unsolved
 from gearidae.scene import MATERIAL_NAMES
+from gearidae.scene.friction import has_flank_friction
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -270,4 +271,5 @@ def gained(solution: Solution, before: Solution | None, scene: Scene) -> Floats:
 
 def _table(solution: Solution, scene: Scene) -> Floats:
     assert solution.extremes is not None
-    return np.array(solution.extremes.exposures).reshape(-1, _ROWS.total, scene.run.exposures)
+    rows = _ROWS.per_tooth(rubs=has_flank_friction(scene))
+    return np.array(solution.extremes.exposures).reshape(-1, rows, scene.run.exposures)

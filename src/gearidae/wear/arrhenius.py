@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.wear.base import Exposure, LossLaw, parameter
+
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
 
 BOLTZMANN = 1.380649e-23
 """J/K, exact (SI)."""
@@ -44,6 +47,10 @@ class Arrhenius(LossLaw):
         """Return the factor at pressures [Pa]."""
         barrier = np.maximum(self.activation_energy - np.asarray(pressure) * self.activation_volume, 0.0)
         return np.asarray(np.exp(-barrier / (BOLTZMANN * self.temperature)))
+
+    def check(self, scene: Scene) -> None:
+        """See `LossLaw.check`."""
+        self.law.check(scene)
 
     def rate(self, fraction: Floats, exposure: Exposure) -> Floats:
         """See `LossLaw.rate`."""

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.quantity import Quantity
+
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +30,15 @@ class Exposure:
         Normal force times sliding distance, per area [J/m^2].
     pressure : ndarray
         Largest nominal pressure [Pa].
+    friction_work : ndarray
+        Energy lost to friction of the flanks, per area [J/m^2]; 0 without friction.
     """
 
     contacts: Floats
     adhesion_work: Floats
     sliding_work: Floats
     pressure: Floats
+    friction_work: Floats = field(default_factory=lambda: np.zeros(()))
 
 
 def parameter(unit: str, description: str, **limits: Any) -> Any:
@@ -89,6 +97,15 @@ class LossLaw(ABC):
             Share of each place that is covered [1].
         exposure : Exposure
             Of one passage, in the same shape.
+        """
+
+    def check(self, scene: Scene) -> None:  # noqa: B027  # most laws need nothing
+        """Refuse a scene whose flanks are not exposed to what the law needs; all are accepted unless a law says so.
+
+        Raises
+        ------
+        SceneError
+            Naming the key.
         """
 
     def describe(self) -> dict[str, Any]:

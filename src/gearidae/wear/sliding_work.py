@@ -28,6 +28,10 @@ class SlidingWork(LossLaw):
 
     coefficient: float = parameter("m^2/J", "coverage lost for each unit of sliding work per area, k")
 
+    def load(self, exposure: Exposure) -> Floats:
+        """Work per area that the loss is in proportion to [J/m^2]."""
+        return exposure.sliding_work
+
     def rate(self, fraction: Floats, exposure: Exposure) -> Floats:
         """See `LossLaw.rate`."""
-        return np.asarray(np.where(fraction > 0.0, -self.coefficient * exposure.sliding_work, 0.0))
+        return np.asarray(np.where(fraction > 0.0, -self.coefficient * self.load(exposure), 0.0))

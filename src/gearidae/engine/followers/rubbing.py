@@ -7,6 +7,13 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
+from gearidae.engine.followers.exposures.rubbing import (
+    add_rubbing,
+    begin_powers,
+    divide_rubbing,
+    keeps_rubbing,
+    note_power,
+)
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral
 from gearidae.engine.friction.forces import Mesh, Shafts, solve_shafts
@@ -30,6 +37,7 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
     for which in range(_POWERS):
         r.power[which] = r.power_rate[which] = 0.0
     drive = coast = drive_friction = coast_friction = 0.0  # rates
+    begin_powers(m)
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         flank = flank_of_history(m, noted.history)
@@ -38,8 +46,10 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         friction, rate = slip * noted.limit, slip * noted.limit_rate
         speed = first * turn - second * y[W]
         speed_rate = first * found.pinion - second * found.gear + lever_rate(m, noted, turn, y[W])
-        r.power[flank] += friction * speed
-        r.power_rate[flank] += rate * speed + friction * speed_rate
+        power, power_rate = friction * speed, rate * speed + friction * speed_rate
+        r.power[flank] += power
+        r.power_rate[flank] += power_rate
+        note_power(m, noted.history, power, power_rate)
         if flank == COAST:
             coast += noted.force_rate
             coast_friction += rate
@@ -98,20 +108,21 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     hubs = m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0
     no_rates = (root and m.scene.population.flanks != 0) or (hubs and m.state.hold == HELD_PAIR)
     if no_rates and a.order_used > 0:
-        for point in range(3):
-            then = start + (0.5 + (point - 1) * _OUTER) * h
-            adams.between(a, then, between, rates)
-            note_rubbing(m, then, between)
-            for i in range(_POWERS):
-                _book(m, i, (8.0 if point == 1 else 5.0) / 18.0 * h * r.power[i], 0.0)
+        _book_inside(m, start, h, between, rates)
         note_rubbing(m, t, y)
         return
     middle, halved = first, a.order_used > 0
+    end, bend = (7.0 / 30.0 * h, h * h / 60.0) if halved else (0.5 * h, h * h / 12.0)  # weights of the rule
+    add_rubbing(m, end, bend)
     if halved:
         adams.between(a, start + 0.5 * h, between, rates)
         note_rubbing(m, start + 0.5 * h, between)
+        add_rubbing(m, 16.0 / 30.0 * h, 0.0)
         middle = _powers(m)
     note_rubbing(m, t, y)
+    add_rubbing(m, end, -bend)
+    if keeps_rubbing(m):
+        divide_rubbing(m, between if halved else y)
     last = _powers(m)
     for i in range(_POWERS):
         j = _POWERS + i
@@ -123,6 +134,21 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
             error = min(error, abs(parts - loss) / 15.0)
             loss = parts + (parts - loss) / 15.0
         _book(m, i, loss, error)
+
+
+@compiled
+def _book_inside(m: Model, start: float, h: float, between: Floats, rates: Floats) -> None:
+    """Add the losses of an interval from the powers at three points inside it, by the Gaussian rule."""
+    for point in range(3):
+        then = start + (0.5 + (point - 1) * _OUTER) * h
+        adams.between(m.work.adams, then, between, rates)
+        note_rubbing(m, then, between)
+        weight = (8.0 if point == 1 else 5.0) / 18.0 * h
+        for i in range(_POWERS):
+            _book(m, i, weight * m.work.rubbing.power[i], 0.0)
+        add_rubbing(m, weight, 0.0)
+        if keeps_rubbing(m):
+            divide_rubbing(m, between)
 
 
 @compiled(inline=True)

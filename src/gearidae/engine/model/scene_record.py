@@ -177,6 +177,7 @@ SCENE: Final = record_type(
     ("pitch_point", REAL),  # on the path of contact [pb]
     ("sliding_pinion", REAL),  # sliding speed a pitch from there, over the pinion's surface velocity [1]
     ("sliding_gear", REAL),  # over the gear's surface velocity [1]
+    ("exposure_rows", INT),  # sums of a tooth, each over all bins [1]
     ("exposures_at", INT),  # sums of the flanks among the rows [index]
     ("exposures", INT),  # numbers there [1]
     # the run

@@ -145,6 +145,9 @@ EXPOSED: Final = record_type(  # a pair where its exposures have last been added
     ("seen_bin", INT),  # bin of that
     ("force", REAL),  # there [F]
     ("force_rate", REAL),  # there [F/tau]
+    ("friction", REAL),  # power of its friction as last noted [F sigma/tau]
+    ("friction_rate", REAL),  # [F sigma/tau^2]
+    ("rubbed", REAL),  # work of friction in the present step [F sigma]
 )
 
 EXPOSING: Final = record_type(

@@ -287,7 +287,8 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     s.branches_at = rows.add(np.zeros(2 * MATERIALS * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
-    s.exposures = 2 * int(s.pinion_teeth) * ROWS.total * int(s.bins)
+    s.exposure_rows = ROWS.per_tooth(rubs=s.friction.flanks != 0)
+    s.exposures = 2 * int(s.pinion_teeth) * int(s.exposure_rows) * int(s.bins)
     s.exposures_at = rows.add(np.zeros(int(s.exposures)))
     branches = MATERIALS * int(s.points * s.point_branch_length) * histories
     s.point_branches_at = rows.add(np.zeros(branches))

@@ -18,6 +18,11 @@ def exposures_of(m: Model) -> Floats:
     return m.rows[m.scene.exposures_at : m.scene.exposures_at + m.scene.exposures]
 
 
+def exposure_table(m: Model) -> Floats:
+    """Return them by tooth of both flanks, quantity and place; writable."""
+    return exposures_of(m).reshape(-1, int(m.scene.exposure_rows), int(m.scene.bins))
+
+
 @compiled(inline=True)
 def bin_at(m: Model, inside: float) -> int:
     """Index of the place along the path of contact, whose end belongs to the last one."""
@@ -29,7 +34,7 @@ def row_of(m: Model, coast: int, pair: int) -> int:
     """Where the exposures of the pinion's tooth of a pair begin among the rows."""
     teeth = int(m.scene.pinion_teeth)
     tooth = (pair + int(m.state.turns)) % teeth
-    return m.scene.exposures_at + (coast * teeth + tooth) * ROWS.total * m.scene.bins
+    return m.scene.exposures_at + (coast * teeth + tooth) * m.scene.exposure_rows * m.scene.bins
 
 
 @compiled(inline=True)

@@ -19,7 +19,8 @@ to the next in such an interval, what it has joined is divided by its gap there,
 contacts, and of sliding work, in proportion to the way. Contacts on the tip relief count at the end of the path.
 
 Asperities of a population are counted one by one, each at its own place (the module `asperities` of this room); sliding
-work and pressure are those of the whole pair, where it touches.
+work and pressure are those of the whole pair, where it touches. The work of friction is a fifth sum, of flanks that
+have friction (the module `rubbing` of this room).
 """
 
 from __future__ import annotations

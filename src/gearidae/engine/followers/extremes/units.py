@@ -7,7 +7,7 @@ from array import array
 from types import SimpleNamespace
 from typing import Any
 
-from gearidae.engine.followers.exposures.bins import ROWS, exposures_of
+from gearidae.engine.followers.exposures.bins import ROWS, exposure_table
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, V, W, plain
 from gearidae.records import Extremes
 
@@ -67,9 +67,10 @@ def _exposures(m: Model) -> array[float]:
     if m.scene.bins == 0:
         return array("d")
     force, length = float(m.scene.force_unit), float(m.scene.length_unit)
-    table = exposures_of(m).reshape(-1, ROWS.total, int(m.scene.bins)).copy()
+    table = exposure_table(m).copy()
     table[:, ROWS.adhesion : ROWS.pressure] *= force * length
     table[:, ROWS.pressure] *= force
+    table[:, ROWS.friction :] *= force * length
     return array("d", table.tobytes())
 
 

@@ -1,0 +1,94 @@
+"""Work of friction, tooth by tooth and place by place: the losses of the energy balance, divided.
+
+The weights of the balance's quadrature are applied to the power of each pair, so that the sum over all teeth and places
+of a flank is the loss of that flank to rounding. The work of a step counts at one state of the motion in it, the middle
+where that is known. A pair of the mean law rubs at its place there. That of a population rubs at the places of its
+joined asperities, in proportion to the limits of their friction: with the law ``shear`` each has its own work, since
+all slide at one speed. With ``net`` those that are pulled have negative limits, and the pair's work is shared by those
+that push.
+"""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import FRICTION
+from gearidae.engine.followers.exposures.bins import ROWS, bin_at, row_of
+from gearidae.engine.friction.pairs import flank_of_history
+from gearidae.engine.model.state import PHASE, Floats, Model
+from gearidae.engine.pairs.coverage import path_position
+from gearidae.engine.population.forces import candidate_limit, candidate_load
+from gearidae.engine.population.layout import ARC, HEIGHT, JOINED, KIND, column
+from gearidae.engine.population.spots import pair_now, place_of_arc, spot_at
+
+
+@compiled(inline=True)
+def keeps_rubbing(m: Model) -> bool:
+    """Whether the work of friction is kept: where there are exposures, and flanks have friction."""
+    return bool(m.scene.bins > 0 and m.scene.exposure_rows > ROWS.friction)
+
+
+@compiled(inline=True)
+def begin_powers(m: Model) -> None:
+    """Begin to note the powers of friction of all pairs at a time, if they are kept."""
+    for k in range(m.scene.histories if keeps_rubbing(m) else 0):
+        own = m.work.exposing.pair[k]
+        own.friction = own.friction_rate = 0.0
+
+
+@compiled(inline=True)
+def note_power(m: Model, k: int, power: float, rate: float) -> None:
+    """Note the power of friction of the pair with the k-th history, and its rate."""
+    own = m.work.exposing.pair[k]
+    own.friction, own.friction_rate = power, rate
+
+
+@compiled(inline=True)
+def add_rubbing(m: Model, weight: float, rate_weight: float) -> None:
+    """Add to the work of a step the powers of friction that have been noted, and their rates, with weights."""
+    for k in range(m.scene.histories if keeps_rubbing(m) else 0):
+        own = m.work.exposing.pair[k]
+        own.rubbed += weight * own.friction + rate_weight * own.friction_rate
+
+
+@compiled_once(FRICTION)
+def divide_rubbing(m: Model, y: Floats) -> None:
+    """Add the work of a step to the places where pairs rub at a state."""
+    for k in range(m.scene.histories):
+        own, pair = m.work.exposing.pair[k], int(m.state.history[k].pair)
+        work, own.rubbed = own.rubbed, 0.0
+        if work == 0.0:
+            continue
+        coast = flank_of_history(m, k)
+        row = row_of(m, coast, pair) + ROWS.friction * m.scene.bins
+        if m.work.contact[k].joined > 0 and _divide_asperities(m, y, k, pair, row, work):
+            continue
+        m.rows[row + bin_at(m, path_position(m, coast, pair, y[PHASE]))] += work
+
+
+@compiled
+def _divide_asperities(m: Model, y: Floats, k: int, pair: int, row: int, work: float) -> bool:
+    """Add the work of a population's pair to the places of its asperities; whether one of them has a limit."""
+    now = pair_now(m, flank_of_history(m, k), pair, y)
+    at, total = spot_at(m, now.place, now.moves), 0.0
+    joined, arcs, heights, kinds = (
+        column(m, k, JOINED),
+        column(m, k, ARC),
+        column(m, k, HEIGHT),
+        column(m, k, KIND),
+    )
+    bend = 0.5 * m.scene.population.steepness / at.radius
+    for adds in range(2):  # their sum first
+        share = work / total if adds == 1 else 1.0
+        for i in range(m.work.contact[k].joined):
+            j = int(m.rows[joined + i])
+            x, kind = m.rows[arcs + j] - at.arc, int(m.rows[kinds + j])
+            overlap = m.rows[heights + j] - now.gap - bend * x * x
+            load, stiffness = candidate_load(m, kind, overlap)
+            limit = max(candidate_limit(m, kind, overlap, load, stiffness)[0], 0.0)
+            if adds == 0:
+                total += limit
+            else:
+                m.rows[row + bin_at(m, place_of_arc(m, m.rows[arcs + j]))] += share * limit
+        if total == 0.0:
+            return False
+    return True
