@@ -426,6 +426,78 @@ def test_hubs_bound_the_torque_that_starts_a_gear():
     assert torque == pytest.approx(start, rel=1e-3, abs=0)
 
 
+FULL = 2.43e-11
+SCHEDULES = {
+    "start_up": {"time": [0.0, 4e-4], "value": [0.0, FULL]},
+    "braking": {"time": [0.0, 2e-4, 6e-4], "value": [FULL, FULL, 0.0]},
+    "alternating": {
+        "time": [0.0, 1e-4, 4e-4, 7e-4, 1e-3],
+        "value": [0.0, FULL, -FULL, FULL, 0.0],
+    },
+}
+LOSSES = ("drive_friction_loss", "coast_friction_loss", "pinion_hub_loss", "gear_hub_loss")
+
+
+@pytest.mark.parametrize("hubs", [{}, HUBS], ids=["flanks", "hubs"])
+@pytest.mark.parametrize("name", SCHEDULES)
+def test_gears_that_start_stop_and_turn_back_close_their_balance(name, hubs):
+    """The shipped scenes with short schedules: no friction gives work, and nothing is lost unseen."""
+    scene = preset(name).replace(
+        {
+            **hubs,
+            "contact.friction": 0.3,
+            "drive.schedule": SCHEDULES[name],
+            "run.duration": 1e-3,
+            "run.samples": "off",
+        }
+    )
+    solution = run(scene)
+    balance = solution.balance
+    assert solution.status == "finished"
+    assert abs(balance.residual) < balance.bound(1e-6, roller=False)
+    lost = [getattr(balance, one) for one in LOSSES]
+    assert min(lost) >= 0.0
+    assert lost[0] > 1e-4 * balance.throughput
+    assert (lost[2] > 0.0) == (lost[3] > 0.0) == bool(hubs)
+
+
+@pytest.mark.parametrize("hubs", [{}, HUBS], ids=["flanks", "hubs"])
+def test_slow_gears_close_their_balance(hubs):
+    """Regular motion: a hundred times sharper a tolerance moves the end by less than ten of the first."""
+    scene = preset("teodorescu2009_low_speed").replace({**hubs, "contact.friction": 0.3, "run.samples": 2})
+    rough, sharp = run(scene), run(scene.replace({"run.rtol": 1e-8}))
+    for solution, rtol in ((rough, 1e-6), (sharp, 1e-8)):
+        balance = solution.balance
+        assert abs(balance.residual) < balance.bound(rtol, roller=False)
+        assert min(getattr(balance, one) for one in LOSSES) >= 0.0
+    assert rough.samples["gear_speed"][-1] == pytest.approx(sharp.samples["gear_speed"][-1], rel=1e-5, abs=0)
+
+
+def test_a_pinion_that_starts_alone_is_not_brought_back_to_rest():
+    """Unloaded hubs hold nothing, and mesh damping takes the gear along: R2 w = F t / (I1 / R1^2 + I2 / R2^2).
+
+    The gear follows in 3e-8 s, 3e-5 of the run.
+    """
+    scene = preset("teodorescu2009_low_speed").replace(
+        {
+            **HUBS,
+            "contact.friction": 0.1,
+            "initial.gear_speed": 0.0,
+            "initial.gap": 105e-9,
+            "mesh.damping": 1e-4,
+            "load.drag": 0.0,
+            "run.duration": 1e-3,
+            "run.samples": 2,
+        }
+    )
+    solution = run(scene)
+    assert solution.status == "finished"
+    assert not solution.events.kind.size
+    mass = scene.gears.pinion_inertia / R1**2 + scene.gears.gear_inertia / R2**2
+    speed = scene.drive.torque / R1 * 1e-3 / mass
+    assert solution.samples["gear_speed"][-1] * R2 == pytest.approx(speed, rel=1e-4, abs=0)
+
+
 # -- properties ------------------------------------------------------------------------------------------------------
 
 

@@ -30,7 +30,7 @@ from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
-from gearidae.engine.events.sliding import begin_sliding, settle_sliding
+from gearidae.engine.events.sliding import begin_sliding, settle_start
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS, exposure_table, exposures_of
 from gearidae.engine.integrate.start import rebase
@@ -319,7 +319,7 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     if m.scene.friction.on != 0:
         s.stop_armed = 0
         if source.scene.friction.on != 0:
-            settle_sliding(m, time, y, False)
+            settle_start(m, time, y, False)
         else:
             begin_sliding(m, time, y)
         return

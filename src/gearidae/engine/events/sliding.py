@@ -39,9 +39,11 @@ RUBS: Final = 1e-8
 STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
 AT_ONCE: Final = 1e-7
-"""Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest."""
+"""Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest, if they stay."""
 REVERSALS_HIGH: Final = 100_000
 """Changes of sliding from one mesh mark to the next, beyond which they are too many to follow."""
+PASSES_HIGH: Final = 20
+"""Decisions at one time, each of which lets a guard fall again, beyond which no choice is consistent."""
 
 
 @compiled(inline=True)
@@ -91,12 +93,45 @@ def begin_sliding(m: Model, t: float, y: Floats) -> None:
     for k in range(m.scene.histories):
         state.history[k].slide = 0
     state.pinion_slip, state.slip = _sign(pinion_speed(m, y)[0]), _sign(y[W])
-    settle_sliding(m, t, y, True)
+    settle_start(m, t, y, True)
+
+
+@compiled_once(FRICTION)
+def settle_start(m: Model, t: float, y: Floats, fresh: bool) -> None:
+    """Deal with all guards of friction that have fallen at a start, of which no events are recorded."""
+    for _ in range(PASSES_HIGH):
+        if not settle_sliding(m, t, y, fresh):
+            return
+        fresh = False
+    m.state.reversals = REVERSALS_HIGH + 1
+
+
+@compiled
+def follow_sliding(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
+    """Deal with all guards of friction that have fallen, and with those that fall by that; see `settle_sliding`.
+
+    A guard below zero at a start would never be found. Where they go on to fall, the run ends: see
+    `gearidae.engine.events.events.chatters`.
+
+    Returns
+    -------
+    count : int
+        New number of events.
+    restart : bool
+        Whether the integration must begin anew.
+    """
+    passes = 0
+    while passes <= PASSES_HIGH and settle_sliding(m, t, y, False):
+        count = record_sliding(m, t, events, count)
+        passes += 1
+    if passes > PASSES_HIGH:
+        m.state.reversals = REVERSALS_HIGH + 1
+    return count, passes > 0
 
 
 @compiled_once(FRICTION)
 def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
-    """Deal with all guards of friction that have fallen, for `record_sliding` to record.
+    """Deal with all guards of friction that have fallen, once, for `record_sliding` to record.
 
     Parameters
     ----------
@@ -187,21 +222,42 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
     excess = (first * turn + second * y[W]) / (a1 * first**2 + a2 * second**2)
     turn -= a1 * first * excess
     w = y[W] - a2 * second * excess
-    if max(abs(turn), abs(w)) <= AT_ONCE:
+    let_go = state.hold == kind and state.held_pair == history  # what moves has directions already
+    fastest = max(abs(turn), abs(w))
+    stops = not let_go and fastest <= AT_ONCE
+    if stops and (fastest == 0.0 or state.hold != FREE or _rests(m, t, y)):
         _decide_at_rest(m, t, y)
         return
     y[W], y[V] = w, turn * (1.0 - e1) - w
     before = _slip_of(m, kind, history)
-    if state.hold != FREE and (state.hold != kind or state.held_pair != history):
+    if state.hold != FREE and not let_go:
         _set_slip(m, state.hold, state.held_pair, 1.0)  # it has the same levers
     state.hold, state.held_pair = kind, history
     _set_slip(m, kind, history, 0.0)
+    _let_go(m, t, y)
+    _note_event(m, kind, history, before)
+
+
+@compiled
+def _let_go(m: Model, t: float, y: Floats) -> None:
+    """Let go of the element that is held, if that takes more friction than its limit."""
+    state = m.state
     turn, pinion, gear = forces_at_shafts(m, t, y)
     found = solve_shafts(m, t, y, turn, pinion, gear)
     if found.margin < -NO_FORCE:
-        state.hold = FREE
-        _set_slip(m, kind, history, _sign(found.held))
-    _note_event(m, kind, history, before)
+        kind, state.hold = state.hold, FREE
+        _set_slip(m, kind, state.held_pair, _sign(found.held))
+
+
+@compiled
+def _rests(m: Model, t: float, y: Floats) -> bool:
+    """Whether gears that hardly move would be held where they are: bringing to rest what is not would not end."""
+    v, w = y[V], y[W]
+    y[V] = y[W] = 0.0
+    _, pinion, gear = forces_at_shafts(m, t, y)
+    list_elements(m, t, y)
+    y[V], y[W] = v, w
+    return bool(rest_margin(m, pinion, gear) >= -NO_FORCE)
 
 
 @compiled
@@ -230,6 +286,8 @@ def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
                 if one.hold == HELD_PAIR:
                     state.held_pair = one.history
             _set_slip(m, one.hold, one.history, slip)
+        if state.hold != FREE:  # bearings are loaded otherwise than at rest
+            _let_go(m, t, y)
     for i in range(found.count):
         one = found.element[i]
         _note_event(m, one.hold, one.history, one.before)

@@ -12,7 +12,7 @@ from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
-from gearidae.engine.events.sliding import record_sliding, settle_sliding
+from gearidae.engine.events.sliding import follow_sliding
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
@@ -74,8 +74,7 @@ def finish_step(
                 driver.since = CHECKPOINT_STEPS
             driver.events = pass_knot(m, t, events, driver.events)
             if m.scene.friction.on != 0:
-                settle_sliding(m, t, y, False)
-                driver.events = record_sliding(m, t, events, driver.events)
+                driver.events = follow_sliding(m, t, y, events, driver.events)[0]
             afresh = True
         else:
             driver.done = 1
@@ -118,8 +117,8 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
             # the force has jumped past what holds the gear, and no root would show it
             count = stick_or_slip(m, t, y, events, count)
     if m.scene.friction.on != 0:
-        restart |= settle_sliding(m, t, y, False)
-        count = record_sliding(m, t, events, count)
+        count, jumped = follow_sliding(m, t, y, events, count)
+        restart |= jumped
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
     if chatters(m, t):
