@@ -150,6 +150,8 @@ def extreme_population(seed: int, number: int, alive: Callable[[], None] | None 
 def extreme_friction(seed: int, number: int, alive: Callable[[], None] | None = None) -> Extreme:
     """Draw gears of `extreme_scene`, every second with real asperities, and give flanks and hubs friction.
 
+    Gears that would lock themselves are drawn again.
+
     Parameters
     ----------
     seed, number, alive
@@ -167,24 +169,36 @@ def extreme_friction(seed: int, number: int, alive: Callable[[], None] | None = 
     extreme = next(
         one for k in range(_TRIES) if (one := draw(seed, number + k * _APART, alive)).scene.gears is not None
     )
-    changes: dict[str, Any] = {"contact.model": "population" if number % 2 else "asperity"}
-    law = extreme.scene.contact.asperity
-    if law in AREAS and rng.random() < 0.3:
-        changes |= {"contact.friction_law": "shear", "contact.shear_strength": 10.0 ** rng.uniform(3.0, 10.0)}
+    model = {"contact.model": "population" if number % 2 else "asperity"}
+    for _ in range(_TRIES):
+        try:
+            return Extreme(extreme.scene.replace(model | _friction(rng, extreme.scene)), extreme.backend)
+        except SceneError as error:  # gears that lock themselves
+            refused = error
+    raise refused
+
+
+def _friction(rng: np.random.Generator, scene: Scene) -> dict[str, Any]:
+    """Draw friction of flanks, and of hubs in every second scene."""
+    assert scene.gears is not None
+    if scene.contact.asperity in AREAS and rng.random() < 0.3:
+        drawn: dict[str, Any] = {
+            "contact.friction_law": "shear",
+            "contact.shear_strength": 10.0 ** rng.uniform(3.0, 10.0),
+        }
     else:
-        changes |= {
+        drawn = {
             "contact.friction": 10.0 ** rng.uniform(-4.0, 0.0),
             "coating.friction": float(rng.choice([0.0, 0.1, 0.9])),
         }
     if rng.random() < 0.5:
-        assert extreme.scene.gears is not None
-        radius = 0.3 * extreme.scene.gears.pinion_base_radius
-        changes |= {
+        radius = scene.gears.pinion_base_radius * 10.0 ** rng.uniform(-3.0, 0.0)
+        drawn |= {
             "gears.hub_friction": 10.0 ** rng.uniform(-4.0, 0.0),
             "gears.pinion_hub_radius": float(rng.choice([0.0, radius])),
             "gears.gear_hub_radius": radius,
         }
-    return Extreme(extreme.scene.replace(changes), extreme.backend)
+    return drawn
 
 
 class _Draw:
