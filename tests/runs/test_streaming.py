@@ -14,6 +14,7 @@ import signal
 import time
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -272,6 +273,16 @@ def test_interrupted_and_resumed_is_the_same_run(path):
     finished = gd.open_archive(path)
     assert_same(finished, whole)
     assert finished.attrs["wall_time"] > wall_time > 0.0
+
+
+@pytest.mark.parametrize("name", ["committed_samples", "event_kind", "gear_speed"])
+def test_an_unfinished_archive_that_lacks_a_variable_is_refused(path, name):
+    with pytest.raises(gd.Interrupted):
+        simulate(path, progress=interrupt_after(0.5))
+    with netCDF4.Dataset(path, "r+") as file:
+        file.renameVariable(name, name[::-1])
+    with pytest.raises(gd.SceneError, match=r"run\.nc: "):
+        simulate(path, resume=True)
 
 
 def test_ctrl_c_is_exit_130_and_resumable(path):

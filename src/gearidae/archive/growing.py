@@ -206,6 +206,8 @@ class GrowingArchive:
             self._file = netCDF4.Dataset(self.path, "r+", keepweakref=True)
             self._file.set_auto_maskandscale(False)
             self._run = str(getattr(self._file, _RUN, ""))
+            if missing := {*self._columns, *_EVENT_COLUMNS, *_COUNTS} - set(self._file.variables):
+                raise OSError(f"{self.path.name} has no variable {min(missing)}")
 
     def _append(self, block: Block) -> None:
         if self.events + len(block.events) > len(self._file.dimensions["event"]):
