@@ -55,8 +55,8 @@ def test_processes_and_a_cut_off_do_not_matter(found, tmp_path):
 
 def test_means_have_standard_errors(found):
     rows = {name: (value, remark) for name, value, remark in answer(found, "ensemble").rows}
-    value, remark = rows["settled_gear_speed"]
-    mean, error = (float(part) for part in value.removesuffix(" rad s-1").split(" +- "))
+    value, remark = rows["settled gear speed"]
+    mean, error = (float(part) for part in value.removesuffix(" rad/s").split(" +- "))
     speeds = found.settled_gear_speed.values
     scatter = np.std(speeds, ddof=1)
     assert error == pytest.approx(scatter / math.sqrt(6.0), rel=0.05)

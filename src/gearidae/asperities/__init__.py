@@ -13,6 +13,7 @@ from gearidae.asperities.registry import (
     law_of,
     law_of_tip,
     register,
+    tip_law,
     unregister,
 )
 
@@ -24,5 +25,6 @@ __all__ = [
     "law_of",
     "law_of_tip",
     "register",
+    "tip_law",
     "unregister",
 ]

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
-from typing import Final, TypeVar
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -95,6 +95,41 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
         hash(made)
     _try_out(made)
     return made
+
+
+class TipLaw(NamedTuple):
+    """Law of a tip in a unit of length of its own; this unit [m] and that of its load [N]."""
+
+    law: AsperityLaw
+    length: float
+    load: float
+
+
+def tip_law(name: str, surface: Surface, radius: float) -> TipLaw:
+    """Return the law of an asperity of a surface with a radius of its own.
+
+    Parameters
+    ----------
+    name : str
+        The law's name.
+    surface : Surface
+        Elastic constants, energy and roughness (SI).
+    radius : float
+        Of the tip [m].
+
+    Returns
+    -------
+    TipLaw
+        Its unit of length is the stretch limit, and the roughness where nothing adheres.
+
+    Raises
+    ------
+    SceneError
+        As `law_of_tip`.
+    """
+    tip = asperity_of(surface, radius)
+    length = tip.stretch_limit if tip.stretch_limit > 0.0 else surface.roughness
+    return TipLaw(law_of_tip(name, tip, length), length, tip.hertz_factor * length**1.5)
 
 
 @lru_cache(maxsize=32)

@@ -96,13 +96,15 @@ def contact_modulus(youngs_modulus: float, poisson_ratio: float) -> float:
     return youngs_modulus / (2.0 * (1.0 - poisson_ratio**2))
 
 
-def asperity_of(surface: Surface) -> Asperity:
+def asperity_of(surface: Surface, radius: float | None = None) -> Asperity:
     """Return the asperity of the contact between two such surfaces.
 
     Parameters
     ----------
     surface : Surface
         Elastic constants, energy and tip radius (SI), and an ``interaction_range`` if it has one.
+    radius : float, optional
+        Of this tip [m], in place of the surface's.
 
     Returns
     -------
@@ -110,10 +112,9 @@ def asperity_of(surface: Surface) -> Asperity:
         Pull-off load and stretch limit are zero if the surface energy is.
     """
     modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
-    radius = surface.asperity_radius
     adhesion = 2.0 * surface.energy
     reach = getattr(surface, "interaction_range", INTERACTION_RANGE)
-    return make_tip(modulus, radius, adhesion, reach)
+    return make_tip(modulus, surface.asperity_radius if radius is None else radius, adhesion, reach)
 
 
 def make_tip(

@@ -105,6 +105,17 @@ def solve_to_end(scene: Scene, backend: str, start: engine.Start = engine.AT_ONC
     return solution
 
 
+def unfinished(solution: Solution, what: str) -> SolverError:
+    """Error of a study whose run, named by `what`, has not come to its end."""
+    return SolverError(
+        f"{what} could not be finished: {solution.message or solution.status}",
+        time=solution.reached or 0.0,
+        state={},
+        last_event="not kept",
+        advice="try another rtol (run.rtol)",
+    )
+
+
 def unsolved(status: str, message: str) -> Solution:
     """Solution of a run that produced nothing.
 

@@ -157,7 +157,7 @@ class _Run:
         if ended.status == "interrupted":
             raise self._interrupted(archive)
         try:
-            archive.finish(self._told(archive, ended))
+            archive.finish(self._final_template(archive, ended))
         except KeyboardInterrupt:
             raise self._interrupted(archive) from None
         except DiskError as error:
@@ -170,7 +170,7 @@ class _Run:
         kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
         return Interrupted(kept, self._left())
 
-    def _told(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
+    def _final_template(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
         """Make the final template, with the run summary."""
         template = self._template(ended)
         if self._scene.roller is None:

@@ -16,7 +16,7 @@ from gearidae.errors import SceneError
 from gearidae.mesh.involute import flank_arc
 from gearidae.populations.flanks import first_flanks
 from gearidae.progress import sweep_progress
-from gearidae.runs.estimates import mean_drive_torque
+from gearidae.runs.estimates import mean_force
 from gearidae.runs.execution import Execution, origin_of, run_kept
 from gearidae.runs.executors import side_by_side
 from gearidae.runs.kept_runs import KeptRuns
@@ -60,8 +60,8 @@ def pull_off(
     Parameters
     ----------
     scene : Scene
-        Gears or a roller, of which only radius, width and surfaces count. Asperities are drawn whatever
-        ``contact.model`` is.
+        Gears or a roller, of which only radius, width and surfaces count. Asperities are drawn with
+        every ``contact.model``.
     seeds : int or sequence of int, optional
         In place of ``contact.seed``: numbers, or how many from ``contact.seed`` on. A number is the drive flank of the
         pinion's first tooth, as `gearidae.population` draws it.
@@ -156,7 +156,7 @@ def _seeds(scene: Scene, given: int | Sequence[int]) -> list[int]:
 
 def _load(scene: Scene, given: float | None) -> float:
     if given is None and scene.gears is not None:
-        given = mean_drive_torque(scene) / scene.gears.pinion_base_radius
+        given = mean_force(scene)
     if given is None or not 0.0 < given < np.inf:
         raise SceneError(
             "load", given, "must be a positive force in N: the scene has no mean torque that presses a pair"

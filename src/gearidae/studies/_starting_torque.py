@@ -17,18 +17,19 @@ from scipy.optimize import brentq
 
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
-from gearidae.errors import SceneError, SolverError
+from gearidae.errors import SceneError
 from gearidae.mesh.friction import hub_starting_torque, starting_ratio
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import mean_force
 from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.rubbing import flank_coefficient, hub_radii
-from gearidae.runs.running import prepare, solve_to_end, unsolved
+from gearidae.runs.running import prepare, solve_to_end, unfinished, unsolved
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.products import open_product
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
+from gearidae.studies.starting_ramp import pitch_of
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -307,16 +308,13 @@ def _way(search: _Search) -> float:
 
 def _from_rest(search: _Search, torque: float) -> Scene:
     """Return the scene of a run from rest at a torque beyond the dry resistance, with the time that it gets."""
-    scene, geometry, way = search.scene, search.scene.geometry, _way(search)
-    gears, load = scene.gears, scene.load
-    assert gears is not None
+    scene, way, pitch = search.scene, _way(search), pitch_of(search.scene)
+    load = scene.load
     assert load is not None
-    ratio = geometry.base_radius_gear / geometry.base_radius_pinion
-    inertia = gears.gear_inertia + gears.pinion_inertia * ratio**2
-    duration = math.sqrt(2.0 * way * inertia / (torque * ratio))
+    duration = math.sqrt(2.0 * way * pitch.inertia / (torque * pitch.ratio))
     if load.drag > 0.0:
-        duration += way / math.sqrt(torque * ratio / load.drag)
-    duration += way * load.viscous / (torque * ratio)
+        duration += way / math.sqrt(torque * pitch.ratio / load.drag)
+    duration += way * load.viscous / (torque * pitch.ratio)
     others = ("schedule", "speed", "speed_gain")
     drive = {key: value for key, value in scene.to_dict()["drive"].items() if key not in others}
     return scene.replace(
@@ -334,13 +332,7 @@ def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, st
     solution = solve_to_end(scene, backend)
     if solution.status != "finished":
         assert scene.drive is not None
-        raise SolverError(
-            f"the run at {scene.drive.torque:g} N m could not be finished: {solution.message or solution.status}",
-            time=solution.reached or 0.0,
-            state={},
-            last_event="not kept",
-            advice="try another rtol (run.rtol)",
-        )
+        raise unfinished(solution, f"the run at {scene.drive.torque:g} N m")
     angle, none = solution.samples["gear_angle"], unsolved("", "")
     word = "turns" if angle.max() - angle[0] >= way else "sticks"
     return replace(solution, time=none.time, samples=none.samples, events=none.events), word

@@ -275,7 +275,7 @@ def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Intege
 
 
 def _attraction(scene: Scene, near: _Near) -> Floats:
-    """Attraction of a pair across its gap [N], whatever its asperities do."""
+    """Attraction of a pair across its gap [N], apart from its asperities."""
     total = np.zeros_like(near.gap)
     if scene.attracts:
         ratios = _share_ratios(scene, near.flank, near.pair, near.place)

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from gearidae.arrays import Floats
-from gearidae.asperities import AsperityLaw, law_of_tip
-from gearidae.asperities.tip import asperity_of
+from gearidae.asperities import tip_law
+from gearidae.asperities.registry import TipLaw
 from gearidae.populations.flanks import FlankAsperities
 from gearidae.populations.materials import materials_at
 from gearidae.runs.pair_contact import PairContact
@@ -32,17 +32,9 @@ _CLOSE = 1e-9
 """Error of a gap that is refined, in roughnesses."""
 
 
-class _Law(NamedTuple):
-    """Law of the asperities of one kind: in its units, with these in SI."""
-
-    law: AsperityLaw
-    length: float
-    load: float
-
-
 Bools: TypeAlias = NDArray[np.bool_]
 Integers: TypeAlias = NDArray[np.intp]
-Groups: TypeAlias = list[tuple[_Law, Integers]]
+Groups: TypeAlias = list[tuple[TipLaw, Integers]]
 """Laws, and which asperities have each."""
 Force: TypeAlias = Callable[[Floats, Bools], Floats]
 """Force [N] at gaps, shape (g,), with the asperities that are joined at each, shape (g, n) or (n,)."""
@@ -91,16 +83,12 @@ class DrawnContact:
         self._top, self._material, self._radius = top[order], material[order], one.radius[order]
         self._surfaces = [parts[name].surface if name in parts else scene.surface for name in MATERIAL_NAMES]
         self._name, self._contact, self._sigma = scene.contact.asperity, contact, scene.surface.roughness
-        self._laws: dict[tuple[int, float], _Law] = {}
+        self._laws: dict[tuple[int, float], TipLaw] = {}
 
-    def _law(self, material: int, radius: float) -> _Law:
-        found = self._laws.get((material, radius))
-        if found is None:
-            tip = asperity_of(self._surfaces[material].model_copy(update={"asperity_radius": radius}))
-            length = tip.stretch_limit if tip.stretch_limit > 0.0 else self._sigma
-            law = law_of_tip(self._name, tip, length)
-            found = self._laws[material, radius] = _Law(law, length, tip.hertz_factor * length**1.5)
-        return found
+    def _law(self, material: int, radius: float) -> TipLaw:
+        if (material, radius) not in self._laws:
+            self._laws[material, radius] = tip_law(self._name, self._surfaces[material], radius)
+        return self._laws[material, radius]
 
     def _nearest(self, count: int) -> tuple[Floats, Floats, Floats, Groups]:
         """Tops, distances of joining and of detachment of the nearest asperities [m], and who has which law."""

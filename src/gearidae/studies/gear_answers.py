@@ -40,7 +40,11 @@ def mean_rows(ds: xr.Dataset) -> Rows:
             f"{left:.3f} is no first order of a key: scatter between seeds, and interactions",
         )
     yield "Means over the seeds", "", "one gear is one specimen of the design"
-    figures = {name: (ds[name].values, str(ds[name].attrs["units"])) for name in _OF_GEARS if name in ds}
+    figures = {
+        name.replace("_", " "): (ds[name].values, str(ds[name].attrs["units"]).replace("rad s-1", "rad/s"))
+        for name in _OF_GEARS
+        if name in ds
+    }
     if {"adhesion_loss", "drive_work"} <= set(map(str, ds.data_vars)):
         with np.errstate(divide="ignore", invalid="ignore"):
             figures["adhesion loss over drive work"] = (

@@ -9,8 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.arrays import Floats
-from gearidae.asperities import law_of_tip
-from gearidae.asperities.tip import asperity_of
+from gearidae.asperities import tip_law
 from gearidae.mesh.involute import curvature_radii, flank_arc
 from gearidae.populations.flanks import flanks_digest, flanks_of
 from gearidae.populations.materials import materials_at
@@ -76,7 +75,7 @@ def contact_arc(scene: Scene, place: float) -> float:
 
 
 class JoinedAsperities:
-    """What the events of a run tell of its asperities.
+    """Joined asperities of a run, from its events.
 
     Parameters
     ----------
@@ -140,12 +139,10 @@ class JoinedAsperities:
         )
         names, loads = [MATERIAL_NAMES[number] for number in some.material], np.zeros_like(overlaps)
         for k, (name, radius) in enumerate(zip(names, some.radius, strict=True)):
-            tip = asperity_of(surfaces[name].model_copy(update={"asperity_radius": float(radius)}))
-            unit = tip.stretch_limit if tip.stretch_limit > 0.0 else scene.surface.roughness
-            law = law_of_tip(scene.contact.asperity, tip, unit)
+            law, length, load = tip_law(scene.contact.asperity, surfaces[name], float(radius))
             # a sample beside a detachment may lie a rounding error beyond it
-            displacement = max(float(overlaps[k]) / unit, -law.detach)
-            loads[k] = tip.hertz_factor * unit**1.5 * float(law.load(displacement))
+            displacement = max(float(overlaps[k]) / length, -law.detach)
+            loads[k] = load * float(law.load(displacement))
         return overlaps, loads, names
 
     def _flank(self, pair: int, flank: Flank) -> MetFlank:

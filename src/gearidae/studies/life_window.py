@@ -16,10 +16,9 @@ import numpy as np
 
 from gearidae import engine
 from gearidae.arrays import Floats
-from gearidae.errors import SolverError
 from gearidae.records import ExposureRows
 from gearidae.runs.estimates import steady_speed
-from gearidae.runs.running import solve_to_end, unsolved
+from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene import MATERIAL_NAMES
 from gearidae.scene.friction import has_flank_friction
 
@@ -243,13 +242,7 @@ def solved(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> 
     """
     solution = solve_to_end(scene, backend, start)
     if solution.extremes is None or solution.status != "finished":
-        raise SolverError(
-            f"a window of the life could not be finished: {solution.message or solution.status}",
-            time=solution.reached or 0.0,
-            state={},
-            last_event="not kept",
-            advice="try another rtol (run.rtol)",
-        )
+        raise unfinished(solution, "a window of the life")
     return solution
 
 

@@ -93,16 +93,19 @@ _KINDS: Final = {
     "starting_torques": _Kind(
         "study of a population's starting torques",
         "starting-torque",
-        {
-            "starting_torque": "sam_fraction",
-            "starts": "sam_fraction",
-            "quantiles": "sam_fraction",
-            "not_started": "sam_fraction",
-            "chance": "sam_fraction",
-            "rate": "sam_fraction",
-            "median_change": "sam_fraction",
-            "damping": "sam_fraction",
-        },
+        dict.fromkeys(
+            (
+                "starting_torque",
+                "starts",
+                "quantiles",
+                "not_started",
+                "chance",
+                "rate",
+                "median_change",
+                "damping",
+            ),
+            "sam_fraction",
+        ),
     ),
     "sticking_threshold": _Kind(
         "sticking threshold", "threshold", dict.fromkeys(("limit", "sticks", "passes"), "exits")

@@ -15,9 +15,9 @@ import numpy as np
 from gearidae.archive.dataset import reached
 from gearidae.asperities.tip import asperity_of, contact_modulus
 from gearidae.contact.asperity_statistics import zero_load_radius
-from gearidae.errors import SolverError
 from gearidae.populations.first_touch import first_touch
-from gearidae.runs.running import solve_to_end, unsolved
+from gearidae.runs.estimates import effective_mass
+from gearidae.runs.running import solve_to_end, unfinished, unsolved
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -95,20 +95,14 @@ def least_damping(scene: Scene) -> float:
     The stiffness is that of the stiffest asperity of the scene's materials where adhesion holds it without load, for
     JKR ``1.2 E* a0``, or of one pressed by a roughness where nothing adheres.
     """
-    gears, geometry, surface = scene.gears, scene.geometry, scene.surface
-    assert gears is not None
+    surface = scene.surface
     assert scene.mesh is not None
-    masses = (
-        gears.pinion_inertia / geometry.base_radius_pinion**2,
-        gears.gear_inertia / geometry.base_radius_gear**2,
-    )
-    mass = 1.0 / sum(1.0 / one for one in masses)
     radius = max(zero_load_radius(one.surface) for one in scene.materials() if one.share > 0.0)
     modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
     stiffness = 1.2 * modulus * radius or 2.0 * modulus * math.sqrt(
         surface.asperity_radius * surface.roughness
     )
-    return max(scene.mesh.damping, DAMPING * 2.0 * math.sqrt(stiffness * mass))
+    return max(scene.mesh.damping, DAMPING * 2.0 * math.sqrt(stiffness * effective_mass(scene)))
 
 
 def laid(scene: Scene, seed: int) -> Scene:
@@ -197,13 +191,7 @@ def run_from_rest(at: Scene, backend: str) -> tuple[Solution, str]:
         if solution.status == "finished":
             break
     if solution.status != "finished":
-        raise SolverError(
-            f"the run of seed {at.contact.seed} could not be finished: {solution.message or solution.status}",
-            time=solution.reached or 0.0,
-            state={},
-            last_event="not kept",
-            advice="try another rtol (run.rtol)",
-        )
+        raise unfinished(solution, f"the run of seed {at.contact.seed}")
     times, torques = np.array(list(at.drive.schedule)).T
     speed, angle, end = solution.samples["gear_speed"], solution.samples["gear_angle"], reached(solution)
     word = RESTS

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from gearidae.errors import SceneError, SolverError
-from gearidae.runs.running import solve_to_end, unsolved
+from gearidae.errors import SceneError
+from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
@@ -50,13 +50,7 @@ class ThresholdRun:
         """
         found = solution.extremes
         if found is None or solution.status != "finished":
-            raise SolverError(
-                f"the run at {value:g} could not be finished: {solution.message or solution.status}",
-                time=solution.reached or 0.0,
-                state={},
-                last_event="not kept",
-                advice="try another rtol (run.rtol)",
-            )
+            raise unfinished(solution, f"the run at {value:g}")
         return cls(value, found.stick_exits, found.stick_time, solution.reached or 0.0)
 
 

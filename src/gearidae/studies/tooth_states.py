@@ -46,8 +46,8 @@ class ToothContact:
     states : dict of str to ContactState
         State of either part.
     asperities : tuple of int, optional
-        Joined asperities of a population, by their numbers on the pinion's flank; None of other models, and where the
-        record does not tell.
+        Joined asperities of a population, by their numbers on the pinion's flank; None of other models, and where they
+        are not recoverable from the record.
     """
 
     pair: int
