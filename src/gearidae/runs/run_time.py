@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 from gearidae.asperities.tip import asperity_of
 from gearidae.runs.estimates import balanced_speed, mean_drive_torque, rest_of
 from gearidae.runs.pair_contact import PairContact
+from gearidae.scene.limits import stays_rigid
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -115,7 +116,7 @@ def _passages(scene: Scene) -> float:
 
 def _is_elastic(scene: Scene, contact: PairContact, load: float) -> bool:
     """Whether the bodies deflect, or in ``auto`` will: by more than a fiftieth of the roughness under the load."""
-    if scene.contact.model != "auto":
+    if scene.contact.model != "auto" or stays_rigid(scene):
         return scene.contact.model == "elastic"
     modulus = asperity_of(contact.surface).modulus
     deflection = (

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from gearidae.asperities.area import AREAS
 from gearidae.errors import SceneError
-from gearidae.mesh.involute import curvature_radii
+from gearidae.mesh.friction import locking_coefficients
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
@@ -49,6 +49,11 @@ def has_hub_friction(scene: Scene) -> bool:
     return gears is not None and gears.hub_friction > 0.0 and any(getattr(gears, key) for key in _HUBS)
 
 
+def has_friction(scene: Scene) -> bool:
+    """Whether flanks or a hub of a scene have friction."""
+    return has_flank_friction(scene) or has_hub_friction(scene)
+
+
 def check_friction(scene: Scene) -> None:
     """Refuse friction that a scene of gears cannot have.
 
@@ -59,17 +64,15 @@ def check_friction(scene: Scene) -> None:
     """
     _check_law(scene)
     _check_hubs(scene)
-    geometry, values = scene.geometry, friction_values(scene)
-    pinion, gear, _ = curvature_radii(geometry, (0.0, geometry.path_length))
-    lever = max(pinion.max() / geometry.base_radius_pinion, gear.max() / geometry.base_radius_gear)
+    locks, values = min(locking_coefficients(scene.geometry)), friction_values(scene)
     for key, value in (("contact.friction", values["bare"]), ("coating.friction", values["coated"])):
-        if scene.contact.friction_law == "net" and value * lever >= 1.0:
+        if scene.contact.friction_law == "net" and value >= locks:
             raise SceneError(
                 key,
                 value,
-                f"must be below {1.0 / lever:.4g}: gears of this mesh lock themselves from there on",
+                f"must be below {locks:.4g}: gears of this mesh lock themselves from there on",
             )
-    if not (has_flank_friction(scene) or has_hub_friction(scene)):
+    if not has_friction(scene):
         return
     if scene.attracts:
         raise SceneError(

@@ -11,6 +11,7 @@ from gearidae.asperities.ranges import GAP_LOW
 from gearidae.asperities.ranges import check_reach as check_asperity_reach
 from gearidae.errors import SceneError
 from gearidae.scene.coating import THICKEST
+from gearidae.scene.friction import has_friction
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
@@ -66,6 +67,11 @@ def check_attraction(scene: Scene) -> None:
             "elastic",
             "cannot be used with surface.hamaker or coating.hamaker, for rigid teeth only: asperity or population",
         )
+
+
+def stays_rigid(scene: Scene) -> bool:
+    """Whether ``contact.model = auto`` keeps the bodies rigid: with attraction or friction, which elastic ones lack."""
+    return scene.attracts or has_friction(scene)
 
 
 def pairs_within_reach(scene: Scene, cutoff: float) -> float:

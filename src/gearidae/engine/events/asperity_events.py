@@ -15,7 +15,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import POPULATION
 from gearidae.engine.events.record import EVENTS_AT_ONCE, record, record_asperity
 from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pairs_near
+from gearidae.engine.pairs.tooth_pairs import flank_of_history, history_of, pair_at, pairs_near
 from gearidae.engine.population.candidates import choose, covers, list_joined
 from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import (
@@ -162,7 +162,7 @@ def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, b
     flips = 0
     for k in range(m.scene.histories):
         own, h = m.work.contact[k], m.state.history[k]
-        coast = 1 if k >= m.scene.slots else 0
+        coast = flank_of_history(m, k)
         for i in range(own.flips):
             flips += 1
             if m.scene.population.quiet == 0 and flips < FLIPS_HIGH:

@@ -15,7 +15,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import record
 from gearidae.engine.friction.forces import has_gear_element, solve_shafts
-from gearidae.engine.friction.pairs import flank_of_history, levers
+from gearidae.engine.friction.pairs import levers
 from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
 from gearidae.engine.model.record_types import (
     AT_REST,
@@ -28,6 +28,7 @@ from gearidae.engine.model.record_types import (
 from gearidae.engine.model.state import Floats, Model, Record, V, W
 from gearidae.engine.motion.dry_limit import NO_FORCE
 from gearidae.engine.motion.shafts import forces_at_shafts, pinion_speed
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.records import EventKind, Flank
 
 _REVERSAL, _STICK = float(EventKind.SLIDING_REVERSAL), float(EventKind.FLANK_STICK)

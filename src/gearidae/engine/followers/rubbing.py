@@ -17,10 +17,11 @@ from gearidae.engine.followers.exposures.rubbing import (
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral
 from gearidae.engine.friction.forces import Mesh, Shafts, solve_shafts
-from gearidae.engine.friction.pairs import direction, flank_of_history, lever_rate, levers
+from gearidae.engine.friction.pairs import direction, lever_rate, levers
 from gearidae.engine.model.record_types import HELD_PAIR
 from gearidae.engine.model.state import COAST, Floats, Model, W
 from gearidae.engine.motion.shafts import forces_at_shafts
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 _POWERS: Final = 4
 _OUTER: Final = 0.5 * math.sqrt(0.6)

@@ -15,7 +15,6 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.friction.pairs import (
     direction,
-    flank_of_history,
     lever_rate,
     levers,
     set_limits,
@@ -23,7 +22,7 @@ from gearidae.engine.friction.pairs import (
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR, HELD_PINION
 from gearidae.engine.model.state import COAST, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.pairs.tooth_pairs import pair_gap
+from gearidae.engine.pairs.tooth_pairs import flank_of_history, pair_gap
 from gearidae.engine.torques.torque import torque_force
 
 RETURN: Final = 0.05

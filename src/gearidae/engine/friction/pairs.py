@@ -14,14 +14,9 @@ from gearidae.contact.kernels.evaluate import mixed_value
 from gearidae.contact.kernels.law import loading_value, stretched_value
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.model.record_types import STUCK
-from gearidae.engine.model.state import COAST, DRIVE, MATERIALS, Model, Record
+from gearidae.engine.model.state import COAST, MATERIALS, Model, Record
 from gearidae.engine.pairs.coverage import shares_of
-
-
-@compiled(inline=True)
-def flank_of_history(m: Model, k: int) -> int:
-    """Flank of the pair with the k-th history."""
-    return COAST if k >= m.scene.slots else DRIVE
+from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
 
 
 @compiled(inline=True)
@@ -116,6 +111,5 @@ def _limit_of_materials(m: Model, t: float, i: int) -> tuple[float, float]:
                 q, dq = stretched_value(table, gap + offset, joined + offset)
                 limit += own.scale[material] * shares[material] * q
                 slope += own.scale[material] * shares[material] * dq
-    radius = m.scene.start_radius + noted.position
-    length = (radius - radius * radius * m.scene.sum_curvature) ** 0.5
+    length = contact_length(m, noted.position)
     return limit * length, slope * length

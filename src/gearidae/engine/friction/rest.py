@@ -16,9 +16,10 @@ from typing import NamedTuple
 
 from gearidae.compiled import compiled
 from gearidae.engine.friction.forces import Mesh, bearing_load, dry_force, has_gear_element
-from gearidae.engine.friction.pairs import flank_of_history, levers
+from gearidae.engine.friction.pairs import levers
 from gearidae.engine.model.record_types import HELD_GEAR, HELD_PAIR, HELD_PINION
 from gearidae.engine.model.state import COAST, Floats, Model, Record
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 
 @compiled

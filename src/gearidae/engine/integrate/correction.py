@@ -39,7 +39,7 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
         return abs(slope)
     of_phase, of_w = delta[PHASE], delta[W]
     if m.scene.friction.on != 0:
-        return _correct_with_friction(m, cj, y, delta, force_u, force_phase, relief_u, relief_phase)
+        return _correct_with_friction(m, cj, y, delta, (force_u, force_phase, relief_u, relief_phase))
     a1, turning, damping = m.scene.pinion_inverse_mass, m.scene.phase_rate, m.scene.damping
     a2 = 0.0 if is_stuck(m) else m.scene.gear_inverse_mass
     torque_u, torque_phase = force_u + relief_u, force_phase + relief_phase
@@ -63,17 +63,10 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
 
 @compiled_once(FRICTION)
 def _correct_with_friction(
-    m: Model,
-    cj: float,
-    y: Floats,
-    delta: Floats,
-    force_u: float,
-    force_phase: float,
-    relief_u: float,
-    relief_phase: float,
+    m: Model, cj: float, y: Floats, delta: Floats, slopes: tuple[float, float, float, float]
 ) -> float:
     """Solve the same equations with friction; `delta` has the residual, and the slopes are those of `mesh_forces`."""
-    s = slopes_with_friction(m, y, force_u, force_phase, relief_u, relief_phase)
+    s = slopes_with_friction(m, y, slopes)
     step, turning = 1.0 / cj, m.scene.phase_rate
     of_u, of_v, of_phase, of_w = delta[U], delta[V], delta[PHASE], delta[W]
     v_v, v_w = cj - s.pinion_v - s.pinion_u * step, cj - s.pinion_w - s.pinion_phase * turning * step

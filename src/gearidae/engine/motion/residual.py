@@ -38,7 +38,6 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_touching,
     static_error,
 )
-from gearidae.engine.population.attraction import attraction_sums, roller_attraction
 from gearidae.engine.population.forces import mesh_sums, roller_sum
 from gearidae.engine.torques.torque import torque_force
 
@@ -47,11 +46,7 @@ from gearidae.engine.torques.torque import torque_force
 def roller_force(m: Model, t: float, y: Floats, settling: bool) -> tuple[float, float]:
     """Force on a roller and its slope in the height, scaled; `settling` as for `mesh_forces`."""
     if m.scene.population.flanks != 0:
-        load, stiffness = roller_sum(m, y)
-        if m.scene.attracts != 0:
-            pull, change = roller_attraction(m, y)
-            return load + pull, stiffness + change
-        return load, stiffness
+        return roller_sum(m, y)
     height, speed = y[U], y[V]
     elastic = m.scene.nodes > 0
     if elastic:
@@ -90,11 +85,7 @@ def mesh_forces(
         Their partial derivatives in u and phase.
     """
     if m.scene.population.flanks != 0:
-        a, b, c, d, e, f = mesh_sums(m, y)
-        if m.scene.attracts != 0:
-            a1, b1, c1, d1, e1, f1 = attraction_sums(m, y)
-            return a + a1, b + b1, c + c1, d + d1, e + e1, f + f1
-        return a, b, c, d, e, f
+        return mesh_sums(m, y)
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
     u, v, phase, w = y[U], y[V], y[PHASE], y[W]
     cutoff = m.scene.cutoff
@@ -301,7 +292,7 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
     w = y[W]
     _, _, force_u, force_phase, relief_u, relief_phase = mesh_forces(m, t, y, False)
     if m.scene.friction.on != 0:
-        _jacobian_with_friction(m, t, cj, y, out, force_u, force_phase, relief_u, relief_phase)
+        _jacobian_with_friction(m, t, cj, y, out, (force_u, force_phase, relief_u, relief_phase))
         return
     a1, a2, damping = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, m.scene.damping
     out[:16] = 0.0
@@ -319,19 +310,11 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
 
 @compiled_once(FRICTION)
 def _jacobian_with_friction(
-    m: Model,
-    t: float,
-    cj: float,
-    y: Floats,
-    out: Floats,
-    force_u: float,
-    force_phase: float,
-    relief_u: float,
-    relief_phase: float,
+    m: Model, t: float, cj: float, y: Floats, out: Floats, slopes: tuple[float, float, float, float]
 ) -> None:
-    """Jacobian with friction, from the slopes of the forces that `mesh_forces` has just summed."""
+    """Jacobian with friction, from the slopes of F and Fs in u and phase that `mesh_forces` has just summed."""
     set_limits(m, t, y[W])
-    s = slopes_with_friction(m, y, force_u, force_phase, relief_u, relief_phase)
+    s = slopes_with_friction(m, y, slopes)
     for i in range(16):
         out[i] = 0.0
     out[0], out[1], out[3] = cj, -s.pinion_u, -s.gear_u
@@ -355,10 +338,10 @@ class AccelerationSlopes(NamedTuple):
 
 @compiled
 def slopes_with_friction(
-    m: Model, y: Floats, force_u: float, force_phase: float, relief_u: float, relief_phase: float
+    m: Model, y: Floats, slopes: tuple[float, float, float, float]
 ) -> AccelerationSlopes:
-    """Slopes of the accelerations with friction, from those of the forces that `mesh_forces` has just summed."""
-    f = friction_slopes(m, y)
+    """Slopes of the accelerations with friction, from those of F and Fs that `mesh_forces` has just summed."""
+    f, (force_u, force_phase, relief_u, relief_phase) = friction_slopes(m, y), slopes
     drag = 2.0 * m.scene.drag * abs(y[W]) + m.scene.viscous
     gain, damping = m.scene.speed_gain, m.scene.damping
     on_pinion = (f.pinion_u - force_u, -damping - gain, f.pinion_phase - force_phase, -gain)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.friction.forces import Shafts, dry_force, solve_shafts, without_drag
+from gearidae.engine.friction.forces import dry_force, solve_shafts, without_drag
 from gearidae.engine.friction.pairs import direction, levers, set_limits
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
@@ -35,13 +35,6 @@ def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float
     turn, e1 = pinion_speed(m, y)
     drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     return turn, drive - (1.0 - e1) * force, without_drag(m, force + relief, y[W])
-
-
-@compiled
-def shafts_at(m: Model, t: float, y: Floats) -> Shafts:
-    """What both shafts do at a state, with the present directions of slip; see `solve_shafts`."""
-    turn, pinion, gear = forces_at_shafts(m, t, y)
-    return solve_shafts(m, t, y, turn, pinion, gear)
 
 
 @compiled_once(FRICTION)

@@ -121,6 +121,12 @@ def history_of(m: Model, coast: int, pair: int) -> int:
     return coast * slots + (pair & (slots - 1))
 
 
+@compiled(inline=True)
+def flank_of_history(m: Model, k: int) -> int:
+    """Flank of the pair with the k-th history."""
+    return COAST if k >= m.scene.slots else DRIVE
+
+
 @compiled
 def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
     """First and last number of a flank's pairs on the path of contact.

@@ -13,6 +13,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.coverage import fraction_of
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.engine.population.layout import (
     ARC,
     BOUND,
@@ -155,7 +156,7 @@ def _kind(m: Model, k: int, asperity: int) -> int:
 @compiled
 def _gear_covered(m: Model, k: int, asperity: int) -> bool:
     """Whether an asperity meets a covered place of the gear's tooth in the pair of the k-th history."""
-    own, coast = m.scene.population, 1 if k >= m.scene.slots else 0
+    own, coast = m.scene.population, flank_of_history(m, k)
     place = place_of_arc(m, m.tables[own.arcs_at + asperity])
     fraction = fraction_of(m, 1, coast, m.state.history[k].pair, place).value
     return bool(m.tables[own.gear_numbers_at + asperity] < fraction)

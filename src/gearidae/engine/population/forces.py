@@ -15,7 +15,7 @@ from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.notes import note_force
 from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pairs_near
-from gearidae.engine.population.attraction import pair_attraction
+from gearidae.engine.population.attraction import attraction_sums, pair_attraction, roller_attraction
 from gearidae.engine.population.layout import (
     ARC,
     HEIGHT,
@@ -69,7 +69,7 @@ def candidate_energy(m: Model, kind: int, overlap: float) -> float:
 def _sums(m: Model, k: int, now: Pair) -> Sums:
     """Sum over the joined asperities of the pair with the k-th history."""
     load = load_d = load_slope = stiffness = stiffness_d = stiffness_dd = 0.0
-    limit = limit_stiffness = limit_stiffness_d = 0.0
+    limit = limit_stiffness = limit_stiffness_d = d = 0.0
     rubs = m.scene.friction.flanks != 0
     at, joined = spot_at(m, now.place, now.moves), column(m, k, JOINED)
     arcs, heights, kinds = column(m, k, ARC), column(m, k, HEIGHT), column(m, k, KIND)
@@ -92,7 +92,7 @@ def _sums(m: Model, k: int, now: Pair) -> Sums:
             limit += p
             limit_stiffness += s
             if now.moves:
-                limit_stiffness_d += s * overlap_slopes(m, at, x)[0]
+                limit_stiffness_d += s * d
     return Sums(
         load,
         load_d,
@@ -131,7 +131,7 @@ def _note_sums(m: Model, k: int, pair: int, now: Pair, sums: Sums) -> None:
 
 @compiled_once(POPULATION)
 def mesh_sums(m: Model, y: Floats) -> tuple[float, float, float, float, float, float]:
-    """Forces F and Fs of a population, with their slopes in u and phase; see `mesh_forces` of the residual."""
+    """Forces F and Fs of a population and its attraction, with their slopes; see `mesh_forces` of the residual."""
     force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
     turn = m.scene.phase_rate
     if m.scene.friction.on != 0:  # no notes of a time that exposures might take for their own
@@ -155,16 +155,30 @@ def mesh_sums(m: Model, y: Floats) -> tuple[float, float, float, float, float, f
         relief_phase -= turn * (sums.stiffness_dd + sums.load_slope)
         if slope != 0.0:
             relief_phase += sums.load * m.scene.relief_slope
+    if m.scene.attracts != 0:
+        a, b, a_u, a_phase, b_u, b_phase = attraction_sums(m, y)
+        return (
+            force + a,
+            relief + b,
+            force_u + a_u,
+            force_phase + a_phase,
+            relief_u + b_u,
+            relief_phase + b_phase,
+        )
     return force, relief, force_u, force_phase, relief_u, relief_phase
 
 
 @compiled_once(POPULATION)
 def roller_sum(m: Model, y: Floats) -> tuple[float, float]:
-    """Force of a population on a roller and its slope in the height, scaled."""
-    if m.work.contact[0].joined == 0:
-        return 0.0, 0.0
-    sums = _sums(m, 0, pair_now(m, 0, 0, y))
-    return sums.load, -sums.stiffness
+    """Force of a population on a roller, its attraction included, and its slope in the height, scaled."""
+    load = slope = 0.0
+    if m.work.contact[0].joined != 0:
+        sums = _sums(m, 0, pair_now(m, 0, 0, y))
+        load, slope = sums.load, -sums.stiffness
+    if m.scene.attracts != 0:
+        pull, change = roller_attraction(m, y)
+        return load + pull, slope + change
+    return load, slope
 
 
 @compiled_once(POPULATION)

@@ -31,7 +31,7 @@ from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
 from gearidae.engine.setup.build_attraction import add_attraction
 from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
-from gearidae.engine.setup.build_friction import add_friction, rubs
+from gearidae.engine.setup.build_friction import add_friction
 from gearidae.engine.setup.build_population import add_population, population_rows
 from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop
 from gearidae.engine.setup.checkpoint import scene_digest
@@ -45,7 +45,7 @@ from gearidae.engine.torques.schedule import (
 from gearidae.mesh.involute import Geometry
 from gearidae.records import sampled_columns
 from gearidae.scene import MATERIAL_NAMES, Drive, Load, Scene
-from gearidae.scene.limits import check_reach, pairs_within_reach
+from gearidae.scene.limits import check_reach, pairs_within_reach, stays_rigid
 
 LIGHTER = 0.25
 """Roughnesses above the bound of the asperity model; below, contacts count as deep while bodies are elastic."""
@@ -94,7 +94,7 @@ def make_problem(
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
             problem.deeper = lambda: make_problem(scene, deeper, *same, light_gap)
-    elif scene.contact.model == "auto" and not scene.attracts and not rubs(scene):
+    elif scene.contact.model == "auto" and not stays_rigid(scene):
         bodies, light = scene.replace({"contact.model": "elastic"}), lowest + LIGHTER
         problem.elastic = lambda: make_problem(bodies, None, *same, light)
     return problem

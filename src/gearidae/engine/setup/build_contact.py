@@ -26,9 +26,10 @@ from gearidae.contact.kernels.law import (
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
 from gearidae.engine.elastic.rows import point_count, row_numbers
 from gearidae.engine.model.state import MATERIALS, Record
-from gearidae.engine.setup.build_friction import Limits, rubs
+from gearidae.engine.setup.build_friction import Limits
 from gearidae.engine.setup.tables import Tables
 from gearidae.scene import Material, Scene
+from gearidae.scene.limits import stays_rigid
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
@@ -46,7 +47,7 @@ def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | 
     """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
     model = scene.contact.model
     s.lowest_gap = GAP_LOW  # where the tables of the force law end
-    if model == "auto" and (scene.attracts or rubs(scene)):
+    if model == "auto" and stays_rigid(scene):
         model = "asperity"
     if model == "auto":
         lowest, enough = rigid_limit(scene, bounds)

@@ -15,12 +15,7 @@ from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.mesh.involute import Geometry
 from gearidae.scene import MATERIAL_NAMES, Gears, Scene, Surface
-from gearidae.scene.friction import friction_values, has_flank_friction, has_hub_friction
-
-
-def rubs(scene: Scene) -> bool:
-    """Whether anything in a scene has friction."""
-    return has_flank_friction(scene) or has_hub_friction(scene)
+from gearidae.scene.friction import friction_values, has_flank_friction, has_friction
 
 
 def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> None:
@@ -32,8 +27,8 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
         ``SCENE``; changed.
     """
     own = s.friction
-    s.noting = int(scene.run.exposures > 0 or rubs(scene))
-    if not rubs(scene):
+    s.noting = int(scene.run.exposures > 0 or has_friction(scene))
+    if not has_friction(scene):
         return
     own.on, own.flanks = 1, int(has_flank_friction(scene))
     own.pinion_lever = float(s.base_pitch) / float(s.pinion_radius)

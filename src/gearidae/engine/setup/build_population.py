@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.asperities import AsperityLaw, law_of_tip
+from gearidae.asperities import AsperityLaw, tip_law
 from gearidae.asperities.area import ContactArea
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.layout import GAP_LOW
@@ -140,7 +140,7 @@ def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: 
             continue
         tip, ratio = asperity_of(one.surface), radii[rows] / one.surface.asperity_radius
         units = tip.stretch_limit * np.cbrt(ratio) if tip.stretch_limit > 0.0 else np.full(rows.size, sigma)
-        laws, which = _laws(scene.contact.asperity, one.surface, radii[rows], sigma)
+        laws, which = _laws(scene.contact.asperity, one.surface, radii[rows])
         for number, law in enumerate(laws):
             far = highest * sigma / float(units[which == number].min())
             reach[law] = max(reach.get(law, 0.0), far)
@@ -171,7 +171,7 @@ def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: 
     return numbers
 
 
-def _laws(name: str, surface: Surface, radii: Floats, sigma: float) -> tuple[list[AsperityLaw], Integers]:
+def _laws(name: str, surface: Surface, radii: Floats) -> tuple[list[AsperityLaw], Integers]:
     """Laws of tips of different radii, and which each has; one if those of the smallest and the largest are the same.
 
     Raises
@@ -179,12 +179,7 @@ def _laws(name: str, surface: Surface, radii: Floats, sigma: float) -> tuple[lis
     SceneError
         If there are more than can be tabulated.
     """
-
-    def law_at(radius: float) -> AsperityLaw:
-        tip = asperity_of(surface.model_copy(update={"asperity_radius": float(radius)}))
-        return law_of_tip(name, tip, tip.stretch_limit if tip.stretch_limit > 0.0 else sigma)
-
-    least, most = law_at(radii.min()), law_at(radii.max())
+    least, most = (tip_law(name, surface, float(radius)).law for radius in (radii.min(), radii.max()))
     if least == most:
         return [least], np.zeros(radii.size, np.int64)
     if radii.size > MOST_LAWS:
@@ -193,4 +188,4 @@ def _laws(name: str, surface: Surface, radii: Floats, sigma: float) -> tuple[lis
             name,
             f"has another law for each radius, of {radii.size}: there may be {MOST_LAWS} at most, or the law jkr",
         )
-    return [law_at(radius) for radius in radii], np.arange(radii.size)
+    return [tip_law(name, surface, radius).law for radius in radii.tolist()], np.arange(radii.size)

@@ -55,6 +55,7 @@ from gearidae.engine.pairs.coverage import note_shares, path_position, shares_of
 from gearidae.engine.pairs.notes import begin_notes, note_force
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
+    flank_of_history,
     history_of,
     pair_at,
     pair_force,
@@ -236,7 +237,7 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     own.gap, own.side = m.scene.cutoff, 1
     for material in range(MATERIALS):
         own.front[material] = own.added[material] = 0.0
-    own.row = row_of(m, 0 if k < m.scene.slots else 1, pair)
+    own.row = row_of(m, flank_of_history(m, k), pair)
 
 
 @compiled
