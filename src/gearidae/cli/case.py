@@ -20,10 +20,8 @@ _ALSO_PRESETS: Final = {"low_speed": "teodorescu2009_low_speed", "high_speed": "
 def shipped_cases() -> dict[str, Path]:
     """Return the case files that come with the package, by their names."""
     package = Path(gearidae.__file__).parent
-    for folder in (
-        package / "cases",
-        package.parents[1] / "cases",
-    ):  # installed, and in a tree of the sources
+    # installed, and in a tree of the sources
+    for folder in (package / "cases", package.parents[1] / "cases"):
         if found := {path.stem: path for path in sorted(folder.glob("*.toml"))}:
             return found
     return {}

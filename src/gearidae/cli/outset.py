@@ -11,6 +11,7 @@ import numpy as np
 from gearidae.archive import check_target
 from gearidae.cli.output import say
 from gearidae.progress import in_words
+from gearidae.runs.kept_runs import folder_beside
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -38,7 +39,7 @@ def begin(
     SceneError
         If `target` cannot be written.
     """
-    if not resume and not Path(f"{target}.runs").exists():
+    if not resume and not folder_beside(target).exists():
         check_target(target, overwrite=overwrite)
     if words:
         say(f"{title} of {scene.name}: {words}")

@@ -44,12 +44,10 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         )
     run = next(one for _, one in single_runs(ds))
     scene = run_scene(run)
-    if scene.contact.model != "population" or not scene.run.asperity_events:
-        key = "run.asperity_events" if scene.contact.model == "population" else "contact.model"
-        value = "false" if scene.contact.model == "population" else scene.contact.model
-        raise SceneError(
-            key, value, "must be " + ("true" if value == "false" else "population") + " for this picture"
-        )
+    if scene.contact.model != "population":
+        raise SceneError("contact.model", scene.contact.model, "must be population for this picture")
+    if not scene.run.asperity_events:
+        raise SceneError("run.asperity_events", "false", "must be true for this picture")
     name = next((one for one in _FORCES if one in ds), _FORCES[0])
     (drawn,) = runs_of(ds, name)
     start, end = _cycle(run)

@@ -68,9 +68,9 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
 
     Notes
     -----
-    Force and state of each pair are reconstructed as `gearidae.analysis.tooth_contacts` says, and where the record
-    does not tell them neither does the picture. The asperities drawn are a sample of the model's; those of a population
-    are its own, with the joined ones marked as the events tell.
+    Force and state of each pair are reconstructed as `gearidae.analysis.tooth_contacts` says; the picture names those
+    that are not recoverable. The asperities drawn are a sample of the model's; those of a population are its own, with
+    the joined ones marked, as the recorded events determine.
     """
     (state,) = mesh_states(ds, [math.inf if time is None else time])
     view = TeethView(ds, [state])

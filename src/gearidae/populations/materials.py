@@ -53,7 +53,7 @@ def by_gear_tooth(scene: Scene) -> bool:
 
 
 def materials_met(scene: Scene, one: FlankAsperities) -> NDArray[np.int64]:
-    """Return the index of the material at each asperity on whatever tooth of the gear.
+    """Return the index of the material at each asperity, for all teeth of the gear.
 
     Returns
     -------
