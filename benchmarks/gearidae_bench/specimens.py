@@ -37,7 +37,6 @@ def rows(seeds: int) -> Iterator[tuple[str, ...]]:
     """
     over = {"coating.sam_fraction": COVERAGES, "contact.seed": range(seeds)}
     ds = gd.sweep(SCENE, over, keep=KEPT, progress=True)
-    assert SCENE.gears is not None
     turned = ds.gear_angle.isel(time=-1) - ds.gear_angle.isel(time=0)
     assert SCENE.gears is not None
     cycles = turned / (2.0 * np.pi / SCENE.gears.gear_teeth)
