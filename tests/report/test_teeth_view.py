@@ -12,6 +12,7 @@ from gearidae.records import Flank
 from gearidae.report import build_report
 from gearidae.report.teeth import FRAME, PAIR, pack_teeth
 from gearidae.studies._tooth_contacts import tooth_contacts
+from gearidae.studies.joined_asperities import contact_arc, met_flank
 from reference.browser import CHROMIUM, looked_at
 
 SCENE = gd.preset("teodorescu2009_low_speed")
@@ -71,6 +72,12 @@ def swept():
     return gd.sweep(SCENE, {"coating.sam_fraction": [1.0, 0.5]}, t_end=0.004, samples=401)
 
 
+@pytest.fixture(scope="module")
+def specimen():
+    scene = gd.preset("teodorescu2009").replace({"contact.model": "population", "coating.sam_fraction": 0.5})
+    return gd.simulate(scene, t_end=4e-5, samples=401)
+
+
 def rows(run):
     numbers = np.frombuffer(base64.b64decode(run["states"]), dtype="<f4")
     return numbers.reshape(-1, len(FRAME) + run["places"] * len(PAIR))
@@ -115,6 +122,41 @@ def test_a_page_holds_no_more_states_than_it_may(swept):
     assert np.isnan(rows(data["runs"][0])[:, 5 + PAIR.index("bare")]).all()  # nothing is bare
 
 
+def test_asperities_of_a_population_are_its_own(specimen):
+    """Joined ones are those that the events determine; the tallest of each flank are there, and no flank twice."""
+    (run,) = pack_teeth(specimen, most_states=100)["runs"]
+    scene = gd.Scene.from_json(specimen.attrs["scene"])
+    joined = np.frombuffer(base64.b64decode(run["joined"]), dtype="<f4").reshape(-1, 2)
+    flanks = [
+        np.frombuffer(base64.b64decode(row), dtype="<f4").reshape(4, -1).astype(float)
+        for row in run["asperities"]
+    ]
+    assert run["population"]
+    assert len({arc.tobytes() for arc, *_ in flanks}) == len(flanks)
+    assert len(joined) > 0
+    shown = 0
+    for state in rows(run):
+        (truth,) = tooth_contacts(specimen, float(state[0]))
+        contacts = {(one.pair, one.flank): one for one in truth.contacts}
+        for pair in state[len(FRAME) :].reshape(-1, len(PAIR)):
+            if np.isnan(pair[0]):
+                continue
+            numbers = dict(zip(PAIR, pair, strict=True))
+            one = contacts[int(pair[0]), Flank(int(pair[1]))]
+            own = met_flank(scene, one.pair, one.flank)
+            which = list(one.asperities)
+            mine = joined[int(numbers["joined_from"]) : int(numbers["joined_to"])]
+            np.testing.assert_allclose(mine, np.stack([own.arc[which], own.height[which]], axis=1), rtol=1e-6)
+            arc, height, radius, material = flanks[int(numbers["row"])]
+            tallest = np.argsort(-own.height)[: arc.size]
+            np.testing.assert_allclose([arc, radius], [own.arc[tallest], own.radius[tallest]], rtol=1e-6)
+            np.testing.assert_array_equal(material, own.material[tallest])
+            assert np.isin(mine[:, 1], height).all()  # what is joined is among what is drawn
+            assert numbers["arc"] == pytest.approx(contact_arc(scene, one.place), rel=1e-6)
+            shown += len(which)
+    assert shown == len(joined)
+
+
 def test_rollers_have_no_teeth():
     roller = gd.simulate(gd.preset("roller_slow"), samples=101)
     assert pack_teeth(roller) == {}
@@ -134,6 +176,7 @@ def shown_in_browser(page, slider, tmp_path, *options):
     [
         ("single", ["--window-size=1200,900"]),
         ("swept", ["--window-size=500,800", "--blink-settings=preferredColorScheme=0"]),
+        ("specimen", ["--window-size=500,800"]),
     ],
 )
 def test_browser_shows_the_teeth(kind, options, request, tmp_path):
@@ -141,12 +184,13 @@ def test_browser_shows_the_teeth(kind, options, request, tmp_path):
     seen = shown_in_browser(build_report(ds), 100, tmp_path, *options)
     assert "error" not in seen
     every = pack_teeth(ds)["runs"][0]["every"]
-    run = ds if kind == "single" else ds.sel(sam_fraction=1.0)
+    run = ds.sel(sam_fraction=1.0) if kind == "swept" else ds
     assert seen["first"].startswith("t = 0 s")
     last = float(ds.time[-1])
     for name, time in (("slider", float(ds.time[100 * every])), ("cursor", last)):
         (state,) = tooth_contacts(run, time)
-        assert seen[name].startswith(f"t = {time * 1e3:#.6g} ms")
+        shown = f"{time * 1e6:#.6g} \N{MICRO SIGN}s" if kind == "specimen" else f"{time * 1e3:#.6g} ms"
+        assert seen[name].startswith(f"t = {shown}")
         for one in state.contacts:
             if one.flank == Flank.DRIVE and 0 < one.place < SCENE.geometry.path_length:
                 words = f"Pair {one.pair}, drive flank: gap {one.gap * 1e9:.4g} nm"

@@ -59,13 +59,24 @@ def calibrate_case(
     if not listed:
         raise SceneError("--seen", "(missing)", f"give what was observed, {_EXAMPLE}, or --observations FILE")
     options |= {"keys": priors, "members": len(listed) * int(options["points"])}
-    return conduct(case, request, "posterior", "Posterior", gd.studies.calibrate, priors, listed, **options)
+    outset = f"{' and '.join(priors)} from {len(listed)} observation{'s' if len(listed) > 1 else ''}"
+    return conduct(
+        case,
+        request,
+        "posterior",
+        "Posterior",
+        gd.studies.calibrate,
+        priors,
+        listed,
+        outset=outset,
+        **options,
+    )
 
 
 def predict_case(case: str, request: Request, posterior: Path, *, size: int, seed: int) -> int:
     """Run a case with the keys that were calibrated drawn from their posterior in a file."""
     known = gd.studies.open_posterior(posterior)
-    target = request.output or default_output(case, "_predicted.nc")
+    target, keys = request.output or default_output(case, "_predicted.nc"), calibrated_keys(known)
     return conduct(
         case,
         replace(request, output=target),
@@ -75,8 +86,9 @@ def predict_case(case: str, request: Request, posterior: Path, *, size: int, see
         known,
         size,
         seed=seed,
-        keys=calibrated_keys(known),
+        keys=keys,
         members=size,
+        outset=f"{size} runs, {' and '.join(keys)} drawn from the posterior",
     )
 
 

@@ -37,7 +37,7 @@ def conduct(
     *arguments: Any,
     keys: Mapping[str, Any] | Sequence[str] = (),
     members: int = 0,
-    outset: Callable[[Scene, int | None], str] | None = None,
+    outset: str | Callable[[Scene, int | None], str] = "",
     **options: Any,
 ) -> int:
     """Conduct a study of a case, keep it, show what it has found.
@@ -56,8 +56,8 @@ def conduct(
         Of the function, after the scene.
     keys, members
         What differs between the members of an ensemble, and how many they are.
-    outset : callable, optional
-        Says what will be run, given the scene and the number of simultaneous runs (None on a cluster).
+    outset : str or callable, optional
+        What will be run, in words; a callable gets the scene and the number of simultaneous runs (None on a cluster).
     **options
         Of the function.
 
@@ -70,7 +70,7 @@ def conduct(
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
-    words = "" if outset is None else outset(scene, workers if request.dask is None else None)
+    words = outset if isinstance(outset, str) else outset(scene, workers if request.dask is None else None)
     begin(title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
     with request.executor(keys, members) as executor:
         ds = study(
@@ -120,7 +120,7 @@ def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
         key,
         (ends[0], ends[1]),
         exits,
-        outset=lambda *_: f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits",
+        outset=f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits",
     )
 
 
@@ -139,14 +139,34 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
         "Starting torque",
         gd.studies.starting_torque,
         fractions,
+        outset=_torque_words(fractions, options["seeds"], seeded=seeded),
         **options,
     )
+
+
+def _torque_words(fractions: Any, gears: int | None, *, seeded: bool) -> str:
+    """Say of which coatings starting torques are searched, and of how many gears with a population."""
+    from gearidae.studies._starting_seeds import SEEDS
+
+    coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
+    if not seeded:
+        return f"{coatings}; one torque is tried after the other"
+    return f"{gears or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
 
 
 def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int:
     """Part drawn pairs of a case, pressed with a force."""
     force = None if load is None else quantity("--load", load, "N")
-    return conduct(case, request, "pull_off", "Pull-off", gd.studies.pull_off, seeds, load=force)
+    return conduct(
+        case,
+        request,
+        "pull_off",
+        "Pull-off",
+        gd.studies.pull_off,
+        seeds,
+        load=force,
+        outset=f"{seeds} drawn pairs",
+    )
 
 
 def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
@@ -168,13 +188,24 @@ def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
 
 def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
     """Make a coating map of a case, over fractions, and over other keys for several lines."""
+    from gearidae.studies._coating_map import FRACTIONS, further_keys
+
     values = sweep_values([pair for pair in over if pair.strip() != _TORQUE])
     fractions = values.pop(_FRACTION, None)
     usual_torques = any(pair.strip() == _TORQUE for pair in over)
     if usual_torques and values:
         raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
     further = _TORQUE if usual_torques else values
-    return conduct(case, request, "coating_map", "Map", gd.studies.coating_map, fractions, over=further)
+
+    def outset(scene: Scene, workers: int | None) -> str:
+        grid = {_FRACTION: FRACTIONS.tolist() if fractions is None else fractions} | further_keys(
+            scene, further
+        )
+        return grid_words(scene, grid, workers)
+
+    return conduct(
+        case, request, "coating_map", "Map", gd.studies.coating_map, fractions, over=further, outset=outset
+    )
 
 
 def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any) -> int:
@@ -204,7 +235,16 @@ def follow_life(
 ) -> int:
     """Follow the life of a case's coating by a loss law, given its parameters and a factor of Arrhenius."""
     found = _read_law(law, parameters, arrhenius)
-    return conduct(case, request, "life", "Life", gd.studies.life, found, **options)
+    return conduct(
+        case,
+        request,
+        "life",
+        "Life",
+        gd.studies.life,
+        found,
+        outset=f"{law}; at most {options['passages']:g} passages, of which few are simulated",
+        **options,
+    )
 
 
 def follow_lives(
@@ -219,7 +259,17 @@ def follow_lives(
     """Follow the coatings of an ensemble of gears."""
     keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
     found = _read_law(law, parameters, arrhenius, keys)
-    return conduct(case, request, "lives", "Lives", gd.studies.lives, found, keys, **options)
+    return conduct(
+        case,
+        request,
+        "lives",
+        "Lives",
+        gd.studies.lives,
+        found,
+        keys,
+        outset=f"{options['size']} gears, {law}; at most {options['passages']:g} passages, of which few are simulated",
+        **options,
+    )
 
 
 def _read_law(

@@ -20,7 +20,8 @@
       run.numbers = decode(run.states);
       run.size = FRAME + PAIR * run.places;
       run.rows = run.numbers.length / run.size;
-      run.sample = run.asperities.map(decode);
+      run.rowsOfAsperities = run.asperities.map(decode);
+      run.joinedAsperities = decode(run.joined);
       run.largest = 0;
       for (let i = 0; i < run.rows; i++) {
         for (const pair of pairsOf(i)) if (Number.isFinite(pair.force)) run.largest = Math.max(run.largest, Math.abs(pair.force));
@@ -162,6 +163,35 @@
     pen.fillText(String(pair.number), a + 9, b - 24);
   }
 
+  // The asperities beside a pair that its row holds; x is counted from where the pair touches.
+  function bumpsOf(pair, reach) {
+    const row = run.rowsOfAsperities[pair.row], count = row.length / 4, found = [];
+    for (let k = 0; k < count; k++) {
+      const x = row[k] - pair.arc;
+      if (Math.abs(x) < reach) found.push({ x, height: row[count + k], radius: row[2 * count + k], material: row[3 * count + k] });
+    }
+    return found;
+  }
+
+  function joinedOf(pair) {
+    const found = [];
+    for (let k = pair.joined_from; k < pair.joined_to; k++) found.push({ x: run.joinedAsperities[2 * k] - pair.arc, height: run.joinedAsperities[2 * k + 1] });
+    return found;
+  }
+
+  function isJoined(pair, bump) {
+    return [pair.joined_bare, pair.joined_coated, pair.joined_mixed][bump.material] + bump.x ** 2 / (2 * pair.radius) < bump.height;
+  }
+
+  function arrowhead(pen, a, b, ink) {
+    pen.fillStyle = ink;
+    pen.strokeStyle = style("--ground");
+    pen.lineWidth = 1;
+    pen.beginPath(); pen.moveTo(a, b + 5); pen.lineTo(a - 5, b - 5); pen.lineTo(a + 5, b - 5); pen.closePath();
+    pen.fill();
+    pen.stroke();
+  }
+
   // One pair close up: asperities of the one flank under the smooth other, heights stretched.
   function drawClose(box, pair) {
     box.figure.hidden = !pair;
@@ -171,20 +201,20 @@
     const { pen, width, height } = sheet;
     const sigma = run.roughness, half = run.halfWidth, top = Math.max(ABOVE * sigma, pair.gap + BELOW * sigma);
     const x = (a) => width * (a + half) / (2 * half), y = (b) => height * (top - b) / (top + BELOW * sigma);
-    const row = run.sample[((pair.number % run.sample.length) + run.sample.length) % run.sample.length];
-    const count = row.length / 3, upper = (a) => pair.gap + a * a / (2 * pair.radius);
+    const bumps = bumpsOf(pair, 1.1 * half), upper = (a) => pair.gap + a * a / (2 * pair.radius);
     const lower = [];
     for (let i = 0; i <= width; i += 1) {
       const a = (2 * i / width - 1) * half;
-      let height = -Infinity, owner = 0;
-      for (let k = 0; k < count; k++) {
-        const cap = row[count + k] - (a - row[k]) ** 2 / (2 * run.asperityRadius);
-        if (cap > height) { height = cap; owner = k; }
+      let height = -BELOW * sigma, coated = false;
+      for (const bump of bumps) {
+        const cap = bump.height - (a - bump.x) ** 2 / (2 * bump.radius);
+        if (cap > height) { height = cap; coated = bump.material > 0; }
       }
-      lower.push({ a, height: Math.min(height, upper(a)), pressed: height > upper(a), coated: row[2 * count + owner] > 0 });
+      lower.push({ a, height: Math.min(height, upper(a)), pressed: height > upper(a), coated });
     }
     pen.strokeStyle = style("--ink");
-    for (const [fill, edge, line] of [["--gear", height, (one) => one.height], ["--pinion", 0, (one) => upper(one.a)]]) {
+    const [rough, smooth] = run.population ? ["--pinion", "--gear"] : ["--gear", "--pinion"]; // a population stands on the pinion
+    for (const [fill, edge, line] of [[rough, height, (one) => one.height], [smooth, 0, (one) => upper(one.a)]]) {
       pen.beginPath();
       for (const one of lower) pen.lineTo(x(one.a), y(line(one)));
       pen.lineWidth = 1.2;
@@ -207,14 +237,14 @@
     pen.strokeStyle = colour(1);
     pen.lineWidth = 4;
     pen.beginPath();
-    for (let k = 0; k < count; k++) {
-      const rise = row[k] ** 2 / (2 * pair.radius), joined = [pair.joined_bare, pair.joined_coated, pair.joined_mixed][row[2 * count + k]];
-      if (joined + rise < row[count + k] && row[count + k] < pair.gap + rise) {
-        pen.moveTo(x(row[k]), y(row[count + k]));
-        pen.lineTo(x(row[k]), y(pair.gap + rise));
-      }
+    const joined = run.population ? joinedOf(pair) : bumps.filter((bump) => isJoined(pair, bump));
+    for (const bump of joined) {
+      if (bump.height >= upper(bump.x)) continue;
+      pen.moveTo(x(bump.x), y(bump.height));
+      pen.lineTo(x(bump.x), y(upper(bump.x)));
     }
     pen.stroke();
+    if (run.population) for (const bump of joined) arrowhead(pen, x(bump.x), y(upper(bump.x)), colour(bump.height < upper(bump.x) ? 1 : 0));
     pen.strokeStyle = style("--ink");
     pen.lineWidth = 1;
     pen.setLineDash([4, 3]);
@@ -330,7 +360,8 @@
   const notes = [];
   if (run.every > 1) notes.push("One of every " + run.every + " samples is shown.");
   notes.push("Blue pushes or is pressed, orange pulls or is stretched, green is covered by the monolayer. Arrows: force of a pair on the gear.");
-  notes.push("The asperities are a sample of the model's; a record knows of no single one.");
+  if (run.population) notes.push("The close-ups show the tallest asperities of each flank, all that stand side by side across its width; triangles mark the joined ones.");
+  else notes.push("The asperities are a sample of the model's; a record knows of no single one.");
   element("p", holder, notes.join(" "), { className: "hint" });
 
   document.addEventListener("gearidae:cursor", (event) => { stop(); show(nearest(event.detail), false); });

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +18,9 @@ from gearidae.plot.asperities import SAMPLES, half_width, joined_asperities, rou
 from gearidae.plot.style import runs_of
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
+from gearidae.records import Flank
 from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.studies.joined_asperities import MetFlank, contact_arc, met_flank
 
 if TYPE_CHECKING:
     from gearidae.studies.tooth_states import MeshState, ToothContact
@@ -40,9 +43,17 @@ PAIR = (
     "coated",
     "mixed",
     "count",
+    "row",
+    "arc",
+    "joined_from",
+    "joined_to",
 )
-"""Numbers of a pair: number, `Flank`, place, radius, gap [m], force [N], joined heights [m], a `ContactState` each, and
-how many asperities are joined on average. NaN where there is no such pair or part, or the record does not tell."""
+"""Numbers of a pair: number, `Flank`, place, radius, gap [m], force [N], joined heights [m], a `ContactState` each, how
+many asperities are joined (without a population: on average), which row of asperities is drawn, where the pair touches
+in that row [m], and which of the run's ``joined`` are its own. NaN where there is no such pair or part, or where the
+record does not determine it."""
+_TALLEST = 500
+"""Asperities of a population's flank that are embedded at most."""
 
 
 def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]:
@@ -86,7 +97,8 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
     every = max(1, math.ceil((samples - 1) / (most - 1)))
     times = float(run["time"][samples - 1]) / max(samples - 1, 1) * np.arange(0, samples, every)
     places = pairs_at_most(scene)
-    rows = [_row(scene, state, places) for state in mesh_states(run, times)]
+    asperities = _Asperities(scene)
+    rows = [_row(asperities, state, places) for state in mesh_states(run, times)]
     return {
         "every": every,
         "places": places,
@@ -99,28 +111,79 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
         "pinion": _wheel(picture.pinion, module),
         "gear": _wheel(picture.gear, module),
         "roughness": scene.surface.roughness,
-        "asperityRadius": scene.surface.asperity_radius,
         "halfWidth": half_width(scene),
-        "asperities": [_encode(np.stack(rough_sample(scene, pair)).ravel()) for pair in range(SAMPLES)],
+        "population": asperities.real,
+        "asperities": list(asperities.rows),
+        "joined": _encode(np.array(asperities.joined)),
         "states": _encode(np.array(rows).ravel()),
     }
 
 
-def _row(scene: Scene, state: MeshState, places: int) -> list[float]:
+class _Asperities:
+    """Asperities that the pairs of a run show: of a population its own, of other models a sample.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+
+    Attributes
+    ----------
+    scene : Scene
+    real : bool
+        Whether they are a population's.
+    rows : dict of str to int
+        Places along the flank [m], heights [m], tip radii [m] and materials of a row, as base64 text, and its number.
+    joined : list of float
+        Places and heights of joined asperities of a population, of all pairs one after the other.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.real = scene, scene.contact.model == "population"
+        self.rows: dict[str, int] = {}
+        self.joined: list[float] = []
+        self._sampled = lru_cache(maxsize=SAMPLES)(self._read_sample)
+        self._met = lru_cache(maxsize=8)(self._read_flank)  # pairs follow one another
+
+    def of(self, one: ToothContact) -> list[float]:
+        """Return the last four numbers of a pair, see `PAIR`."""
+        if not self.real:
+            return [self._sampled(one.pair % SAMPLES), 0.0, 0.0, 0.0]
+        flank, row = self._met(one.pair, one.flank)
+        first, which = len(self.joined), list(one.asperities or ())
+        self.joined += np.stack([flank.arc[which], flank.height[which]], axis=1).ravel().tolist()
+        return [row, contact_arc(self.scene, one.place), first // 2, len(self.joined) // 2]
+
+    def _read_sample(self, pair: int) -> int:
+        x, height, material = rough_sample(self.scene, pair)
+        return self._number(
+            MetFlank(x, height, np.full_like(x, self.scene.surface.asperity_radius), material)
+        )
+
+    def _read_flank(self, pair: int, side: Flank) -> tuple[MetFlank, int]:
+        flank = met_flank(self.scene, pair, side)
+        return flank, self._number(flank.some(np.argsort(-flank.height)[:_TALLEST]))
+
+    def _number(self, row: MetFlank) -> int:
+        """Embed a row once, and return its number."""
+        return self.rows.setdefault(_encode(np.stack(row).ravel()), len(self.rows))
+
+
+def _row(asperities: _Asperities, state: MeshState, places: int) -> list[float]:
     """Return the numbers of a state; each of its pairs in a place of its own."""
-    phase = state.travel / scene.geometry.base_pitch
+    phase = state.travel / asperities.scene.geometry.base_pitch
     row = [state.time, phase % 1.0, state.transmission_error, state.gear_speed, state.mesh_force]
     pairs = {one.pair % places: one for one in nearest_pairs(state, places)}
     for place in range(places):
-        row += _pair(scene, pairs[place]) if place in pairs else [math.nan] * len(PAIR)
+        row += _pair(asperities, pairs[place]) if place in pairs else [math.nan] * len(PAIR)
     return row
 
 
-def _pair(scene: Scene, one: ToothContact) -> list[float]:
+def _pair(asperities: _Asperities, one: ToothContact) -> list[float]:
     joined = [one.joined.get(part, math.nan) for part in MATERIAL_NAMES]
     states = [float(one.states[part]) if part in one.states else math.nan for part in MATERIAL_NAMES]
     numbers = [float(one.pair), float(one.flank), one.place, one.radius, one.gap, one.force]
-    return [*numbers, *joined, *states, joined_asperities(scene, one)]
+    return [*numbers, *joined, *states, joined_asperities(asperities.scene, one), *asperities.of(one)]
 
 
 def _wheel(wheel: ToothedWheel, module: float) -> dict[str, Any]:

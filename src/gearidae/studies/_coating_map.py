@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from gearidae.runs.sweep_plan import SweepPlan
     from gearidae.scene import Scene
 
-_FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
+FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
+"""Fractions of a map by default."""
 _FRACTION = "coating.sam_fraction"
 _TORQUE = "drive.torque"
 _PARTS_OF_TORQUE = (0.7, 0.85, 1.0, 1.15, 1.3)
@@ -119,7 +120,7 @@ def coating_map(
     require_gears(scene)
     fractions = _fractions(sam_fraction)
     width = check_width(width)
-    keys = _further_keys(scene, over)
+    keys = further_keys(scene, over)
     how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, scene.run.method)
     plans = _plans(scene, fractions, keys, backend)
     numbers = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
@@ -160,7 +161,7 @@ def _plans(
 def _fractions(given: ArrayLike | None) -> list[float]:
     """Fractions as a list; sweep checks their values."""
     try:
-        fractions = np.atleast_1d(np.asarray(_FRACTIONS if given is None else given, dtype=np.float64))
+        fractions = np.atleast_1d(np.asarray(FRACTIONS if given is None else given, dtype=np.float64))
     except (TypeError, ValueError):
         raise SceneError("sam_fraction", given, "must be a list of numbers") from None
     if fractions.ndim != 1:
@@ -168,8 +169,8 @@ def _fractions(given: ArrayLike | None) -> list[float]:
     return [float(value) for value in fractions]
 
 
-def _further_keys(scene: Scene, over: object) -> dict[str, list[Any]]:
-    """Keys beside the fraction and their values; sweep checks the values."""
+def further_keys(scene: Scene, over: object) -> dict[str, list[Any]]:
+    """Return the keys of a map beside the fraction, and their values, of `over`; the sweep checks the values."""
     if over is None:
         return {}
     if over == _TORQUE and isinstance(over, str):
