@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from gearidae.archive.select import run_scene
 from gearidae.records import Flank
 from gearidae.report import build_report
 from gearidae.report.teeth import FRAME, PAIR, pack_teeth
@@ -125,7 +126,7 @@ def test_a_page_holds_no_more_states_than_it_may(swept):
 def test_asperities_of_a_population_are_its_own(specimen):
     """Joined ones are those that the events determine; the tallest of each flank are there, and no flank twice."""
     (run,) = pack_teeth(specimen, most_states=100)["runs"]
-    scene = gd.Scene.from_json(specimen.attrs["scene"])
+    scene = run_scene(specimen)
     joined = np.frombuffer(base64.b64decode(run["joined"]), dtype="<f4").reshape(-1, 2)
     flanks = [
         np.frombuffer(base64.b64decode(row), dtype="<f4").reshape(4, -1).astype(float)

@@ -263,7 +263,8 @@
     const parts = [["bare", pair.bare], ["monolayer", pair.coated], ["monolayer on bare", pair.mixed]].filter((part) => !Number.isNaN(part[1]));
     const same = parts.every((part) => part[1] === parts[0][1]);
     words.push(same ? data.words[parts[0][1]] : parts.map(([name, state]) => name + " " + data.words[state]).join(", "));
-    if (Number.isFinite(pair.count)) words.push("joined asperities " + (pair.count < 1e-3 ? pair.count.toExponential(1) : pair.count.toPrecision(2)));
+    const count = run.population ? String(pair.count) : pair.count < 1e-3 ? pair.count.toExponential(1) : pair.count.toPrecision(2);
+    if (Number.isFinite(pair.count)) words.push("joined asperities " + count);
     return words;
   }
 
