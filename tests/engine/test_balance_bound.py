@@ -8,7 +8,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.formulas.quadrature import error_of_square, integral, integral_of_cube
+from gearidae.engine.formulas.quadrature import Ends, integral_of_cube, integral_of_square
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import (
     GEAR_BOUND,
@@ -162,39 +162,43 @@ def mean_square(values):
     return math.sqrt(np.mean(np.square(values)))
 
 
-@pytest.mark.parametrize("h", [0.05, 0.2, 0.8])
-def test_the_error_of_a_square_is_as_estimated(h):
-    """Of a vibration, over where in it the interval lies: to a factor of two, at any length of the interval."""
+@pytest.mark.parametrize("h", [0.05, 0.2, 0.8, 3.0])
+def test_the_error_of_a_square_is_no_larger_than_estimated(h):
+    """Of a vibration, over where in it the interval lies, up to half a period.
+
+    Errors are of seventh order in the length, estimates of fifth.
+    """
     errors, estimates = [], []
     for start in STARTS:
         a, b = start, start + h
         exact = 0.5 * h * WEIGHTS @ np.cos(start + 0.5 * h * (1.0 + NODES)) ** 2
-        ends = math.cos(a), math.cos(b), -math.sin(a), -math.sin(b)
-        rule = integral(h, ends[0] ** 2, ends[1] ** 2, 2 * ends[0] * ends[2], 2 * ends[1] * ends[3])
-        errors.append(rule - exact)
-        estimates.append(error_of_square(h, ends[2], ends[3]))
-    assert 1.0 < mean_square(estimates) / mean_square(errors) < QUADRATURE_BOUND
+        ends = Ends(math.cos(a), -math.sin(a), math.cos(b), -math.sin(b))
+        value, estimate = integral_of_square(h, math.sin(b) - math.sin(a), ends)
+        errors.append(value - exact)
+        estimates.append(estimate)
+    ratio = mean_square(estimates) / mean_square(errors)
+    assert 1.0 < ratio < 30.0 / h**2
 
 
-def test_drag_over_too_long_a_step_is_known_to_be_unknown():
-    """Rates that are out at both ends alike: the correction is many times the integral, and so is its error."""
-    value, estimate = integral_of_cube(1.0, 0.75, 1.0, -30.0, 0.5, -30.0)
+@pytest.mark.parametrize("last_rate", [-30.0, 30.0])
+def test_drag_over_too_long_a_step_is_known_to_be_unknown(last_rate):
+    """Rates say nothing of the speed between: corrections are many times the integral, and so is the doubt."""
+    value, estimate = integral_of_cube(1.0, 0.75, Ends(1.0, -30.0, 0.5, last_rate))
     at_most, at_least = 1.0, 0.5**3  # of a speed between those at the ends
-    assert value > at_most
-    assert 0.5 * (value - at_most) < estimate < 3.0 * (value - at_least)
+    assert estimate > max(value - at_least, at_most - value)
 
 
 @pytest.mark.parametrize(("mean", "deviation"), [(3.0, 0.3), (3.0, 0.03), (1.0, 0.9), (0.3, 1.0)])
 @pytest.mark.parametrize("h", [0.1, 0.4, 1.6])
 def test_the_error_of_drag_is_as_estimated(mean, deviation, h):
-    """The last speed turns round; the rule for that has a coarser estimate."""
+    """The last speed turns round; the rule for that has a coarser estimate. Errors are of one order more in h^2."""
     errors, estimates = [], []
     for start in STARTS:
         ends = np.array([start, start + h])
         speeds, rates = mean + deviation * np.cos(ends), -deviation * np.sin(ends)
         travel = mean * h + deviation * np.diff(np.sin(ends))[0]
         inside = np.abs(mean + deviation * np.cos(start + 0.5 * h * (1.0 + NODES))) ** 3
-        value, estimate = integral_of_cube(h, travel, speeds[0], rates[0], speeds[1], rates[1])
+        value, estimate = integral_of_cube(h, travel, Ends(speeds[0], rates[0], speeds[1], rates[1]))
         errors.append(value - 0.5 * h * WEIGHTS @ inside)
         estimates.append(estimate)
-    assert 1.0 < mean_square(estimates) / mean_square(errors) < 10.0
+    assert 1.0 < mean_square(estimates) / mean_square(errors) < max(10.0, 150.0 / h**2)

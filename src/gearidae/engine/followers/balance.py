@@ -3,8 +3,8 @@ r"""The energy balance of a run, kept at every accepted step without evaluating 
 The works of drive, drag, dry resistance and mesh damping need torques and speeds only. The work of a constant torque is
 exactly torque times angle, and so is that of the drag at a mean speed; the rest is integrated with the powers and their
 rates at both ends (corrected trapezoidal rule, an error of fifth order in the length). Drag and damping vary most and
-cost least to evaluate, so they are integrated over every step. The others are integrated over several steps at once; a
-turning point in between is no kink of their powers.
+cost least to evaluate, so they are integrated over every step, with the travels too (an error of seventh order). The
+others are integrated over several steps at once; a turning point in between is no kink of their powers.
 
 What the contacts store is a function of the gaps and of the joined heights (`gearidae.contact.kernels.energy`). A
 pair on a
@@ -44,7 +44,6 @@ from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import (
     Ends,
     error_estimate,
-    error_of_square,
     integral,
     integral_of_cube,
     integral_of_square,
@@ -107,8 +106,8 @@ def step(
 ) -> None:
     """Add works and losses up to an accepted time; histories and mesh marks must still be those before it.
 
-    A turning point needs no sample. Formulas of high order take steps that are too long for the quadrature of drag and
-    damping; these steps are divided, and in free flight those of the torques with them.
+    A turning point needs no sample. In free flight, where only torques and drag are integrated, formulas of high
+    order take steps that are too long for the quadrature; these steps are divided.
 
     Parameters
     ----------
@@ -123,17 +122,14 @@ def step(
     """
     if at[1] and _can_wait(m, t, y):
         return
-    a, parts, flying = m.work.adams, 1, in_flight(m)
-    start = max(m.work.resistance.time, a.time - a.last_step)
-    if a.order_used > ORDER and m.scene.kind == GEARS:
-        parts = m.scene.step_parts
+    a, parts, start = m.work.adams, 1, m.work.resistance.time
+    if a.order_used > ORDER and in_flight(m) and m.scene.kind == GEARS:
+        parts = m.scene.flight_parts
+        start = max(start, a.time - a.last_step)
     for part in range(1, parts):
         time = start + (t - start) * part / parts
         adams.between(a, time, between[0], between[1])
-        if flying:
-            _accumulate(m, time, between[0], between[1], True)
-        else:
-            _accumulate_losses(m, time, between[0], between[1])
+        _accumulate(m, time, between[0], between[1], True)
     _accumulate(m, t, y, yp, at[0] or m.state.bound_exceeded != 0)
 
 
@@ -300,38 +296,34 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
         return
     gear, w, w_rate = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     taken = 0.0
-    e = m.state.energy
+    e, turn = m.state.energy, Ends(r.gear_speed, r.gear_acceleration, w, w_rate)
     if m.scene.drag != 0.0:
-        cube, error = integral_of_cube(h, gear - r.gear_travel, r.gear_speed, r.gear_acceleration, w, w_rate)
+        cube, error = integral_of_cube(h, gear - r.gear_travel, turn)
         taken = m.scene.drag * cube
         e.drag_loss += taken
         e.loss_error += m.scene.drag * error
     if m.scene.viscous != 0.0:
-        square, error = integral_of_square(
-            h, gear - r.gear_travel, r.gear_speed, r.gear_acceleration, w, w_rate
-        )
+        square, error = integral_of_square(h, gear - r.gear_travel, turn)
         e.drag_loss += m.scene.viscous * square
         e.loss_error += m.scene.viscous * error
         taken += m.scene.viscous * square
     if m.scene.damping != 0.0:
-        v, was = y[V], r.mesh_speed
-        rub = m.scene.damping * integral(
-            h, was * was, v * v, 2.0 * was * r.mesh_acceleration, 2.0 * v * yp[V]
-        )
-        e.damping_loss += rub
-        e.loss_error += m.scene.damping * error_of_square(h, r.mesh_acceleration, yp[V])
-        taken += rub
+        mesh = Ends(r.mesh_speed, r.mesh_acceleration, y[V], yp[V])
+        square, error = integral_of_square(h, y[U] - r.mesh_travel, mesh)
+        e.damping_loss += m.scene.damping * square
+        e.loss_error += m.scene.damping * error
+        taken += m.scene.damping * square
     _note_resistance(m, t, gear, y, yp)
     e.throughput += taken
 
 
 @compiled(inline=True)
 def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> None:
-    """Note what the powers of drag and damping are made of, with the gear's travel."""
+    """Note what the powers of drag and damping are made of, with the travels of gear and mesh."""
     r = m.work.resistance
     r.time, r.gear_travel = t, gear
     r.gear_speed, r.gear_acceleration = y[W], yp[W]
-    r.mesh_speed, r.mesh_acceleration = y[V], yp[V]
+    r.mesh_travel, r.mesh_speed, r.mesh_acceleration = y[U], y[V], yp[V]
 
 
 ENERGIES: Final = 5

@@ -57,22 +57,34 @@ def correction(h: float, rate0: float, rate1: float) -> float:
 
 
 @compiled
-def integral_of_cube(
-    h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float
-) -> tuple[float, float]:
+def integral_with_middle(h: float, f0: float, middle: float, f1: float, rate0: float, rate1: float) -> float:
+    """Corrected trapezoidal rule, extrapolated with the value in the middle: exact for quintics."""
+    return h * (7.0 * (f0 + f1) + 16.0 * middle) / 30.0 + 0.2 * correction(h, rate0, rate1)
+
+
+@compiled
+def middle_deviation(h: float, deviation: Ends) -> float:
+    """Deviation from the mean in the middle of an interval: the one with which `integral_with_middle` gives zero."""
+    rates = deviation.start_rate - deviation.end_rate
+    return -(7.0 * (deviation.start + deviation.end) + 0.5 * h * rates) / 16.0
+
+
+@compiled
+def integral_of_cube(h: float, travel: float, speed: Ends) -> tuple[float, float]:
     """Integral of the cube of a speed's magnitude, and how far it may be out.
 
     That of the speed itself is known, the travel: what is left to the quadrature is of second order in the speed's
-    deviation from its mean.
+    deviation from its mean, and the deviation in the middle follows from those at the ends.
     """
-    mean = travel / h
+    mean, (w0, rate0, w1, rate1) = travel / h, speed
     if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # the speed has changed sign
         q0, q1 = w0 * abs(w0), w1 * abs(w1)
         start, end = 3.0 * q0 * rate0, 3.0 * q1 * rate1
         return integral(h, q0 * w0, q1 * w1, start, end), error_estimate(h, q0 * w0, q1 * w1, start, end)
     a, b = w0 - mean, w1 - mean
+    c = middle_deviation(h, Ends(a, rate0, b, rate1))
     # of the cube of mean and deviation, the deviation itself leaves nothing
-    f0, f1 = (3.0 * mean + a) * a * a, (3.0 * mean + b) * b * b
+    f0, middle, f1 = (3.0 * mean + a) * a * a, (3.0 * mean + c) * c * c, (3.0 * mean + b) * b * b
     start, end = 3.0 * (2.0 * mean + a) * a * rate0, 3.0 * (2.0 * mean + b) * b * rate1
     error = (3.0 * abs(mean) + max(abs(a), abs(b))) * error_of_square(h, rate0, rate1)
     corrected = abs(correction(h, start, end))
@@ -80,27 +92,27 @@ def integral_of_cube(
         error = max(
             error, corrected
         )  # the step is too long for the drag: rates may be out at both ends alike
-    return abs(mean * mean * travel + integral(h, f0, f1, start, end)), error
+    return abs(mean * mean * travel + integral_with_middle(h, f0, middle, f1, start, end)), error
 
 
 @compiled
-def integral_of_square(
-    h: float, travel: float, w0: float, rate0: float, w1: float, rate1: float
-) -> tuple[float, float]:
+def integral_of_square(h: float, travel: float, speed: Ends) -> tuple[float, float]:
     """Integral of the square of a speed, of which the travel is known, and how far it may be out."""
-    mean = travel / h
+    mean, (w0, rate0, w1, rate1) = travel / h, speed
     a, b = w0 - mean, w1 - mean
-    rest = integral(h, a * a, b * b, 2.0 * a * rate0, 2.0 * b * rate1)
+    c = middle_deviation(h, Ends(a, rate0, b, rate1))
+    rest = integral_with_middle(h, a * a, c * c, b * b, 2.0 * a * rate0, 2.0 * b * rate1)
     return mean * travel + rest, error_of_square(h, rate0, rate1)
 
 
 @compiled
 def error_of_square(h: float, rate0: float, rate1: float) -> float:
-    r"""By how much the corrected trapezoidal rule may be out for the square of a quantity x that vibrates.
+    r"""By how much `integral_with_middle` may be out for the square of a quantity x that vibrates.
 
-    Its error is :math:`h^5/720` times the fourth derivative, :math:`6 \ddot x^2 + 8 \dot x \dddot x + 2 x x^{(4)}`.
-    Over a vibration each of these products is as large as :math:`\ddot x^2` on average, which the rates at both ends
-    tell.
+    The error of the corrected trapezoidal rule is :math:`h^5/720` times the fourth derivative,
+    :math:`6 \ddot x^2 + 8 \dot x \dddot x + 2 x x^{(4)}`. Over a vibration each of these products is as large as
+    :math:`\ddot x^2` on average, which the rates at both ends show. With the middle, the error is of seventh order in h
+    and less than a sixteenth of that, unless a step lasts as long as half a vibration.
     """
     change = rate1 - rate0
-    return h * h * h * change * change / 45.0
+    return h * h * h * change * change / 720.0

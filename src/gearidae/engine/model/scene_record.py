@@ -205,7 +205,7 @@ SCENE: Final = record_type(
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
     ("balance_span", REAL),  # over which they may last [tau]
     ("balance_error", REAL),  # error over throughput from which on it takes single steps [1]
-    ("step_parts", INT),  # into which it divides a step of high order [1]
+    ("flight_parts", INT),  # into which it divides a step in flight [1]
     # last, so that what every step reads lies as close together as without it
     ("population", POPULATION),  # real asperities on the flanks
     ("attracts", INT),  # 1 if flanks attract each other across the gap

@@ -42,6 +42,7 @@ RESISTANCE: Final = record_type(  # the same of drag and damping, which are inte
     ("gear_travel", REAL),  # [sigma]
     ("gear_speed", REAL),  # [sigma/tau]
     ("gear_acceleration", REAL),  # [sigma/tau^2]
+    ("mesh_travel", REAL),  # transmission error [sigma]
     ("mesh_speed", REAL),  # rate of the transmission error [sigma/tau]
     ("mesh_acceleration", REAL),  # [sigma/tau^2]
 )

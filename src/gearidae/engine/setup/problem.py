@@ -36,7 +36,7 @@ from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Extremes, first_sample
 
 ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
-PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps of high order
+PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
 FELT = 0.1  # of the tolerance of a speed
 
 
@@ -104,8 +104,8 @@ class Problem:
         """Set the tolerance and the number of samples of a run, and return the model.
 
         Every state's error counts in absolute tolerances, `rtol` times its scale. At tight ones the energy balance
-        divides steps of high order: the error of its quadrature goes with the fourth power of a step, and a step with
-        no more than the eighth root of the tolerance. Torques that shake a gear by less than a share of the tolerance
+        divides steps in flight: the error of its quadrature goes with the fourth power of a step, and a step with no
+        more than the eighth root of the tolerance. Torques that shake a gear by less than a share of the tolerance
         need not be followed.
         """
         m = self.model
@@ -114,7 +114,7 @@ class Problem:
         s.first_sample = first_sample(float(s.start), float(s.end), samples)
         m.rows[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
         s.balance_error = ERRORS * rtol
-        s.step_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
+        s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
         if s.kind == GEARS:
             felt = FELT * rtol * float(self.tolerance_scale[V])
             s.torque_omega = max(
