@@ -321,6 +321,13 @@ MUTANTS = (
         ("engine/test_energy_balance.py",),
     ),
     Mutant(
+        "a speed in the middle of a step for which the rates count half",
+        "engine/formulas/quadrature.py",
+        "0.5 * h * rates",
+        "0.25 * h * rates",
+        ("engine/test_energy_balance.py::test_drag_knows_the_mean_speed",),
+    ),
+    Mutant(
         "a root accepted at a distance a hundred times too large",
         "engine/integrate/root_finding.py",
         "(b - a) * high < tolerance * (high - low)",
