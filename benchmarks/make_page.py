@@ -1,7 +1,7 @@
 """Measure everything and renew the benchmark's page: ``python benchmarks/make_page.py [--quick | --tables | --long]``.
 
-Runs the whole benchmark (some twenty minutes), writes ``benchmarks/results/``, replaces the tables between the markers of
-``docs/benchmarks.md`` and the pictures ``docs/images/work_precision_*.png``. ``--quick`` measures little, to see
+Runs the whole benchmark (some twenty minutes), writes ``benchmarks/results/``, replaces the tables between the markers
+of ``docs/benchmarks.md`` and the pictures ``docs/images/work_precision_*.png``. ``--quick`` measures little, to see
 that it works; ``--tables`` only writes the page again from the last results; ``--long`` only lets a million teeth pass
 (some minutes) and renews the table about that.
 """

@@ -63,7 +63,6 @@ def calibrate_case(
     return conduct(
         case,
         request,
-        "posterior",
         "Posterior",
         gd.studies.calibrate,
         priors,
@@ -80,7 +79,6 @@ def predict_case(case: str, request: Request, posterior: Path, *, size: int, see
     return conduct(
         case,
         replace(request, output=target),
-        "ensemble",
         "Prediction",
         gd.studies.predict,
         known,

@@ -17,6 +17,7 @@ from gearidae.cli.values import assignments, default_output, quantity, sweep_val
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.studies.answers import answer
+from gearidae.studies.products import kind_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +32,6 @@ _TORQUE: Final = "drive.torque"
 def conduct(
     case: str,
     request: Request,
-    kind: str,
     title: str,
     study: Callable[..., xr.Dataset],
     *arguments: Any,
@@ -46,8 +46,6 @@ def conduct(
     ----------
     case : str
         Path of a case file, or name of a preset.
-    kind : str
-        What comes of it, as `gearidae.studies.products.open_product` calls it.
     title : str
         How it is called; the file is named after it.
     study : callable
@@ -84,7 +82,7 @@ def conduct(
             overwrite=request.overwrite,
             resume=request.resume,
         )
-    found = answer(ds, kind)
+    found = answer(ds, kind_of(ds))
     show_rows(found.rows)
     say(f"{title}: {target}")
     code = _code(ds)
@@ -114,7 +112,6 @@ def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
     return conduct(
         case,
         request,
-        "sticking_threshold",
         "Threshold",
         gd.studies.sticking_threshold,
         key,
@@ -131,27 +128,19 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
         ((key, fractions),) = sweep_values([over]).items()
         if key != _FRACTION:
             raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
-    seeded = read_scene(case, request.settings or ()).contact.model == "population"
+
+    def outset(scene: Scene, _: int | None) -> str:
+        from gearidae.studies._starting_seeds import SEEDS
+
+        coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
+        if scene.contact.model != "population":
+            return f"{coatings}; one torque is tried after the other"
+        gears = options["seeds"] or SEEDS
+        return f"{gears} gears, {coatings}; each is run several times, with a torque that rises slowly"
+
     return conduct(
-        case,
-        request,
-        "starting_torques" if seeded else "starting_torque",
-        "Starting torque",
-        gd.studies.starting_torque,
-        fractions,
-        outset=_torque_words(fractions, options["seeds"], seeded=seeded),
-        **options,
+        case, request, "Starting torque", gd.studies.starting_torque, fractions, outset=outset, **options
     )
-
-
-def _torque_words(fractions: Any, gears: int | None, *, seeded: bool) -> str:
-    """Say of which coatings starting torques are searched, and of how many gears with a population."""
-    from gearidae.studies._starting_seeds import SEEDS
-
-    coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
-    if not seeded:
-        return f"{coatings}; one torque is tried after the other"
-    return f"{gears or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
 
 
 def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int:
@@ -160,7 +149,6 @@ def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int
     return conduct(
         case,
         request,
-        "pull_off",
         "Pull-off",
         gd.studies.pull_off,
         seeds,
@@ -178,7 +166,6 @@ def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
     return conduct(
         case,
         request,
-        "operating_map",
         "Operating map",
         gd.studies.operating_map,
         values,
@@ -203,9 +190,7 @@ def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
         )
         return grid_words(scene, grid, workers)
 
-    return conduct(
-        case, request, "coating_map", "Map", gd.studies.coating_map, fractions, over=further, outset=outset
-    )
+    return conduct(case, request, "Map", gd.studies.coating_map, fractions, over=further, outset=outset)
 
 
 def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any) -> int:
@@ -221,7 +206,6 @@ def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any)
     return conduct(
         case,
         request,
-        "ensemble",
         "Ensemble",
         gd.studies.ensemble,
         keys,
@@ -238,7 +222,6 @@ def follow_life(
     return conduct(
         case,
         request,
-        "life",
         "Life",
         gd.studies.life,
         found,
@@ -262,7 +245,6 @@ def follow_lives(
     return conduct(
         case,
         request,
-        "lives",
         "Lives",
         gd.studies.lives,
         found,
