@@ -326,7 +326,7 @@ def _name_estimate(ax: Axes, resolution: float, wide: bool) -> None:
     words = f"{window} window over {length}, resolution {with_prefix(resolution, 'Hz')}"
     if wide:
         words += f"\naveraged over 1/24 octave above {crowded_from(resolution):.0f} Hz"
-    ax.text(0.995, 0.9, words, transform=ax.transAxes, ha="right", va="top", fontsize="x-small", color="0.35")
+    ax.text(0.995, 0.9, words, transform=ax.transAxes, ha="right", va="top", fontsize="small", color="0.35")
 
 
 def _length(run: xr.Dataset) -> float:
@@ -361,6 +361,6 @@ def _mark(ax: Axes, frequency: float, text: str) -> None:
         xytext=(2, 0),
         textcoords="offset points",
         va="top",
-        fontsize="x-small",
+        fontsize="small",
         color="0.35",
     )
