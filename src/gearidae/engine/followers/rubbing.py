@@ -15,7 +15,7 @@ from gearidae.engine.followers.exposures.rubbing import (
     note_power,
 )
 from gearidae.engine.formulas import adams
-from gearidae.engine.formulas.quadrature import error_estimate, integral
+from gearidae.engine.formulas.quadrature import error_estimate, integral, integral_with_middle
 from gearidae.engine.friction.forces import Mesh, Shafts, solve_shafts
 from gearidae.engine.friction.pairs import direction, lever_rate, levers
 from gearidae.engine.model.record_types import HELD_PAIR
@@ -85,8 +85,8 @@ def _load_rate(m: Model, found: Shafts, rate: Mesh) -> float:
 def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rates: Floats) -> None:
     """Add the losses since the last call, and note the powers here.
 
-    The corrected trapezoidal rule is applied to the whole interval and to both halves, and extrapolated, where the
-    formula of the step gives the states in between. Rates are infinite before an asperity detaches, and not known of
+    The corrected trapezoidal rule is extrapolated with the powers in the middle, where the formula of the step gives
+    the state there. Rates are infinite before an asperity detaches, and not known of
     the friction that holds a pair, on which that of hubs depends: there powers at three points inside the interval
     are taken.
 
@@ -130,10 +130,8 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
         loss = integral(h, first[i], last[i], first[j], last[j])
         error = error_estimate(h, first[i], last[i], first[j], last[j])
         if halved:
-            parts = integral(0.5 * h, first[i], middle[i], first[j], middle[j])
-            parts += integral(0.5 * h, middle[i], last[i], middle[j], last[j])
-            error = min(error, abs(parts - loss) / 15.0)
-            loss = parts + (parts - loss) / 15.0
+            rough, loss = loss, integral_with_middle(h, first[i], middle[i], last[i], first[j], last[j])
+            error = min(error, abs(loss - rough) / 16.0)
         _book(m, i, loss, error)
 
 

@@ -89,9 +89,8 @@ def integral_of_cube(h: float, travel: float, speed: Ends) -> tuple[float, float
     error = (3.0 * abs(mean) + max(abs(a), abs(b))) * error_of_square(h, rate0, rate1)
     corrected = abs(correction(h, start, end))
     if corrected > 0.5 * h * (abs(f0) + abs(f1)):
-        error = max(
-            error, corrected
-        )  # the step is too long for the drag: rates may be out at both ends alike
+        # the step is too long for the drag: rates may be out at both ends alike
+        error = max(error, corrected)
     return abs(mean * mean * travel + integral_with_middle(h, f0, middle, f1, start, end)), error
 
 
