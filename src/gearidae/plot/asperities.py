@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from gearidae.arrays import Floats
 from gearidae.plot.style import NEGATIVE, POSITIVE
+from gearidae.records import Flank
 from gearidae.scene import MATERIAL_NAMES, Scene
-from gearidae.studies.joined_asperities import contact_arc, met_flank
+from gearidae.studies.joined_asperities import MetFlank, contact_arc, met_flank
 from gearidae.studies.tooth_states import ToothContact
 
 FLANKS = "#d3e5f3", "#deb968"
@@ -70,6 +71,19 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
     return x, height - np.array([one.gap_offset for one in order])[drawn], number
 
 
+def flank_asperities(scene: Scene, pair: int, flank: Flank) -> MetFlank:
+    """Return the asperities to draw of a pair: of a population those of its flank, of other models a sample."""
+    if scene.contact.model == "population":
+        return met_flank(scene, pair, flank)
+    x, height, material = rough_sample(scene, pair)
+    return MetFlank(x, height, np.full_like(x, scene.surface.asperity_radius), material)
+
+
+def touching_arc(scene: Scene, place: float) -> float:
+    """Return where a pair touches among the asperities to draw [m]: on a population's flank, or amid a sample."""
+    return contact_arc(scene, place) if scene.contact.model == "population" else 0.0
+
+
 def joined_asperities(scene: Scene, contact: ToothContact) -> float:
     """Return how many asperities of a pair are joined: of a population, else on average.
 
@@ -107,25 +121,24 @@ class _Row(NamedTuple):
 
 def _sampled_row(scene: Scene, contact: ToothContact) -> _Row:
     """Return a sample of the model's asperities."""
-    x, height, material = rough_sample(scene, contact.pair)
-    rise = x**2 / (2.0 * contact.radius)
-    joined = np.array([contact.joined[MATERIAL_NAMES[number]] for number in material]) + rise
-    stretched = (joined < height) & (height < contact.gap + rise)
-    radius = np.full(x.size, scene.surface.asperity_radius)
-    return _Row(x, height, radius, material, stretched, height > contact.gap + rise)
+    row = flank_asperities(scene, contact.pair, contact.flank)
+    rise = row.arc**2 / (2.0 * contact.radius)
+    joined = np.array([contact.joined[MATERIAL_NAMES[number]] for number in row.material]) + rise
+    stretched = (joined < row.height) & (row.height < contact.gap + rise)
+    return _Row(*row, stretched, row.height > contact.gap + rise)
 
 
 def _real_row(scene: Scene, contact: ToothContact) -> _Row:
     """Return the asperities of a population beside a contact."""
-    flank = met_flank(scene, contact.pair, contact.flank)
+    flank = flank_asperities(scene, contact.pair, contact.flank)
     joined = np.zeros(flank.arc.size, np.bool_)
     joined[list(contact.asperities or ())] = True
-    near = np.abs(flank.arc - contact_arc(scene, contact.place)) < 1.1 * half_width(scene)
+    x = flank.arc - touching_arc(scene, contact.place)
+    near = np.abs(x) < 1.1 * half_width(scene)
     some, joined = flank.some(near), joined[near]
     overlap = some.overlaps(scene, contact.place, contact.gap)
-    x = some.arc - contact_arc(scene, contact.place)
     return _Row(
-        x, some.height, some.radius, some.material, joined & (overlap <= 0.0), joined & (overlap > 0.0)
+        x[near], some.height, some.radius, some.material, joined & (overlap <= 0.0), joined & (overlap > 0.0)
     )
 
 

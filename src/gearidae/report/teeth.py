@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 
 from gearidae.archive.select import is_roller, motion_samples, run_scene
 from gearidae.archive.variables import EVENTS, columns
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.plot.asperities import SAMPLES, half_width, joined_asperities, rough_sample
+from gearidae.plot.asperities import flank_asperities, half_width, joined_asperities, touching_arc
 from gearidae.plot.style import runs_of
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
-from gearidae.records import Flank
 from gearidae.scene import MATERIAL_NAMES, Scene
-from gearidae.studies.joined_asperities import MetFlank, contact_arc, met_flank
 
 if TYPE_CHECKING:
+    from gearidae.records import Flank
     from gearidae.studies.tooth_states import MeshState, ToothContact
 
 MOST_STATES = 3000
@@ -53,7 +53,7 @@ many asperities are joined (without a population: on average), which row of aspe
 in that row [m], and which of the run's ``joined`` are its own. NaN where there is no such pair or part, or where the
 record does not determine it."""
 _TALLEST = 500
-"""Asperities of a population's flank that are embedded at most."""
+"""Asperities of a row that are embedded at most: the tallest."""
 
 
 def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]:
@@ -112,7 +112,7 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
         "gear": _wheel(picture.gear, module),
         "roughness": scene.surface.roughness,
         "halfWidth": half_width(scene),
-        "population": asperities.real,
+        "population": scene.contact.model == "population",
         "asperities": list(asperities.rows),
         "joined": _encode(np.array(asperities.joined)),
         "states": _encode(np.array(rows).ravel()),
@@ -120,7 +120,7 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
 
 
 class _Asperities:
-    """Asperities that the pairs of a run show: of a population its own, of other models a sample.
+    """Asperities that the pairs of a run show: each row once, and those that are joined at each state.
 
     Parameters
     ----------
@@ -130,8 +130,6 @@ class _Asperities:
     Attributes
     ----------
     scene : Scene
-    real : bool
-        Whether they are a population's.
     rows : dict of str to int
         Places along the flank [m], heights [m], tip radii [m] and materials of a row, as base64 text, and its number.
     joined : list of float
@@ -139,34 +137,24 @@ class _Asperities:
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.scene, self.real = scene, scene.contact.model == "population"
+        self.scene = scene
         self.rows: dict[str, int] = {}
         self.joined: list[float] = []
-        self._sampled = lru_cache(maxsize=SAMPLES)(self._read_sample)
-        self._met = lru_cache(maxsize=8)(self._read_flank)  # pairs follow one another
+        self._drawn = lru_cache(maxsize=8)(self._read)  # pairs follow one another
 
     def of(self, one: ToothContact) -> list[float]:
         """Return the last four numbers of a pair, see `PAIR`."""
-        if not self.real:
-            return [self._sampled(one.pair % SAMPLES), 0.0, 0.0, 0.0]
-        flank, row = self._met(one.pair, one.flank)
-        first, which = len(self.joined), list(one.asperities or ())
-        self.joined += np.stack([flank.arc[which], flank.height[which]], axis=1).ravel().tolist()
-        return [row, contact_arc(self.scene, one.place), first // 2, len(self.joined) // 2]
+        points, row = self._drawn(one.pair, one.flank)
+        first = len(self.joined) // 2
+        self.joined += points[list(one.asperities or ())].ravel().tolist()
+        return [row, touching_arc(self.scene, one.place), first, len(self.joined) // 2]
 
-    def _read_sample(self, pair: int) -> int:
-        x, height, material = rough_sample(self.scene, pair)
-        return self._number(
-            MetFlank(x, height, np.full_like(x, self.scene.surface.asperity_radius), material)
-        )
-
-    def _read_flank(self, pair: int, side: Flank) -> tuple[MetFlank, int]:
-        flank = met_flank(self.scene, pair, side)
-        return flank, self._number(flank.some(np.argsort(-flank.height)[:_TALLEST]))
-
-    def _number(self, row: MetFlank) -> int:
-        """Embed a row once, and return its number."""
-        return self.rows.setdefault(_encode(np.stack(row).ravel()), len(self.rows))
+    def _read(self, pair: int, flank: Flank) -> tuple[Floats, int]:
+        """Places and heights of the asperities of a pair, shape (n, 2), and the number of the row of its tallest."""
+        drawn = flank_asperities(self.scene, pair, flank)
+        tallest = drawn.some(np.argsort(-drawn.height)[:_TALLEST])
+        row = self.rows.setdefault(_encode(np.stack(tallest).ravel()), len(self.rows))
+        return np.stack([drawn.arc, drawn.height], axis=1), row
 
 
 def _row(asperities: _Asperities, state: MeshState, places: int) -> list[float]:
