@@ -162,10 +162,8 @@ def extreme_friction(seed: int, number: int, alive: Callable[[], None] | None = 
     SceneError
         As `extreme_scene` does.
     """
-    draw, rng = (
-        (extreme_population if number % 2 else extreme_scene),
-        np.random.default_rng([seed, number, 19]),
-    )
+    draw = extreme_population if number % 2 else extreme_scene
+    rng = np.random.default_rng([seed, number, 19])
     extreme = next(
         one for k in range(_TRIES) if (one := draw(seed, number + k * _APART, alive)).scene.gears is not None
     )

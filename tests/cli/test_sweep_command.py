@@ -90,6 +90,32 @@ def test_what_will_be_run_is_said_first_and_the_answer_last(folder, capsys):
 
 
 @pytest.mark.parametrize(
+    ("arguments", "first"),
+    [
+        (
+            [
+                "coating-map",
+                "low_speed",
+                *SHORT[:-1],
+                "run.samples=101",
+                "--over",
+                "coating.sam_fraction=1,0.6",
+            ],
+            "Map of low_speed: 2 runs, coating.sam_fraction = 1, 0.6; less than a second",
+        ),
+        (["pull-off", "low_speed", "--seeds", "3"], "Pull-off of low_speed: 3 drawn pairs"),
+        (
+            ["starting-torque", "low_speed"],
+            "Starting torque of low_speed: own coating; one torque is tried after the other",
+        ),
+    ],
+)
+def test_a_study_says_first_what_it_will_run(arguments, first, folder, capsys):
+    assert main([*arguments, "-o", "out.nc"]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == first
+
+
+@pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["--over", "run.duration=1,2"], "cannot be swept"),

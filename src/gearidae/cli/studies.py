@@ -178,17 +178,14 @@ def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
     from gearidae.studies._coating_map import FRACTIONS, further_keys
 
     values = sweep_values([pair for pair in over if pair.strip() != _TORQUE])
-    fractions = values.pop(_FRACTION, None)
+    fractions = values.pop(_FRACTION, FRACTIONS.tolist())
     usual_torques = any(pair.strip() == _TORQUE for pair in over)
     if usual_torques and values:
         raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
     further = _TORQUE if usual_torques else values
 
     def outset(scene: Scene, workers: int | None) -> str:
-        grid = {_FRACTION: FRACTIONS.tolist() if fractions is None else fractions} | further_keys(
-            scene, further
-        )
-        return grid_words(scene, grid, workers)
+        return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further), workers)
 
     return conduct(case, request, "Map", gd.studies.coating_map, fractions, over=further, outset=outset)
 
