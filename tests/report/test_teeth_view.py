@@ -196,6 +196,8 @@ def test_browser_shows_the_teeth(kind, options, request, tmp_path):
             if one.flank == Flank.DRIVE and 0 < one.place < SCENE.geometry.path_length:
                 words = f"Pair {one.pair}, drive flank: gap {one.gap * 1e9:.4g} nm"
                 assert words in seen[name]
+    counted = "joined asperities: " if kind == "specimen" else "expected asperities in contact "
+    assert counted in seen["slider"]
     if kind == "swept":
         assert "monolayer" not in seen["cursor"]  # one material only
         assert seen["other run"].startswith("t = 4.00000 ms")

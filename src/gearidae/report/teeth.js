@@ -263,8 +263,8 @@
     const parts = [["bare", pair.bare], ["monolayer", pair.coated], ["monolayer on bare", pair.mixed]].filter((part) => !Number.isNaN(part[1]));
     const same = parts.every((part) => part[1] === parts[0][1]);
     words.push(same ? data.words[parts[0][1]] : parts.map(([name, state]) => name + " " + data.words[state]).join(", "));
-    const count = run.population ? String(pair.count) : pair.count < 1e-3 ? pair.count.toExponential(1) : pair.count.toPrecision(2);
-    if (Number.isFinite(pair.count)) words.push("joined asperities " + count);
+    const expected = pair.count < 1e-3 ? pair.count.toExponential(1) : pair.count.toPrecision(2);
+    if (Number.isFinite(pair.count)) words.push(run.population ? "joined asperities: " + pair.count : "expected asperities in contact " + expected);
     return words;
   }
 
@@ -362,7 +362,7 @@
   if (run.every > 1) notes.push("One of every " + run.every + " samples is shown.");
   notes.push("Blue pushes or is pressed, orange pulls or is stretched, green is covered by the monolayer. Arrows: force of a pair on the gear.");
   if (run.population) notes.push("The close-ups show the tallest asperities of each flank, all that stand side by side across its width; triangles mark the joined ones.");
-  else notes.push("The asperities are a sample of the model's; a record knows of no single one.");
+  else notes.push("The asperities are a sample with the model's density and heights; single asperities are not recorded.");
   element("p", holder, notes.join(" "), { className: "hint" });
 
   document.addEventListener("gearidae:cursor", (event) => { stop(); show(nearest(event.detail), false); });
