@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import subprocess
 import sys
 import tarfile
@@ -79,12 +81,18 @@ def test_what_the_report_needs_is_in_the_package():
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory):
+def wheel(tmp_path_factory):
+    """A wheel built of this very tree."""
+    builder = pytest.importorskip("hatchling.builders.wheel").WheelBuilder
+    (path,) = builder(str(ROOT)).build(directory=str(tmp_path_factory.mktemp("wheel")), versions=["standard"])
+    return path
+
+
+@pytest.fixture(scope="module")
+def built(wheel, tmp_path_factory):
     """Names of the files in a wheel and in a source distribution, both built of this very tree."""
     sdist_builder = pytest.importorskip("hatchling.builders.sdist").SdistBuilder
-    wheel_builder = pytest.importorskip("hatchling.builders.wheel").WheelBuilder
     folder = tmp_path_factory.mktemp("dist")
-    (wheel,) = wheel_builder(str(ROOT)).build(directory=str(folder), versions=["standard"])
     (sdist,) = sdist_builder(str(ROOT)).build(directory=str(folder), versions=["standard"])
     with zipfile.ZipFile(wheel) as file:
         in_wheel = set(file.namelist())
@@ -111,6 +119,29 @@ def test_wheel_has_the_whole_package_and_nothing_else(built):
         f"gearidae/{name}" for name in shipped("cases")
     }
     assert any(name.endswith("entry_points.txt") for name in in_wheel)
+
+
+def test_the_test_file_of_the_docs_runs_against_an_installed_wheel(wheel, tmp_path):
+    site = tmp_path / "site"
+    with zipfile.ZipFile(wheel) as file:
+        file.extractall(site)
+    page = (ROOT / "docs" / "howto_testing.md").read_text()
+    block = re.search(r"```python\n(# test_my_gears\.py\n.*?)```", page, flags=re.DOTALL)
+    (tmp_path / "test_my_gears.py").write_text(block[1])
+    (tmp_path / "conftest.py").write_text('pytest_plugins = ["gearidae.testing.plugin"]\n')
+    for options, count in ((["--gearidae-update", "-k", "changed"], 1), ([], 4)):
+        command = [sys.executable, "-P", "-m", "pytest", "-q", "-p", "no:cacheprovider", *options]
+        done = subprocess.run(
+            command,
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(site)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert f"{count} passed" in done.stdout
+    assert (tmp_path / "gearidae_references" / "low_speed.nc").exists()
 
 
 def test_source_distribution_has_what_tests_and_docs_need(built):

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from gearidae import scene as scene
     from gearidae import studies as studies
     from gearidae import surfaces as surfaces
+    from gearidae import testing as testing
     from gearidae import torques as torques
     from gearidae import wear as wear
     from gearidae.analysis.verdict import outcomes as outcomes
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from gearidae.scene import load_case as load_case
     from gearidae.scene import preset as preset
     from gearidae.surfaces import surface_from as surface_from
+    from gearidae.testing.comparison import compare as compare
     from gearidae.torques import register_torque as register_torque
     from gearidae.torques import torque_names as torque_names
     from gearidae.torques import unregister_torque as unregister_torque

@@ -21,7 +21,18 @@ def test_every_name_is_reachable_and_has_words(name):
 
 
 def test_the_page_lists_all_that_is_public():
-    rooms = {"analysis", "contact", "plot", "report", "scene", "studies", "surfaces", "torques", "wear"}
+    rooms = {
+        "analysis",
+        "contact",
+        "plot",
+        "report",
+        "scene",
+        "studies",
+        "surfaces",
+        "testing",
+        "torques",
+        "wear",
+    }
     assert rooms <= set(gd.__all__)
     assert set(gd.__all__) - rooms - {"__version__"} <= set(NAMES)
     for room in ("plot", "studies", "surfaces"):

@@ -1,0 +1,72 @@
+"""Assertions on runs for the tests of a user."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import xarray as xr
+
+from gearidae.archive.select import scene_of
+from gearidae.errors import SceneError
+from gearidae.scene.differences import first_difference
+from gearidae.testing.comparison import compare
+
+_SHOWN = 12
+"""Differences that a message lists."""
+
+
+def assert_runs_close(
+    a: xr.Dataset, b: xr.Dataset, *, rtol: float = 1e-6, per: Mapping[str, float] | None = None
+) -> None:
+    """Require that two runs, or two sweeps, agree.
+
+    Parameters
+    ----------
+    a, b : xarray.Dataset
+        As for `gearidae.compare`.
+    rtol : float, optional
+        Largest allowed difference of each variable over its scale [1]; that of events is over the duration. Events must
+        be the same in the same order.
+    per : mapping of str to float, optional
+        Tolerances of single variables in place of `rtol`; infinite for one that may differ, also ``events``.
+
+    Raises
+    ------
+    AssertionError
+        Names each variable that differs by more, by how much, and where; and the first key in which the scenes differ.
+    SceneError
+        If the datasets cannot be compared, a tolerance is negative or NaN, or `per` names a variable that they do not
+        have.
+    """
+    per = dict(per or {})
+    for name, tolerance in {"rtol": rtol, **per}.items():
+        if not tolerance >= 0.0:
+            raise SceneError(
+                "rtol" if name == "rtol" else f"per[{name!r}]", tolerance, "must be a number from 0 on"
+            )
+    table = compare(a, b)
+    if unknown := [name for name in per if name not in table.index]:
+        raise SceneError("per", unknown[0], f"must be one of {', '.join(sorted(table.index))}")
+    lines = []
+    for name, row in table.iterrows():
+        allowed = per.get(str(name), rtol)
+        if not row["relative"] <= allowed:
+            lines.append(_line(str(name), row["difference"], row["relative"], row["where"], allowed))
+    if not lines:
+        return
+    more = [f"  and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []
+    raise AssertionError("\n".join([_heading(a, b, len(lines), len(table)), *lines[:_SHOWN], *more]))
+
+
+def _heading(a: xr.Dataset, b: xr.Dataset, apart: int, total: int) -> str:
+    different = first_difference(scene_of(a), scene_of(b))
+    scenes = "their scenes are the same" if different is None else f"their scenes differ in {different[0]}"
+    return f"runs differ in {apart} of {total} quantities ({scenes}):"
+
+
+def _line(name: str, difference: float, relative: float, where: str, allowed: float) -> str:
+    if math.isinf(relative):
+        return f"  {name}: {where or 'only one has a value'}"
+    at = f" at {where}" if where else ""
+    return f"  {name}: {relative:.3g} of its scale ({difference:.3g}){at}; allowed {allowed:.3g}"
