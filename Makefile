@@ -39,9 +39,7 @@ test-by-hand: $(VENV)/installed-dev
 
 # Compile beforehand what both processes of the tests need, while the linters run.
 warm: $(VENV)/installed-dev
-	$(BIN)/python -c 'import gearidae as gd; \
-	    [gd.simulate(gd.preset(name).replace({"contact.model": model}), t_end=1e-6, samples=3, backend=driver) \
-	     for name in ("teodorescu2009", "roller_slow") for model in ("asperity", "elastic") for driver in ("native", "sksundae")]'
+	$(BIN)/gearidae compile
 
 # The short suite: both drivers, scenes, archives, pictures and the command line.
 SHORT := -q -n 2 --dist loadfile --no-loadscope-reorder \

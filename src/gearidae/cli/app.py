@@ -347,3 +347,14 @@ def schema(*, output: Output = None, overwrite: Overwrite = False) -> int:
     from gearidae.cli.schema import write_schema
 
     return write_schema(output, overwrite=overwrite)
+
+
+@app.command(name="compile")
+def compile_solver() -> int:
+    """Compile the solver for this machine ahead of the first run: once, for some minutes."""
+    from gearidae.cli.output import say
+    from gearidae.compiled.cache import cache_folder
+
+    gearidae.compile()
+    say(f"Compiled code: {cache_folder()}")
+    return 0
