@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.friction.hubs import Mesh, across, consistent_loads, on_a_line, vector_sum
+from gearidae.engine.friction.hubs import Mesh, across, consistent_loads, turning_load, vector_sum
 from gearidae.engine.friction.pairs import (
     RUBS,
     direction,
@@ -95,9 +95,9 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
         Forces at the base circles without friction and dry resistance.
     """
     own, state, w = m.scene.friction, m.state, y[W]
-    drive = coast = drive_friction = coast_friction = beside = 0.0
+    drive = coast = drive_friction = coast_friction = 0.0
     pinion_lever = gear_lever = limit = bend = 0.0
-    coast_held, rubbing = False, 0
+    coast_held = False
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         on_coast = flank_of_history(m, noted.history) == COAST
@@ -108,18 +108,13 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
         if own.flanks == 0:
             continue
         first, second = levers(m, noted.position)
-        slip = direction(m, noted)
-        friction = slip * noted.limit
+        friction = direction(m, noted) * noted.limit
         pinion -= friction * first
         gear += friction * second
         if on_coast:
             coast_friction += friction
         else:
             drive_friction += friction
-        if slip != 0.0:
-            rubbing += 1
-        else:
-            beside += abs(noted.force)
         if state.hold == HELD_PAIR and noted.history == state.held_pair:
             pinion_lever, gear_lever, coast_held = first, second, on_coast
             limit = noted.limit + own.blur * abs(noted.slope)
@@ -127,11 +122,9 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
     mesh = Mesh(drive, coast, drive_friction, coast_friction)
     load, corner = 0.0, math.inf
     if has_hubs(m):
-        along, over = vector_sum(m, mesh)
-        load = math.hypot(along, over)
-        if state.hold != AT_REST and state.hold != HELD_PAIR and on_a_line(m, mesh, rubbing, beside):
+        load, along = turning_load(m, mesh)
+        if state.hold != AT_REST and state.hold != HELD_PAIR:
             corner = state.load_sign * along + RUBS
-            load = math.copysign(load, state.load_sign * along)
     if state.hold == AT_REST:
         return Shafts(0.0, 0.0, 0.0, 0.0, mesh, load, corner)
     a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, dry_force(m, t, y)
@@ -145,6 +138,7 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
         if load != 0.0:
             falls = (a1 * pinion_lever * hub_on_pinion - a2 * gear_lever * hub_on_gear) / inertia
             x, z = across(m, coast_held)
+            along, over = vector_sum(m, mesh)
             loads = consistent_loads((along + held * x, over + held * z), (-falls * x, -falls * z))
             load, margin = loads.near, loads.room
             held -= falls * load

@@ -11,7 +11,6 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.friction.pairs import RUBS
 from gearidae.engine.model.state import Model
 
 _TINY = 1e-300
@@ -43,19 +42,20 @@ def vector_sum(m: Model, mesh: Mesh) -> tuple[float, float]:
 
 
 @compiled(inline=True)
-def on_a_line(m: Model, mesh: Mesh, rubbing: int, beside: float) -> bool:
-    """Whether the vector sum keeps to a line through zero: its modulus has a corner where the force turns round.
+def turning_load(m: Model, mesh: Mesh) -> tuple[float, float]:
+    """Modulus of the vector sum, and the force along the line of action of the flank that has more of it.
 
-    Parameters
-    ----------
-    rubbing : int
-        Pairs that rub.
-    beside : float
-        Sum of the moduli of the forces of those that do not.
+    Where forces turn round together, the sum keeps to a line through zero and the modulus has a corner there: it goes
+    on below zero, from the direction ``load_sign`` on. Where they turn round one by one, the sum passes beside zero.
     """
-    if rubbing == 0:
-        return bool(min(abs(mesh.drive), abs(mesh.coast)) <= RUBS)
-    return bool(rubbing == 1 and m.scene.friction.even > 0.0 and beside <= RUBS)
+    own = m.scene.friction
+    along, over = vector_sum(m, mesh)
+    load = math.hypot(along, over)
+    if abs(mesh.coast) > abs(mesh.drive):
+        along, over = -own.cosine * along - own.sine * over, own.sine * along - own.cosine * over
+    if m.state.load_sign * along < 0.0 and abs(over) <= 2.0 * own.even * abs(along):
+        load = -load
+    return load, along
 
 
 class Loads(NamedTuple):

@@ -117,8 +117,7 @@ class Problem:
         s.balance_error = ERRORS * rtol
         s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
         if s.kind == GEARS:
-            import os
-            s.friction.blur = float(os.environ.get("BLUR","1")) * rtol * float(self.tolerance_scale[U])
+            s.friction.blur = rtol * float(self.tolerance_scale[U])
             felt = FELT * rtol * float(self.tolerance_scale[V])
             s.torque_omega = max(
                 self._fastest(shaft, felt / float(share))
