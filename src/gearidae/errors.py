@@ -48,7 +48,7 @@ class SolverError(GearidaeError, RuntimeError):
     state : dict of str to float
         The state at that time, SI units.
     last_event : str
-        The last recorded event, in words.
+        The last recorded event, in words; empty where none is known.
     advice : str
         What to try next.
     dataset : xarray.Dataset, optional
@@ -72,7 +72,9 @@ class SolverError(GearidaeError, RuntimeError):
         self.advice = advice
         self.dataset = dataset
         where = ", ".join(f"{name} = {value:.6g}" for name, value in state.items())
-        super().__init__(f"{message} at t = {time:.9g} s ({where}); last event: {last_event}; {advice}")
+        where = f" ({where})" if where else ""
+        last = f"last event: {last_event}; " if last_event else ""
+        super().__init__(f"{message} at t = {time:.9g} s{where}; {last}{advice}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Survive the trip between processes with every field in place."""

@@ -71,7 +71,7 @@ class Account:
         Taken by friction of flanks and hubs.
     efficiency : float
         What drag and dry resistance at the gear have taken over all that has been lost; 1 without losses in mesh and
-        hubs. NaN where nothing has been lost.
+        hubs. NaN where nothing has been lost, or the drive has done no work.
     kinetic_change : float
         Kinetic energy of both gears at the end less that at the start.
     contact_loss : float
@@ -242,7 +242,7 @@ def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
         "contact_loss": contact,
         "uncertainty": abs(balance["residual"]),
         "friction_loss": friction,
-        "efficiency": useful / lost if lost > 0.0 else math.nan,
+        "efficiency": useful / lost if lost > 0.0 and balance["drive_work"] > 0.0 else math.nan,
     }
 
 

@@ -82,7 +82,7 @@ def _summary_rows(kept: dict[str, Any]) -> Iterator[tuple[str, Row]]:
     yield row("time_adhering", "s", "rocking within half a pitch")
     if kept["largest_force"] is not None:
         yield row("largest_force", "N", f"at {number('largest_force_time', 's')}")
-    if kept.get("friction_loss"):
+    if kept.get("friction_loss") and kept["efficiency"] is not None:
         share = f"{100.0 * kept['efficiency']:.4g} %"
         yield "efficiency", ("efficiency", share, "drag and dry resistance over all losses")
 

@@ -111,7 +111,7 @@ def unfinished(solution: Solution, what: str) -> SolverError:
         f"{what} could not be finished: {solution.message or solution.status}",
         time=solution.reached or 0.0,
         state={},
-        last_event="not kept",
+        last_event="",
         advice="try another rtol (run.rtol)",
     )
 

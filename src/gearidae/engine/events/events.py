@@ -29,6 +29,8 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_near,
 )
 
+PROGRESS = 1e-6
+"""Share of a run in which `REVERSALS_HIGH` changes of sliding are too many."""
 LIGHT_EXITS = 4
 """Mesh exits without a deep contact after which elastic bodies are no longer needed."""
 
@@ -125,8 +127,11 @@ def _light(m: Model) -> bool:
 def chatters(m: Model, t: float) -> bool:
     """Count a root, and return whether roots recur without progress in time."""
     s = m.state
+    many = s.reversals > REVERSALS_HIGH
+    if t - s.counted_from > PROGRESS * (m.scene.end - m.scene.start):
+        s.counted_from, s.reversals = t, 0
     if t - s.last_root > m.scene.root_spacing * (1.0 + t):
         s.roots = 0
     s.last_root = t
     s.roots += 1
-    return bool(s.roots > m.scene.root_limit or s.reversals > REVERSALS_HIGH)
+    return bool(s.roots > m.scene.root_limit or many)

@@ -14,8 +14,8 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import record
-from gearidae.engine.friction.forces import has_gear_element, solve_shafts
-from gearidae.engine.friction.pairs import levers
+from gearidae.engine.friction.forces import has_gear_element, has_hubs, solve_shafts
+from gearidae.engine.friction.pairs import RUBS, levers
 from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
 from gearidae.engine.model.record_types import (
     AT_REST,
@@ -35,8 +35,6 @@ _REVERSAL, _STICK = float(EventKind.SLIDING_REVERSAL), float(EventKind.FLANK_STI
 _SLIP, _GEAR_STICK = float(EventKind.FLANK_SLIP), float(EventKind.STICK)
 _GEAR_SLIP, _NO_FLANK = float(EventKind.SLIP), float(Flank.NONE)
 
-RUBS: Final = 1e-8
-"""Of the reference load: friction with a smaller limit is none, and has no direction to watch."""
 STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
 AT_ONCE: Final = 1e-7
@@ -77,8 +75,9 @@ def sliding_guard(m: Model, t: float, y: Floats) -> float:
     if state.hold == AT_REST:
         list_elements(m, t, y)
         return min(least, rest_margin(m, pinion, gear) + 2.0 * NO_FORCE)
-    if state.hold != FREE:
-        least = min(least, solve_shafts(m, t, y, turn, pinion, gear).margin + 2.0 * NO_FORCE)
+    if state.hold != FREE or has_hubs(m):
+        shafts = solve_shafts(m, t, y, turn, pinion, gear)
+        least = min(least, shafts.margin + 2.0 * NO_FORCE, shafts.corner)
     if has_gear_element(m) and state.slip != 0.0:
         least = min(least, state.slip * w + STILL)
     if m.scene.friction.pinion_hub > 0.0 and state.pinion_slip != 0.0:
@@ -87,10 +86,18 @@ def sliding_guard(m: Model, t: float, y: Floats) -> float:
 
 
 @compiled_once(FRICTION)
+def rest_reserve(m: Model, t: float, y: Floats) -> float:
+    """How far a train that stands still in a state is from being let go at a time; below zero once nothing holds it."""
+    _, pinion, gear = forces_at_shafts(m, t, y)
+    list_elements(m, t, y)
+    return rest_margin(m, pinion, gear)
+
+
+@compiled_once(FRICTION)
 def begin_sliding(m: Model, t: float, y: Floats) -> None:
     """Set all directions of slip from the speeds of a start, and decide on what stands still there."""
     state = m.state
-    state.hold, state.held_pair, state.reversals, state.bearing_load = FREE, 0, 0, 0.0
+    state.hold, state.held_pair, state.reversals, state.load_sign = FREE, 0, 0, 1.0
     for k in range(m.scene.histories):
         state.history[k].slide = 0
     state.pinion_slip, state.slip = _sign(pinion_speed(m, y)[0]), _sign(y[W])
@@ -122,17 +129,17 @@ def follow_sliding(m: Model, t: float, y: Floats, events: Floats, count: int) ->
         Whether the integration must begin anew.
     """
     passes = 0
+    _note_directions(m)
     while passes <= PASSES_HIGH and settle_sliding(m, t, y, False):
-        count = record_sliding(m, t, events, count)
         passes += 1
     if passes > PASSES_HIGH:
         m.state.reversals = REVERSALS_HIGH + 1
-    return count, passes > 0
+    return _record_changes(m, t, events, count), passes > 0
 
 
 @compiled_once(FRICTION)
 def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
-    """Deal with all guards of friction that have fallen, once, for `record_sliding` to record.
+    """Deal with all guards of friction that have fallen, once.
 
     Parameters
     ----------
@@ -149,8 +156,7 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
         Whether forces have jumped, so that the integration must begin anew.
     """
     turn, pinion, gear = forces_at_shafts(m, t, y)
-    state, w, happened = m.state, y[W], m.work.rubbing
-    happened.happened = 0
+    state, w = m.state, y[W]
     jumped = _drop_unloaded(m)
     kind, history = FREE, 0
     for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
@@ -178,8 +184,9 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
             _decide_at_rest(m, t, y)
             return True
         return jumped
-    if not fresh:
-        state.bearing_load = solve_shafts(m, t, y, turn, pinion, gear).hubs
+    if has_hubs(m) and solve_shafts(m, t, y, turn, pinion, gear).corner <= 0.0:
+        state.load_sign = -state.load_sign
+        jumped = True
     if kind == FREE and state.hold != FREE:
         if solve_shafts(m, t, y, turn, pinion, gear).margin >= -1.5 * NO_FORCE:
             return jumped
@@ -230,13 +237,11 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
         _decide_at_rest(m, t, y)
         return
     y[W], y[V] = w, turn * (1.0 - e1) - w
-    before = _slip_of(m, kind, history)
     if state.hold != FREE and not let_go:
         _set_slip(m, state.hold, state.held_pair, 1.0)  # it has the same levers
     state.hold, state.held_pair = kind, history
     _set_slip(m, kind, history, 0.0)
     _let_go(m, t, y)
-    _note_event(m, kind, history, before)
 
 
 @compiled
@@ -247,7 +252,13 @@ def _let_go(m: Model, t: float, y: Floats) -> None:
     found = solve_shafts(m, t, y, turn, pinion, gear)
     if found.margin < -NO_FORCE:
         kind, state.hold = state.hold, FREE
-        _set_slip(m, kind, state.held_pair, _sign(found.held))
+        slip = _sign(found.held)
+        _set_slip(m, kind, state.held_pair, slip)
+        if kind == HELD_PAIR and has_hubs(m):  # hubs that nearly lock may need less friction for more load
+            found = solve_shafts(m, t, y, turn, pinion, gear)
+            first, second = _levers_of(m, kind, state.held_pair)
+            if slip * (first * found.pinion + second * found.gear) < 0.0:
+                _set_slip(m, kind, state.held_pair, -slip)
 
 
 @compiled
@@ -269,9 +280,6 @@ def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
     y[W] = y[V] = 0.0
     _, pinion, gear = forces_at_shafts(m, t, y)
     list_elements(m, t, y)
-    for i in range(found.count):
-        one = found.element[i]
-        one.before = _slip_of(m, one.hold, one.history)
     if rest_margin(m, pinion, gear) >= -NO_FORCE:
         state.hold = AT_REST
         for i in range(found.count):
@@ -287,11 +295,6 @@ def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
                 if one.hold == HELD_PAIR:
                     state.held_pair = one.history
             _set_slip(m, one.hold, one.history, slip)
-        if state.hold != FREE:  # bearings are loaded otherwise than at rest
-            _let_go(m, t, y)
-    for i in range(found.count):
-        one = found.element[i]
-        _note_event(m, one.hold, one.history, one.before)
 
 
 @compiled
@@ -331,36 +334,27 @@ def _set_slip(m: Model, kind: int, history: int, slip: float) -> None:
 
 
 @compiled
-def _note_event(m: Model, kind: int, history: int, before: float) -> None:
-    """Note what has become of an element, if its direction has changed."""
-    found, after = m.work.rubbing, _slip_of(m, kind, history)
-    if after == before or kind == HELD_PINION:
-        return
-    event = found.event[found.happened]
-    event.history = history
-    if kind == HELD_GEAR:
-        event.kind = _GEAR_STICK if after == 0.0 else _GEAR_SLIP
-        if before != 0.0 and after != 0.0:
-            return
-    elif after == 0.0:
-        event.kind = _STICK
-    else:
-        event.kind = _SLIP if before == 0.0 else _REVERSAL
-    found.happened += 1
+def _note_directions(m: Model) -> None:
+    """Note all directions of slip before the decisions of one time."""
+    before = m.work.rubbing
+    before.before_slip = m.state.slip
+    for k in range(m.scene.histories):
+        before.before_pair[k], before.before_slide[k] = m.state.history[k].pair, m.state.history[k].slide
 
 
 @compiled
-def record_sliding(m: Model, t: float, events: Floats, count: int) -> int:
-    """Record what `settle_sliding` has found, and return the new number of events."""
-    found = m.work.rubbing
-    for i in range(found.happened):
-        kind, k = found.event[i].kind, found.event[i].history
-        if kind in (_GEAR_STICK, _GEAR_SLIP):
-            count = record(m, events, count, t, kind, 0, _NO_FLANK, 0.0)
-        else:
-            h = m.state.history[k]
-            count = record(m, events, count, t, kind, h.pair, flank_of_history(m, k), h.gap_rate)
-    found.happened = 0
+def _record_changes(m: Model, t: float, events: Floats, count: int) -> int:
+    """Record in what directions of slip have changed by all decisions of one time; the new number of events."""
+    before = m.work.rubbing
+    for k in range(m.scene.histories):
+        h, last = m.state.history[k], before.before_slide[k]
+        if h.pair != before.before_pair[k] or h.slide == last or h.slide == 0 or last == 0:
+            continue
+        kind = _STICK if h.slide == STUCK else _SLIP if last == STUCK else _REVERSAL
+        count = record(m, events, count, t, kind, h.pair, flank_of_history(m, k), h.gap_rate)
+    if has_gear_element(m) and (m.state.slip == 0.0) != (before.before_slip == 0.0):
+        kind = _GEAR_STICK if m.state.slip == 0.0 else _GEAR_SLIP
+        count = record(m, events, count, t, kind, 0, _NO_FLANK, 0.0)
     return count
 
 

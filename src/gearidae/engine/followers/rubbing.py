@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+import numpy as np
+
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.followers.exposures.rubbing import (
@@ -16,14 +18,17 @@ from gearidae.engine.followers.exposures.rubbing import (
 )
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral, integral_with_middle
-from gearidae.engine.friction.forces import Mesh, Shafts, solve_shafts
+from gearidae.engine.friction.forces import Shafts, has_hubs, solve_shafts
+from gearidae.engine.friction.hubs import Mesh
 from gearidae.engine.friction.pairs import direction, lever_rate, levers
 from gearidae.engine.model.record_types import HELD_PAIR
-from gearidae.engine.model.state import COAST, Floats, Model, W
+from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts
-from gearidae.engine.pairs.tooth_pairs import flank_of_history
+from gearidae.engine.pairs.tooth_pairs import flank_of_history, static_error
 
 _POWERS: Final = 4
+_AHEAD: Final = 1e-6
+"""Over tau: how far ahead the rate of a load is found that has no closed form."""
 _OUTER: Final = 0.5 * math.sqrt(0.6)
 """Distance of the outer points of the Gaussian rule from the middle of an interval of length 1."""
 
@@ -31,6 +36,7 @@ _OUTER: Final = 0.5 * math.sqrt(0.6)
 @compiled_once(FRICTION)
 def note_rubbing(m: Model, t: float, y: Floats) -> None:
     """Note the powers of friction and their rates, with the present directions of slip."""
+    ahead = _load_ahead(m, t, y) if has_hubs(m) and m.state.hold == HELD_PAIR else 0.0
     turn, pinion, gear = forces_at_shafts(m, t, y)
     found = solve_shafts(m, t, y, turn, pinion, gear)
     r = m.work.rubbing
@@ -57,8 +63,11 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         else:
             drive += noted.force_rate
             drive_friction += rate
-    if found.hubs > 0.0:
-        load_rate = _load_rate(m, found, Mesh(drive, coast, drive_friction, coast_friction))
+    if found.hubs != 0.0:
+        if m.state.hold == HELD_PAIR:
+            load_rate = (ahead - found.hubs) / _AHEAD
+        else:
+            load_rate = _load_rate(m, found, Mesh(drive, coast, drive_friction, coast_friction))
         own, slip = m.scene.friction, m.state.slip if m.scene.friction.gear_hub > 0.0 else 0.0
         r.power[2] = own.pinion_hub * found.hubs * m.state.pinion_slip * turn
         r.power_rate[2] = (
@@ -68,9 +77,23 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         r.power_rate[3] = own.gear_hub * slip * (load_rate * y[W] + found.hubs * found.gear)
 
 
+@compiled(makes_arrays=True)
+def _load_ahead(m: Model, t: float, y: Floats) -> float:
+    """Load of the hubs a short time later: the friction that holds a pair changes with all forces at both shafts."""
+    turn, pinion, gear = forces_at_shafts(m, t, y)
+    found, later = solve_shafts(m, t, y, turn, pinion, gear), np.empty(y.size)
+    later[U] = y[U] + _AHEAD * y[V]
+    e1, e2 = static_error(m, y[U], y[PHASE])[2:] if m.scene.error_count != 0 else (0.0, 0.0)
+    later[V] = y[V] + _AHEAD * ((1.0 - e1) * found.pinion - e2 * turn * turn - found.gear)
+    later[PHASE] = y[PHASE] + _AHEAD * m.scene.phase_rate * y[W]
+    later[W] = y[W] + _AHEAD * found.gear
+    turn, pinion, gear = forces_at_shafts(m, t + _AHEAD, later)
+    return solve_shafts(m, t + _AHEAD, later, turn, pinion, gear).hubs
+
+
 @compiled(inline=True)
 def _load_rate(m: Model, found: Shafts, rate: Mesh) -> float:
-    """Rate of the bearings' load, for the rates of the forces that it is the vector sum of."""
+    """Rate of the hubs' load, for the rates of the forces that it is the vector sum of."""
     own, now = m.scene.friction, found.mesh
     half = now.drive * rate.drive + now.coast * rate.coast
     half += now.drive_friction * rate.drive_friction + now.coast_friction * rate.coast_friction
@@ -86,8 +109,7 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     """Add the losses since the last call, and note the powers here.
 
     The corrected trapezoidal rule is extrapolated with the powers in the middle, where the formula of the step gives
-    the state there. Rates are infinite before an asperity detaches, and not known of
-    the friction that holds a pair, on which that of hubs depends: there powers at three points inside the interval
+    the state there. Rates are infinite before an asperity detaches: there powers at three points inside the interval
     are taken.
 
     Parameters
@@ -106,9 +128,7 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     if h == 0.0:
         return
     first = _powers(m)
-    hubs = m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0
-    no_rates = (root and m.scene.population.flanks != 0) or (hubs and m.state.hold == HELD_PAIR)
-    if no_rates and a.order_used > 0:
+    if root and m.scene.population.flanks != 0 and a.order_used > 0:
         _book_inside(m, start, h, between, rates)
         note_rubbing(m, t, y)
         return

@@ -13,7 +13,9 @@ from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
+from gearidae.engine.friction.hubs import Mesh, across, consistent_loads, turning_load, vector_sum
 from gearidae.engine.friction.pairs import (
+    RUBS,
     direction,
     lever_rate,
     levers,
@@ -27,27 +29,6 @@ from gearidae.engine.torques.torque import torque_force
 
 RETURN: Final = 0.05
 """Rate at which the sliding that errors have brought about in a pair that rolls is taken out again, over 1/tau."""
-_PASSES: Final = 3
-"""Of the fixed point for the friction of hubs, which depends on that of a pair that is held."""
-
-
-class Mesh(NamedTuple):
-    """Sums of the pairs' forces along the line of action and of their friction, of the drive and the coast flank."""
-
-    drive: float
-    coast: float
-    drive_friction: float
-    coast_friction: float
-
-
-@compiled(inline=True)
-def bearing_load(m: Model, mesh: Mesh) -> float:
-    """Load of either bearing: the vector sum of the mesh forces."""
-    own = m.scene.friction
-    square = mesh.drive**2 + mesh.drive_friction**2 + mesh.coast**2 + mesh.coast_friction**2
-    square -= 2.0 * own.cosine * (mesh.drive * mesh.coast + mesh.drive_friction * mesh.coast_friction)
-    square += 2.0 * own.sine * (mesh.drive * mesh.coast_friction - mesh.drive_friction * mesh.coast)
-    return math.sqrt(max(square, 0.0))
 
 
 @compiled(inline=True)
@@ -77,7 +58,10 @@ class Shafts(NamedTuple):
         How far that is below its limit; infinite if nothing is held, and of no use if both gears are.
     mesh : Mesh
     hubs : float
-        Load of the bearings.
+        Load of the hubs. Where the force turns round, the load goes on below zero until the event that follows, so
+        that it has no corner inside a step.
+    corner : float
+        Falls through zero where that happens; infinite where it cannot.
     """
 
     pinion: float
@@ -86,6 +70,13 @@ class Shafts(NamedTuple):
     margin: float
     mesh: Mesh
     hubs: float
+    corner: float
+
+
+@compiled(inline=True)
+def has_hubs(m: Model) -> bool:
+    """Whether any hub has friction."""
+    return bool(m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0)
 
 
 @compiled(inline=True)
@@ -125,38 +116,46 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
         else:
             drive_friction += friction
         if state.hold == HELD_PAIR and noted.history == state.held_pair:
-            pinion_lever, gear_lever, limit, coast_held = first, second, noted.limit, on_coast
+            pinion_lever, gear_lever, coast_held = first, second, on_coast
+            limit = noted.limit + own.blur * abs(noted.slope)
             bend = lever_rate(m, noted, turn, w) + RETURN * (first * turn - second * w)
     mesh = Mesh(drive, coast, drive_friction, coast_friction)
-    load = 0.0
-    if own.pinion_hub > 0.0 or own.gear_hub > 0.0:
-        load = bearing_load(m, mesh)
+    load, corner = 0.0, math.inf
+    if has_hubs(m):
+        load, along = turning_load(m, mesh)
+        if state.hold != AT_REST and state.hold != HELD_PAIR:
+            corner = state.load_sign * along + RUBS
     if state.hold == AT_REST:
-        return Shafts(0.0, 0.0, 0.0, 0.0, mesh, load)
+        return Shafts(0.0, 0.0, 0.0, 0.0, mesh, load, corner)
     a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, dry_force(m, t, y)
-    held = 0.0
+    on_pinion = pinion
+    on_gear = gear - _gear_slip(m) * dry
+    hub_on_pinion, hub_on_gear = state.pinion_slip * own.pinion_hub, _gear_slip(m) * own.gear_hub
+    held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
-        inertia = a1 * pinion_lever**2 + a2 * gear_lever**2
-        for _ in range(1 if load == 0.0 else _PASSES):
-            on_pinion = pinion - state.pinion_slip * own.pinion_hub * load
-            on_gear = gear - _gear_slip(m) * (dry + own.gear_hub * load)
-            held = (a1 * pinion_lever * on_pinion - a2 * gear_lever * on_gear + bend) / max(inertia, 1e-300)
-            if load > 0.0:
-                if coast_held:
-                    mesh = Mesh(drive, coast, drive_friction, coast_friction + held)
-                else:
-                    mesh = Mesh(drive, coast, drive_friction + held, coast_friction)
-                load = bearing_load(m, mesh)
+        inertia = max(a1 * pinion_lever**2 + a2 * gear_lever**2, 1e-300)
+        held = (a1 * pinion_lever * on_pinion - a2 * gear_lever * on_gear + bend) / inertia
+        if load != 0.0:
+            falls = (a1 * pinion_lever * hub_on_pinion - a2 * gear_lever * hub_on_gear) / inertia
+            x, z = across(m, coast_held)
+            along, over = vector_sum(m, mesh)
+            loads = consistent_loads((along + held * x, over + held * z), (-falls * x, -falls * z))
+            load, margin = loads.near, loads.room
+            held -= falls * load
+            if coast_held:
+                mesh = Mesh(drive, coast, drive_friction, coast_friction + held)
+            else:
+                mesh = Mesh(drive, coast, drive_friction + held, coast_friction)
+        margin = min(margin, limit - abs(held))
         on_pinion -= held * pinion_lever
         on_gear += held * gear_lever
-        return Shafts(a1 * on_pinion, a2 * on_gear, held, limit - abs(held), mesh, load)
-    on_pinion = pinion - state.pinion_slip * own.pinion_hub * load
-    on_gear = gear - _gear_slip(m) * (dry + own.gear_hub * load)
+    on_pinion -= hub_on_pinion * load
+    on_gear -= hub_on_gear * load
     if state.hold == HELD_GEAR:
-        return Shafts(a1 * on_pinion, 0.0, gear, dry + own.gear_hub * load - abs(gear), mesh, load)
+        return Shafts(a1 * on_pinion, 0.0, gear, dry + own.gear_hub * load - abs(gear), mesh, load, corner)
     if state.hold == HELD_PINION:
-        return Shafts(0.0, a2 * on_gear, pinion, own.pinion_hub * load - abs(pinion), mesh, load)
-    return Shafts(a1 * on_pinion, a2 * on_gear, 0.0, math.inf, mesh, load)
+        return Shafts(0.0, a2 * on_gear, pinion, own.pinion_hub * load - abs(pinion), mesh, load, corner)
+    return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, load, corner)
 
 
 @compiled(inline=True)

@@ -8,6 +8,8 @@ pair. With surface velocities of the base circles, ``turn = R1 w1`` and ``w = R2
 
 from __future__ import annotations
 
+from typing import Final
+
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.evaluate import mixed_value
@@ -17,6 +19,9 @@ from gearidae.engine.model.record_types import STUCK
 from gearidae.engine.model.state import COAST, MATERIALS, Model, Record
 from gearidae.engine.pairs.coverage import shares_of
 from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
+
+RUBS: Final = 1e-8
+"""Of the reference load: friction with a smaller limit is none, and has no direction to watch."""
 
 
 @compiled(inline=True)

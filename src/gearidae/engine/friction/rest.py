@@ -1,12 +1,11 @@
-"""What friction holds of two gears that stand still: Gauss' principle of least constraint.
+"""What friction holds of two gears that stand still, and how they begin to move.
 
-At rest every element may hold or begin to slip either way. With the accelerations a of both base circles, the inverse
-masses and the forces Q without friction, those that follow make
-
-    ``sum (a_i - q_i)^2 / (2 m_i^-1) + sum over elements of limit |J . a|``,  ``q_i = m_i^-1 Q_i``
-
-least. This is strictly convex in two numbers: it is least at rest, on a line on which one element holds, or between
-two such lines, where all directions of slip are known. Each of these few candidates is tried.
+A train at rest stays there if and only if frictions within their limits balance the forces. The limits of the hubs grow
+with their load, that is with the frictions of the pairs. Where nothing balances, the gears begin to move with
+directions of slip, and with one element at most that holds, that agree with the accelerations which follow: with limits
+that do not depend on each other these are the accelerations of Gauss' principle of least constraint. There always are
+some: all frictions that obey the limits of the loads of other frictions make a map of a convex set into itself that
+Kakutani's theorem applies to. Each of the few candidates is tried.
 """
 
 from __future__ import annotations
@@ -15,7 +14,9 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.friction.forces import Mesh, bearing_load, dry_force, has_gear_element
+from gearidae.engine.friction.equilibrium import equilibrium_margin
+from gearidae.engine.friction.forces import dry_force, has_gear_element, has_hubs
+from gearidae.engine.friction.hubs import Mesh, across, consistent_loads, vector_sum
 from gearidae.engine.friction.pairs import levers
 from gearidae.engine.model.record_types import HELD_GEAR, HELD_PAIR, HELD_PINION
 from gearidae.engine.model.state import COAST, Floats, Model, Record
@@ -24,16 +25,13 @@ from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 @compiled
 def list_elements(m: Model, t: float, y: Floats) -> None:
-    """List the elements of gears at rest: the pairs that rub, the gear's resistance and hub, and the pinion's hub.
-
-    Friction of the flanks is not unique at rest: the load of the bearings is that without it, or if that is larger
-    the one with which the gears have come to rest.
-    """
+    """List the elements of gears at rest: the pairs that rub, the gear's resistance and hub, and the pinion's hub."""
     own, found, count = m.scene.friction, m.work.rubbing, 0
     drive = coast = 0.0
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
-        if flank_of_history(m, noted.history) == COAST:
+        on_coast = flank_of_history(m, noted.history) == COAST
+        if on_coast:
             coast += noted.force
         else:
             drive += noted.force
@@ -41,14 +39,17 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
         if own.flanks != 0 and h.slide != 0 and h.pair == noted.pair:
             first, second = levers(m, noted.position)
             _set(found.element[count], first, -second, noted.limit, HELD_PAIR)
-            found.element[count].history = noted.history
+            found.element[count].history, found.element[count].coast = noted.history, int(on_coast)
             count += 1
-    load = max(bearing_load(m, Mesh(drive, coast, 0.0, 0.0)), m.state.bearing_load)
+    found.pairs = count
+    found.load[0], found.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
     if has_gear_element(m):
-        _set(found.element[count], 0.0, 1.0, dry_force(m, t, y) + own.gear_hub * load, HELD_GEAR)
+        _set(found.element[count], 0.0, 1.0, dry_force(m, t, y), HELD_GEAR)
+        found.element[count].hub = own.gear_hub
         count += 1
     if own.pinion_hub > 0.0:
-        _set(found.element[count], 1.0, 0.0, own.pinion_hub * load, HELD_PINION)
+        _set(found.element[count], 1.0, 0.0, 0.0, HELD_PINION)
+        found.element[count].hub = own.pinion_hub
         count += 1
     found.count = count
 
@@ -56,17 +57,21 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
 @compiled(inline=True)
 def _set(element: Record, pinion: float, gear: float, limit: float, hold: int) -> None:
     element.pinion, element.gear, element.limit, element.hold = pinion, gear, max(limit, 0.0), hold
+    element.hub, element.coast = 0.0, 0
 
 
 @compiled
 def rest_margin(m: Model, pinion: float, gear: float) -> float:
-    """Least distance of the forces at two base circles from those that the listed elements do not hold together.
+    """How far the forces at both base circles are from those that the listed elements do not hold together.
 
-    The forces that they hold are a zonotope: one inequality for each element, perpendicular to it.
+    Below zero where no frictions balance them. Without hubs it is the least distance: the forces that are held are a
+    zonotope, with one inequality for each element, perpendicular to it.
     """
     found = m.work.rubbing
     if found.count == 0:
         return -math.hypot(pinion, gear)
+    if has_hubs(m):
+        return equilibrium_margin(m, pinion, gear)
     least = math.inf
     for i in range(found.count):
         one = found.element[i]
@@ -80,11 +85,21 @@ def rest_margin(m: Model, pinion: float, gear: float) -> float:
 
 
 class Way(NamedTuple):
-    """How two gears at rest begin to move: accelerations, their constraint, and the element that holds, -1 if none."""
+    """How two gears at rest begin to move.
+
+    Attributes
+    ----------
+    pinion, gear : float
+        Accelerations.
+    reserve : float
+        By how much force its directions of slip and what is held agree with them; below zero if they do not.
+    element : int
+        That holds, -1 if none.
+    """
 
     pinion: float
     gear: float
-    constraint: float
+    reserve: float
     element: int
 
 
@@ -93,9 +108,7 @@ def way_from_rest(m: Model, pinion: float, gear: float) -> Way:
     """Accelerations of gears at rest under forces that are not held, with the elements of `list_elements`."""
     found = m.work.rubbing
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    best = Way(a1 * pinion, a2 * gear, math.inf, -1)
-    if found.count == 0:
-        return best
+    best = Way(a1 * pinion, a2 * gear, -math.inf, -1)
     for i in range(found.count):
         one = found.element[i]
         for side in range(2):
@@ -109,48 +122,84 @@ def way_from_rest(m: Model, pinion: float, gear: float) -> Way:
 
 @compiled(inline=True)
 def _better(one: Way, other: Way) -> Way:
-    return other if other.constraint < one.constraint else one
+    return other if other.reserve > one.reserve else one
 
 
-@compiled(inline=True)
-def _constraint(m: Model, pinion: float, gear: float, a: float, b: float) -> float:
-    """What is least for the accelerations that follow."""
+class _Slipping(NamedTuple):
+    """Forces that the elements that slip leave, what the hubs take of them by their load, and the mesh forces' sum."""
+
+    pinion: float
+    gear: float
+    by_pinion: float
+    by_gear: float
+    along: float
+    over: float
+
+
+@compiled
+def _slipping(m: Model, pinion: float, gear: float, x: float, y: float, i: int, side: float) -> _Slipping:
+    """All elements slip as both gears accelerate along (x, y), the i-th and those like it as `side` says."""
     found = m.work.rubbing
-    a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    # less that of rest, which would swallow how small accelerations differ
-    total = 0.5 * (a * a / a1 + b * b / a2) - a * pinion - b * gear
-    for j in range(found.count):
-        other = found.element[j]
-        total += other.limit * abs(other.pinion * a + other.gear * b)
-    return total
-
-
-@compiled(inline=True)
-def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> Way:
-    """Best accelerations in a direction in which the i-th element holds."""
-    found = m.work.rubbing
-    slope = x * pinion + y * gear
-    for j in range(found.count):
-        other = found.element[j]
-        if j != i:
-            slope -= other.limit * abs(other.pinion * x + other.gear * y)
-    bend = x * x / m.scene.pinion_inverse_mass + y * y / m.scene.gear_inverse_mass
-    far = max(slope / bend, 0.0)
-    return Way(far * x, far * y, _constraint(m, pinion, gear, far * x, far * y), i)
-
-
-@compiled(inline=True)
-def _between(m: Model, pinion: float, gear: float, x: float, y: float, i: int, side: float) -> Way:
-    """Accelerations with the directions of slip just beside that direction."""
-    found = m.work.rubbing
-    one, left, right = found.element[i], pinion, gear
+    one, by_pinion, by_gear = found.element[i], 0.0, 0.0
+    along, over = found.load[0], found.load[1]
     for j in range(found.count):
         other = found.element[j]
         speed = other.pinion * x + other.gear * y
         if j == i or speed == 0.0:
             speed = side * (other.pinion * one.pinion + other.gear * one.gear)
-        slip = other.limit if speed > 0.0 else -other.limit
-        left -= slip * other.pinion
-        right -= slip * other.gear
-    a, b = m.scene.pinion_inverse_mass * left, m.scene.gear_inverse_mass * right
-    return Way(a, b, _constraint(m, pinion, gear, a, b), -1)
+        if speed == 0.0:
+            continue
+        slip = math.copysign(1.0, speed)
+        friction = slip * other.limit
+        pinion -= friction * other.pinion
+        gear -= friction * other.gear
+        by_pinion += slip * other.hub * other.pinion
+        by_gear += slip * other.hub * other.gear
+        if other.hold == HELD_PAIR:
+            first, second = across(m, other.coast != 0)
+            along += friction * first
+            over += friction * second
+    return _Slipping(pinion, gear, by_pinion, by_gear, along, over)
+
+
+@compiled
+def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> Way:
+    """Accelerations in a direction in which the i-th element holds."""
+    one, s = m.work.rubbing.element[i], _slipping(m, pinion, gear, x, y, i, 0.0)
+    a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
+    easy = a1 * one.pinion**2 + a2 * one.gear**2
+    held = (a1 * one.pinion * s.pinion + a2 * one.gear * s.gear) / easy
+    falls = (a1 * one.pinion * s.by_pinion + a2 * one.gear * s.by_gear) / easy
+    near = far = math.hypot(s.along, s.over)
+    room = math.inf
+    if one.hold == HELD_PAIR:
+        first, second = across(m, one.coast != 0)
+        u = (s.along + held * first, s.over + held * second)
+        near, far, room = consistent_loads(u, (-falls * first, -falls * second))
+    best = Way(0.0, 0.0, -math.inf, i)
+    for which in range(2):
+        load = far if which else near
+        slope = x * (s.pinion - s.by_pinion * load) + y * (s.gear - s.by_gear * load)
+        reserve = one.limit + one.hub * load - abs(held - falls * load)
+        reserve = min(reserve, room, slope / math.hypot(x, y))
+        if reserve > best.reserve:
+            go = max(slope / (x * x / a1 + y * y / a2), 0.0)
+            best = Way(go * x, go * y, reserve, i)
+    return best
+
+
+@compiled
+def _between(m: Model, pinion: float, gear: float, x: float, y: float, i: int, side: float) -> Way:
+    """Accelerations with the directions of slip just beside that direction."""
+    found, s = m.work.rubbing, _slipping(m, pinion, gear, x, y, i, side)
+    a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
+    one, load = found.element[i], math.hypot(s.along, s.over)
+    a, b, reserve = a1 * (s.pinion - s.by_pinion * load), a2 * (s.gear - s.by_gear * load), math.inf
+    for j in range(found.count):
+        other = found.element[j]
+        speed = other.pinion * x + other.gear * y
+        if j == i or speed == 0.0:
+            speed = side * (other.pinion * one.pinion + other.gear * one.gear)
+        follows = (other.pinion * a + other.gear * b) / (a1 * other.pinion**2 + a2 * other.gear**2)
+        reserve = min(reserve, math.copysign(1.0, speed) * follows)
+    return Way(a, b, reserve, -1)

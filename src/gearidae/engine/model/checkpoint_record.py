@@ -130,6 +130,13 @@ STATE: Final = record_type(
     ("hold", INT),  # what friction holds at rest: see `record_types`
     ("held_pair", INT),  # history of the pair that rolls, if that is held [index]
     ("pinion_slip", REAL),  # direction in which the pinion turns in its hub, -1 or +1; 0 while it is held
-    ("reversals", INT),  # changes of sliding of the flanks since the last mesh mark [1]
-    ("bearing_load", REAL),  # of the bearings when gears have last come to rest [F]
+    (
+        "reversals",
+        INT,
+    ),  # changes of sliding of the flanks since the last mesh mark, or in a share of the run [1]
+    ("counted_from", REAL),  # when they have last been counted from zero [tau]
+    (
+        "load_sign",
+        REAL,
+    ),  # +1 where the vector sum of the mesh forces points forward, -1 behind its passage of zero
 )

@@ -97,6 +97,7 @@ FRICTION: Final = record_type(  # of flanks and hubs
     ("gear_hub", REAL),  # the same of the gear [1]
     ("cosine", REAL),  # of twice the pressure angle [1]
     ("sine", REAL),  # of twice the pressure angle [1]
+    ("blur", REAL),  # error of the transmission error within which the force of a pair is known [sigma]
 )
 
 FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted

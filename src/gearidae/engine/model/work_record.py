@@ -204,22 +204,25 @@ SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminat
 ELEMENT: Final = record_type(  # that dry friction may hold at rest
     ("pinion", REAL),  # its speed per surface velocity of the pinion [1]
     ("gear", REAL),  # and of the gear [1]
-    ("limit", REAL),  # of its friction [F]
+    ("limit", REAL),  # of its friction, without that of a hub [F]
+    ("hub", REAL),  # what its limit grows by with the load of the hubs [1]
+    ("coast", INT),  # 1 for a pair of the coast flank
     ("hold", INT),  # `HELD_PAIR`, `HELD_GEAR` or `HELD_PINION`
-    ("history", INT),  # of a pair [index]
-    ("before", REAL),  # direction in which it slipped before a decision
-)
-
-HAPPENED: Final = record_type(  # to an element
-    ("kind", REAL),  # of the event
     ("history", INT),  # of a pair [index]
 )
 
 RUBBING: Final = record_type(  # friction
     ("count", INT),  # elements at rest [1]
+    ("pairs", INT),  # how many of them are pairs, which come first [1]
     ("element", ELEMENT, (2 * SLOTS_HIGH + 2,)),
-    ("happened", INT),  # events at the present root that are to be recorded [1]
-    ("event", HAPPENED, (2 * SLOTS_HIGH + 2,)),
+    (
+        "load",
+        REAL,
+        (2,),
+    ),  # vector sum of the mesh forces without friction, along and across the line of action [F]
+    ("before_slip", REAL),  # the gear's direction of slip before the decisions of one time
+    ("before_pair", INT, (2 * SLOTS_HIGH,)),  # pair of each history then
+    ("before_slide", INT, (2 * SLOTS_HIGH,)),  # and its direction
     ("time", REAL),  # of the powers [tau]
     ("power", REAL, (4,)),  # of the drive and the coast flank and of both hubs [F sigma/tau]
     ("power_rate", REAL, (4,)),  # [F sigma/tau^2]

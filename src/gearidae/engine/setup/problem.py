@@ -21,6 +21,7 @@ from gearidae.engine.model.state import (
     SPEED,
     Floats,
     Model,
+    U,
     V,
     assign,
     blank_work,
@@ -116,6 +117,7 @@ class Problem:
         s.balance_error = ERRORS * rtol
         s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
         if s.kind == GEARS:
+            s.friction.blur = rtol * float(self.tolerance_scale[U])
             felt = FELT * rtol * float(self.tolerance_scale[V])
             s.torque_omega = max(
                 self._fastest(shaft, felt / float(share))

@@ -1,0 +1,197 @@
+r"""Whether frictions exist that balance a train at rest whose hubs carry the frictions of the pairs, too.
+
+Frictions :math:`f_i` of the pairs within their limits, and what the hubs and the dry resistance hold, have to balance
+the forces Q of both base circles:
+
+.. math::
+
+    |Q_1 - \sum p_i f_i| \le h_1 N, \qquad |Q_2 - \sum q_i f_i| \le D + h_2 N, \qquad N = |\sum \mathbf F|.
+
+With N as a parameter the frictions that balance are a convex set that grows with it, and the modulus of a vector sum is
+convex in the frictions: if any f balances, a vertex of that set does. On a flank, levers and load are linear in
+:math:`\sum f_i` and :math:`\sum r_i f_i`, which make a zonotope in the plane. Its vertices and edges, of both flanks
+together, with no, one or both of the inequalities at their bounds, are all vertices there are; each is the solution of
+a quadratic equation in N.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from gearidae.compiled import compiled
+from gearidae.engine.friction.hubs import across, consistent_loads
+from gearidae.engine.model.record_types import HELD_GEAR
+from gearidae.engine.model.state import Model
+
+_PARALLEL = 1e-12
+
+
+class _Left(NamedTuple):
+    """What some frictions leave: forces at both base circles, and components of the vector sum of the mesh forces."""
+
+    pinion: float
+    gear: float
+    along: float
+    over: float
+
+
+class _Limits(NamedTuple):
+    """What may hold the shafts: coefficients of the load of the hubs, and dry resistance."""
+
+    pinion: float
+    gear: float
+    dry: float
+
+
+@compiled
+def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
+    """Largest reserve of force of all vertices; below zero if and only if nothing balances."""
+    found = m.work.rubbing
+    dry = 0.0
+    for i in range(found.pairs, found.count):
+        if found.element[i].hold == HELD_GEAR:
+            dry = found.element[i].limit
+    limits = _Limits(m.scene.friction.pinion_hub, m.scene.friction.gear_hub, dry)
+    free = _Left(pinion, gear, found.load[0], found.load[1])
+    if found.pairs == 0:
+        return _at_vertex(free, limits)
+    best = -math.inf
+    for a in range(2 * found.pairs):
+        i, side = a // 2, 1.0 - 2.0 * (a % 2)
+        alone, flank = True, found.element[i].coast
+        for b in range(2 * found.pairs):
+            k, beyond = b // 2, 1.0 - 2.0 * (b % 2)
+            if found.element[k].coast == flank:
+                continue
+            alone = False
+            best = max(best, _around(m, _less(m, free, k, beyond, beyond), i, side, limits))
+            if i < k:
+                left = _less(m, _less(m, free, i, side, 0.0), k, beyond, 0.0)
+                best = max(best, _with_two(m, left, i, k, limits))
+        if alone:
+            best = max(best, _around(m, free, i, side, limits))
+    return best
+
+
+@compiled
+def _around(m: Model, left: _Left, i: int, side: float, limits: _Limits) -> float:
+    """Reserve at a vertex of a flank's zonotope and on the edge beside it; with its first one, inside of it."""
+    best = _at_vertex(_less(m, left, i, side, side), limits)
+    best = max(best, _with_one(m, _less(m, left, i, side, 0.0), i, limits))
+    first = j = -1
+    for k in range(m.work.rubbing.pairs):
+        if m.work.rubbing.element[k].coast == m.work.rubbing.element[i].coast:
+            if first < 0:
+                first = k
+            elif j < 0:
+                j = k
+    if side > 0.0 and i == first and j >= 0:
+        best = max(best, _with_two(m, left, i, j, limits))
+    return best
+
+
+@compiled
+def _less(m: Model, left: _Left, i: int, side: float, end: float) -> _Left:
+    """Take off the frictions of a flank at the edge of its zonotope along the i-th pair, which is at that `end` of it.
+
+    Pairs with larger levers at the pinion have one direction there, those with smaller ones the other.
+    """
+    found = m.work.rubbing
+    one = found.element[i]
+    pinion, gear, along, over = left
+    first, second = across(m, one.coast != 0)
+    for j in range(found.pairs):
+        pair = found.element[j]
+        if pair.coast != one.coast:
+            continue
+        share = end if j == i else math.copysign(1.0, side * (pair.pinion - one.pinion))
+        friction = share * pair.limit
+        pinion -= friction * pair.pinion
+        gear -= friction * pair.gear
+        along += friction * first
+        over += friction * second
+    return _Left(pinion, gear, along, over)
+
+
+@compiled(inline=True)
+def _at_vertex(left: _Left, limits: _Limits) -> float:
+    """Reserve of both shafts where all frictions of the pairs are known."""
+    load = math.hypot(left.along, left.over)
+    return min(limits.pinion * load - abs(left.pinion), limits.dry + limits.gear * load - abs(left.gear))
+
+
+@compiled
+def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
+    """Largest reserve where the friction of one pair is such that one shaft is held by all that it has."""
+    one, best = m.work.rubbing.element[i], -math.inf
+    first, second = across(m, one.coast != 0)
+    for which in range(4):
+        sign = 1.0 - 2.0 * (which % 2)
+        if which < 2:
+            constant, falls = left.pinion / one.pinion, sign * limits.pinion / one.pinion
+        else:
+            constant, falls = (left.gear - sign * limits.dry) / one.gear, sign * limits.gear / one.gear
+        u = (left.along + constant * first, left.over + constant * second)
+        near, far, room = consistent_loads(u, (-falls * first, -falls * second))
+        for end in range(2):
+            load = far if end else near
+            friction = constant - falls * load
+            if which < 2:
+                other = limits.dry + limits.gear * load - abs(left.gear - friction * one.gear)
+            else:
+                other = limits.pinion * load - abs(left.pinion - friction * one.pinion)
+            best = max(best, min(room, other, one.limit - abs(friction)))
+    return best
+
+
+@compiled
+def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
+    """Largest reserve where two frictions are such that both shafts are held by all that they have.
+
+    Two pairs of one flank stand for all frictions inside its zonotope.
+    """
+    found, best = m.work.rubbing, -math.inf
+    one, two = found.element[i], found.element[k]
+    determinant = one.pinion * two.gear - two.pinion * one.gear
+    if abs(determinant) < _PARALLEL:
+        return best
+    one_first, one_second = across(m, one.coast != 0)
+    two_first, two_second = across(m, two.coast != 0)
+    for which in range(4):
+        on_pinion, on_gear = 1.0 - 2.0 * (which % 2), 1.0 - 2.0 * (which // 2)
+        b, c, d = left.gear - on_gear * limits.dry, on_pinion * limits.pinion, on_gear * limits.gear
+        f, g = (left.pinion * two.gear - two.pinion * b), (one.pinion * b - left.pinion * one.gear)
+        f, g = f / determinant, g / determinant
+        f_falls = (c * two.gear - two.pinion * d) / determinant
+        g_falls = (one.pinion * d - c * one.gear) / determinant
+        u = (left.along + f * one_first + g * two_first, left.over + f * one_second + g * two_second)
+        v = (-f_falls * one_first - g_falls * two_first, -f_falls * one_second - g_falls * two_second)
+        near, far, room = consistent_loads(u, v)
+        for end in range(2):
+            load = far if end else near
+            p, q = f - f_falls * load, g - g_falls * load
+            if one.coast != two.coast:
+                inside = min(one.limit - abs(p), two.limit - abs(q))
+            else:
+                inside = _inside(m, one.coast, p * one.pinion + q * two.pinion, p * one.gear + q * two.gear)
+            best = max(best, min(room, inside))
+    return best
+
+
+@compiled
+def _inside(m: Model, coast: int, pinion: float, gear: float) -> float:
+    """How far the frictions of a flank are inside its zonotope, by the forces that they take from both shafts."""
+    found, least = m.work.rubbing, math.inf
+    for i in range(found.pairs):
+        one = found.element[i]
+        if one.coast != coast:
+            continue
+        held = 0.0
+        for j in range(found.pairs):
+            other = found.element[j]
+            if other.coast == coast:
+                held += other.limit * abs(one.pinion * other.gear - one.gear * other.pinion)
+        taken = abs(one.pinion * gear - one.gear * pinion)
+        least = min(least, (held - taken) / math.hypot(one.pinion, one.gear))
+    return least
