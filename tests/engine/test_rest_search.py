@@ -31,7 +31,7 @@ PAIR = gd.Scene.from_dict(
             "pressure_angle": math.radians(20.0),
             "density": 2330.0,
         },
-        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6, "damping": 1e-7},
+        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6, "damping": 2e-8},
         "drive": {"torque": 4e-18},
         "load": {"torque": 3e-18, "drag": 8e-18},
         "initial": {"gear_speed": 0.0, "gap": 26e-9, "mesh_phase": 0.3},
@@ -43,6 +43,10 @@ RATIO = 3.0
 INERTIA = PAIR.gears.gear_inertia + RATIO**2 * PAIR.gears.pinion_inertia
 ADVANCE = 0.02
 """About how far [rad] the gear turns in a slip."""
+LARGEST = 2e-11
+"""Torque of the drive [N m] at which teeth are still rigid."""
+DAMPING = 2e-9
+"""Of the mesh, per frequency of the load [N s^2/m]: vibrations die out in a hundredth of a period."""
 HUBS = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
 
 
@@ -51,7 +55,7 @@ def dipping(frequency, depth, width, periods=4, shaft="load", **changes):
 
     By a share `depth` of the push, for a share `width` of the period.
     """
-    drive = ADVANCE * INERTIA * frequency**2 / (0.5 * RATIO * depth * width**2)
+    drive = min(ADVANCE * INERTIA * frequency**2 / (0.5 * RATIO * depth * width**2), LARGEST)
     swing = depth / (1.0 - math.cos(math.pi * width))
     wave = {"frequency": frequency, "phase": 0.0}
     if shaft == "load":
@@ -62,7 +66,11 @@ def dipping(frequency, depth, width, periods=4, shaft="load", **changes):
         assert swing < 1.0 + 0.5 * depth  # it does not drive the gear back
         torques = {"drive.torque": drive * (1.0 + depth - swing), "load.torque": RATIO * drive}
         wave |= {"amplitude": drive * swing, "phase": math.pi}
-    run = {"run.duration": periods / frequency, "run.samples": 10 * periods + 1}
+    run = {
+        "run.duration": periods / frequency,
+        "run.samples": 10 * periods + 1,
+        "mesh.damping": DAMPING * frequency,
+    }
     return PAIR.replace({**torques, f"{shaft}.harmonic": wave, **run, **changes})
 
 
@@ -71,17 +79,29 @@ def slip_times(run):
 
 
 def turned(run):
-    return run.samples["gear_angle"][-1] - run.samples["gear_angle"][0]
+    """Angle since the pinion's landing: from the second tenth of the first period."""
+    return run.samples["gear_angle"][-1] - run.samples["gear_angle"][2]
+
+
+def instants(scene):
+    return np.linspace(0.0, scene.run.duration, 4_001)
 
 
 def assert_all_slips(run, scene, frequency):
-    """Each due slip comes, when it is due to a hundred-thousandth of a period, and the gear turns as far to 1 %."""
+    """Each due slip comes, and the gear turns as far to 1 %.
+
+    The tip relief of a second pair and contacts that still vibrate change the push by 1e-4 of it, which shifts the slips
+    by as much of a period, and changes the angle of a dip of 1 % by another per cent.
+    """
     due, angle = train.slips(scene, frequency)
+    depth = max(
+        1.0 - train.torque(scene.load, t) / train.torque(scene.drive, t) / RATIO for t in instants(scene)
+    )
     times = slip_times(run)
     assert len(due) >= 3
     for time in due:
-        assert np.abs(times - time).min() < 1e-5 / frequency
-    assert turned(run) == pytest.approx(angle, rel=0.01)
+        assert np.abs(times - time).min() < 5e-4 / frequency
+    assert turned(run) == pytest.approx(angle, rel=0.01 + 1e-4 / depth)
 
 
 # -- dips of the load and pulses of the drive ------------------------------------------------------------------------
@@ -173,8 +193,8 @@ def test_stops_on_the_way_change_nothing(kind, shaft):
 # -- what a rest costs -----------------------------------------------------------------------------------------------
 
 LONG = 1e4
-STEPS = 2_000  # of the landing of the pinion and of its vibration, which dies out
-LOOKS = 10_000
+STEPS = 10_000  # of the landing of the pinion and of its vibration, which dies out
+LOOKS = 30_000
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
@@ -245,18 +265,20 @@ def resting(harmonics, knots):
         y[U] = u
         return push_on_gear(m, 0.0, y) * unit - PUSH
 
-    y[U] = brentq(push, y[U], y[U] + 20.0)
+    y[U] = brentq(push, y[U] - 10.0, y[U] + 4.0)
     return m, y, PUSH + push(y[U])
 
 
 waves = st.lists(
-    st.tuples(st.floats(0.0, 2e-17), st.sampled_from([3.0, 10.0, 16.0, 23.5, 31.4159]), st.floats(0.0, 6.28)),
+    st.tuples(
+        st.floats(1e-19, 2e-17), st.sampled_from([3.0, 10.0, 16.0, 23.5, 31.4159]), st.floats(0.0, 6.28)
+    ),
     min_size=1,
     max_size=3,
 )
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(waves, st.floats(1e-17, 6e-17), st.floats(0.5e-17, 6e-17))
 def test_the_first_dip_is_that_of_a_dense_scan(harmonics, first, last):
     """In a second of rest under a ramp with harmonics, with a common period and without one."""
