@@ -90,8 +90,8 @@ def instants(scene):
 def assert_all_slips(run, scene, frequency):
     """Each due slip comes, and the gear turns as far to 1 %.
 
-    The tip relief of a second pair and contacts that still vibrate change the push by 1e-4 of it, which shifts the slips
-    by as much of a period, and changes the angle of a dip of 1 % by another per cent.
+    The tip relief of a second pair and contacts that still vibrate change the push by 1e-4 of it, which shifts the
+    slips by as much of a period, and changes the angle of a dip of 1 % by another per cent.
     """
     due, angle = train.slips(scene, frequency)
     depth = max(
@@ -193,8 +193,10 @@ def test_stops_on_the_way_change_nothing(kind, shaft):
 # -- what a rest costs -----------------------------------------------------------------------------------------------
 
 LONG = 1e4
-STEPS = 10_000  # of the landing of the pinion and of its vibration, which dies out
+STEPS = 20_000  # of the landing of the pinion and of its vibration, which dies out
 LOOKS = 30_000
+LANDED = 0.1
+"""Until the pinion has landed [s], whose impact may push the gear on."""
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
@@ -208,7 +210,7 @@ def test_ten_thousand_seconds_of_rest_under_a_load_of_twenty_kilohertz(backend, 
     assert run.statistics.steps < STEPS
     assert run.statistics.guard_evaluations < LOOKS
     assert not run.samples["gear_speed"].any()
-    assert not len(slip_times(run))
+    assert (slip_times(run) < LANDED).all()
 
 
 def test_ten_thousand_seconds_in_which_bounds_say_nothing():
@@ -238,9 +240,12 @@ def test_a_ramp_of_the_load_ends_a_long_rest_in_the_right_period():
         "run.samples": 2,
     }
     run = solve(PAIR.replace({**changes, "run.stop": "turns 0.001"}))
-    # the least of a period passes below the push when the middle is an amplitude above it
+    # the least of a period passes below the push when the middle is an amplitude above it; the push is known to 1e-4
     mean = 1000.0 * (3e-17 - push - amplitude) / 2e-17
-    assert slip_times(run)[0] == pytest.approx(mean, abs=1.0 / frequency)
+    times = slip_times(run)
+    first = times[times > LANDED][0]
+    assert first == pytest.approx(mean, abs=1e-4 * push / 2e-20)
+    assert (first * frequency) % 1.0 == pytest.approx(0.5, abs=0.01)
     assert run.statistics.guard_evaluations < 10 * LOOKS
 
 
