@@ -43,7 +43,7 @@ RATIO = 3.0
 INERTIA = PAIR.gears.gear_inertia + RATIO**2 * PAIR.gears.pinion_inertia
 ADVANCE = 0.02
 """About how far [rad] the gear turns in a slip."""
-LARGEST = 2e-11
+LARGEST = 5e-12
 """Torque of the drive [N m] at which teeth are still rigid."""
 DAMPING = 2e-9
 """Of the mesh, per frequency of the load [N s^2/m]: vibrations die out in a hundredth of a period."""
