@@ -95,8 +95,9 @@ def register_torque(name: str, *, parameters: int | Iterable[str | Parameter] = 
     It must be continuous in time, angle and speed and finite at rest. The engine also calls it a ten-thousandth of the
     scene's natural time unit before and after a time, along the current motion. Use ``harmonic`` for a torque that
     varies much faster than gears and contacts, in time or with the angle, and ``schedule`` for one that jumps: the
-    steps resolve their frequencies, orders and knots. Newton's iteration leaves out the slopes of the law, which is
-    allowed if a shaft needs many steps to follow the law.
+    steps resolve their frequencies, orders and knots. The law of what is held at rest is looked at 100,000 times in a
+    run: a shorter pulse of it may be missed, one of a harmonic or of a schedule is not. Newton's iteration leaves out
+    the slopes of the law, which is allowed if a shaft needs many steps to follow the law.
 
     Parameters
     ----------

@@ -197,6 +197,21 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
     return True
 
 
+@compiled_once(FRICTION)
+def stop_creeping(m: Model, t: float, y: Floats) -> bool:
+    """Bring gears to rest that creep towards it, by less than a tolerance, and whom friction then holds.
+
+    Without a vibration no sliding turns round, so that no guard falls. For `record_sliding` to record.
+    """
+    slow = max(AT_ONCE, 1.0 / m.rows[m.scene.error_weights_at + V])
+    fastest = max(abs(pinion_speed(m, y)[0]), abs(y[W]))
+    if m.state.hold == AT_REST or fastest > slow or not _rests(m, t, y):
+        return False
+    m.work.rubbing.happened = 0
+    _decide_at_rest(m, t, y)
+    return True
+
+
 @compiled(inline=True)
 def _has_fallen(slip: float, speed: float, fresh: bool) -> bool:
     """Whether the guard of an element that slips has fallen."""

@@ -10,6 +10,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.events.asperity_events import first_dip, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.integrate.epilogue import finish_step
+from gearidae.engine.integrate.resting import rest_step
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats
 from gearidae.engine.motion.observe import observe
@@ -62,3 +63,9 @@ def finish_step_at(
 ) -> bool:
     """`gearidae.engine.integrate.epilogue.finish_step`."""
     return finish_step(model_at(place), y, yp, between, flag, events)
+
+
+@compiled
+def rest_step_at(place: int, t: float, y: Floats) -> tuple[float, int]:
+    """`gearidae.engine.integrate.resting.rest_step`."""
+    return rest_step(model_at(place), t, y)

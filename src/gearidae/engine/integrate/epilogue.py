@@ -12,11 +12,13 @@ from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
-from gearidae.engine.events.sliding import follow_sliding
+from gearidae.engine.events.sliding import follow_sliding, record_sliding, stop_creeping
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
+from gearidae.engine.integrate.resting import begin_rest, comes_to_rest
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
+from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import NO_PAIRS, history_of, in_flight, pair_at, pairs_near
 
@@ -59,7 +61,7 @@ def finish_step(
     if in_flight(m):
         m.state.progress.flight_steps += 1
     afresh = m.scene.kind == GEARS and abs(y[PHASE]) > PHASE_HIGH
-    afresh |= change_wanted(m, y, yp)
+    afresh |= change_wanted(m, y, yp) or comes_to_rest(m, t, y)
     if flag == ROOT:
         afresh |= handle(m, t, y, yp, events)
         if m.scene.stop != 0 and stop_guard(m, y) <= 0.0:
@@ -78,6 +80,9 @@ def finish_step(
             afresh = True
         else:
             driver.done = 1
+    if m.scene.friction.on != 0 and m.state.hold != FREE and stop_creeping(m, t, y):
+        driver.events = record_sliding(m, t, events, driver.events)
+        afresh = True
     if driver.done != 0 or driver.error != 0:
         followers.finish(m, t, y, yp)
     return afresh
@@ -129,6 +134,7 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
 @compiled_once(SOLVER)
 def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Set consistent rates, and what the followers of a run know of the time before, for a start at t."""
+    begin_rest(m, t, y)
     set_rates(m, t, y, yp)
     followers.begin(m, t, y, yp)
     m.work.driver.step_end, m.work.driver.step = t, 0.0

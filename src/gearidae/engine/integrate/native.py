@@ -33,6 +33,7 @@ from gearidae.engine.integrate.driver import (
     update_statistics,
 )
 from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart, prepare_start
+from gearidae.engine.integrate.resting import longest_step, rest_step
 from gearidae.engine.integrate.root_finding import SHARPNESS, Arrays, Stepper, next_time, start_search
 from gearidae.engine.integrate.start import first_step
 from gearidae.engine.integrate.step_control import configure_ida
@@ -87,14 +88,15 @@ def restart(s: Stepper, stop: float) -> int:
     """Set consistent rates and the first step, and (re-)initialise IDA at the time reached; its flag is returned."""
     ida, m, t = s.handles[IDA], s.m, s.clock[0]
     prepare_start(m, t, s.y, s.yp)
+    adams.begin(m.work.adams, t, s.y, s.yp)
+    if m.work.driver.resting != 0:
+        return 0
     flag = sun.IDAReInit(ida, t, s.handles[Y], s.handles[YP])
     m.work.driver.counted[:] = 0
     flag |= sun.IDASetInitStep(ida, first_step(m, t, s.y, s.yp, stop - t))
     flag |= sun.IDASetStopTime(ida, stop)
-    if m.scene.longest_step > 0.0:
-        flag |= sun.IDASetMaxStep(ida, m.scene.longest_step)
+    flag |= sun.IDASetMaxStep(ida, longest_step(m))
     if m.work.adams.own != 0:
-        adams.begin(m.work.adams, t, s.y, s.yp)
         if m.scene.nodes > 0:
             begin_deflections(m, t, s.y)
         flag |= configure_ida(ida, m.work.adams)
@@ -105,7 +107,10 @@ def restart(s: Stepper, stop: float) -> int:
 @compiled(inline=True)
 def state_for_sample(s: Stepper, t: float) -> None:
     """State at a time within the last step, beside that at its end: in ``s.dky``."""
-    if s.m.work.adams.order_used > 0:
+    if s.m.work.driver.resting != 0:
+        for j in range(s.y.size):
+            s.dky[j] = s.y[j]
+    elif s.m.work.adams.order_used > 0:
         adams.between(s.m.work.adams, t, s.dky, s.spare)
     else:
         sun.IDAGetDky(s.handles[IDA], t, 0, s.handles[DKY])
@@ -150,7 +155,12 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
         driver.pending = 0
     while driver.error == 0 and driver.done == 0 and budget > 0 and has_room(driver.events, out.events):
         if driver.pending == 0:
-            flag = next_time(s)
+            if driver.resting != 0:
+                looks = m.state.progress.guard_evaluations
+                s.clock[0], flag = rest_step(m, s.clock[0], s.y)
+                budget -= m.state.progress.guard_evaluations - looks
+            else:
+                flag = next_time(s)
             budget -= 1
             driver.since += 1
             if flag < 0:

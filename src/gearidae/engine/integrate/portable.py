@@ -27,6 +27,7 @@ from gearidae.engine.integrate.by_address import (
     note_step_start_at,
     observe_at,
     residual_at,
+    rest_step_at,
 )
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
@@ -41,6 +42,7 @@ from gearidae.engine.integrate.driver import (
     update_statistics,
 )
 from gearidae.engine.integrate.epilogue import has_room, prepare_restart, prepare_start
+from gearidae.engine.integrate.resting import longest_step
 from gearidae.engine.integrate.start import first_step
 from gearidae.engine.model.located import Located
 from gearidae.engine.model.state import Floats, Model, Record
@@ -155,11 +157,13 @@ class _Solver:
         m, t, yp = self.m, float(self._driver.time), np.zeros_like(y)
         prepare_start(m, t, y, yp)
         stop = next_stop(m)
-        self._make(y.size, first_step(m, t, y, yp, stop - t))
-        self._ida.init_step(t, y, yp)
         self._stop, self._look = stop, math.inf
         self._last, self._counted = None, (0, 0)
         self.trail = _Trail(t, y, yp)
+        if self._driver.resting != 0:
+            return
+        self._make(y.size, first_step(m, t, y, yp, stop - t))
+        self._ida.init_step(t, y, yp)
         self._note(y)
 
     def _note(self, y: Floats) -> None:
@@ -217,7 +221,7 @@ class _Solver:
             rtol=0.0,
             atol=self._atol,
             first_step=step,
-            max_step=float(m.scene.longest_step),
+            max_step=float(longest_step(m)),
             max_num_steps=10_000_000,
             max_conv_fails=CONVERGENCE_FAILURES_HIGH,
         )
@@ -226,6 +230,10 @@ class _Solver:
         """Go on to the end of the next step, a stop or a root; a failure is noted as the driver's error."""
         driver = self._driver
         driver.since += 1
+        if driver.resting != 0:
+            driver.time, flag = rest_step_at(self.located.place, float(driver.time), y)
+            self.trail.add(float(driver.time), y, np.zeros_like(y))
+            return flag, y, np.zeros_like(y)
         try:
             result = self._ida.step(self.m.scene.end, method="onestep", tstop=min(self._stop, self._look))
         except KeyError as error:  # a status of SUNDIALS that scikit-sundae has no name for

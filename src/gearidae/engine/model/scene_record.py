@@ -200,7 +200,13 @@ SCENE: Final = record_type(
     ("root_limit", INT),  # roots in succession allowed to be closer than `root_spacing` [1]
     ("root_spacing", REAL),  # times 1 + t [tau]
     ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]
-    ("longest_step", REAL),  # that a cubic schedule allows, flat where a pulse is to come; 0 for any [tau]
+    ("longest_step", REAL),  # that harmonics, laws and cubic schedules allow; 0 for any [tau]
+    (
+        "rest_look",
+        REAL,
+    ),  # longest time between two looks at the torques of what is held; infinite for any [tau]
+    ("rest_bend", REAL),  # bound of the second derivative of their harmonics [F/tau^2]
+    ("common_period", REAL),  # of all harmonics; 0 if they have none [tau]
     ("angle_omega", REAL),  # highest angular frequency of the torques of an angle [rad/pb]
     ("mesh_omega", REAL),  # highest angular frequency along the mesh [rad/pb]
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]

@@ -100,6 +100,7 @@ DRIVER: Final = record_type(
     ("since", INT),  # steps since the last checkpoint
     ("step_end", REAL),  # where the last whole step has ended, or the last start was [tau]
     ("step", REAL),  # length of that step, 0 at a start [tau]
+    ("resting", INT),  # 1 while nothing moves: the time goes on without an integration
     ("counted", INT, (5,)),  # of IDA's counters since its last start, what the run's own already have
 )
 

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Record
+from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Floats, Record
 from gearidae.engine.setup.tables import Tables
-from gearidae.engine.torques.harmonic import pack_harmonics
+from gearidae.engine.torques.harmonic import common_period, pack_harmonics
 from gearidae.engine.torques.law import largest_torque
 from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule
 from gearidae.scene import Drive, Knots, Load, Scene
@@ -19,6 +19,8 @@ SPAN = 8.0  # over which they may last, over tau; and half a radian of the faste
 KNOT_SPACING = 1e-12  # what knots must be apart, over the time itself
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
+LOOKS_PER_PERIOD = 32  # of the fastest harmonic, at the torques of what is held
+LAW_LOOKS = 100_000  # in a run, at the registered laws of what is held
 
 
 def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
@@ -106,11 +108,30 @@ def add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
             omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
             fastest = max(fastest, omega / (2.0 * math.pi * tau))
     set_run(s, tables, scene, knots, begin)
+    _set_looks(s, tables.whole(), scene)
     # a torque that knows the motion vibrates with it, and is looked at in each step
     laws = scene.drive.law is not None or scene.load.law is not None
     knows_motion = laws or s.speed_gain != 0.0 or s.torque["takes_angle"].any()
     s.balance_steps = 1 if knows_motion else STRIDE
     s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
+
+
+def _set_looks(s: Record, tables: Floats, scene: Scene) -> None:
+    """Set how often the torques of what is held are looked at, and what is known of their harmonics."""
+    assert scene.drive
+    assert scene.load
+    fastest = 0.0
+    for own in s.torque:
+        harmonics = tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
+        amplitudes, frequencies = abs(harmonics[0::3]), abs(harmonics[1::3])
+        fastest = max(fastest, float(frequencies.max(initial=0.0)))
+        s.rest_bend += float((amplitudes * frequencies**2).sum())
+    s.rest_look = 2.0 * math.pi / (LOOKS_PER_PERIOD * fastest) if fastest > 0.0 else math.inf
+    if scene.drive.law is not None or scene.load.law is not None:
+        s.rest_look, s.rest_bend = min(float(s.rest_look), float(s.end - s.start) / LAW_LOOKS), math.inf
+    both = (*scene.drive.harmonic, *scene.load.harmonic)
+    period = common_period(h.frequency for h in both if h.frequency is not None)
+    s.common_period = period / float(s.time_unit)
 
 
 def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: float) -> set[float]:

@@ -39,6 +39,10 @@ from gearidae.records import EnergyBalance, Extremes, first_sample
 ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
 PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
 FELT = 0.1  # of the tolerance of a speed
+FOLLOWED = (
+    1.25  # radians of the fastest harmonic in a step at most; Adams' formulas have about one of their own
+)
+LAW_STEPS = 10_000  # in a run with a registered law, at least
 
 
 @dataclass(slots=True)
@@ -124,7 +128,10 @@ class Problem:
                 for shaft, share in ((DRIVE, s.pinion_inverse_mass), (LOAD, s.gear_inverse_mass))
             )
             steepest = max(fastest_schedule(own, m.tables, 0.0) for own in s.schedule)
-            s.longest_step = 1.0 / steepest if steepest > 0.0 else 0.0
+            fastest = max(steepest, float(s.torque_omega) / FOLLOWED)
+            if m.work.torque_law.any():
+                fastest = max(fastest, LAW_STEPS / float(s.end - s.start))
+            s.longest_step = 1.0 / fastest if fastest > 0.0 else 0.0
         return m
 
     def _fastest(self, shaft: int, felt: float) -> float:

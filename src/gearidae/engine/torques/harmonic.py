@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from fractions import Fraction
+from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model
+
+WHOLE_HIGH: Final = 1000
+"""Periods of one harmonic in a common period at most, in which another has a whole number, too,"""
+WHOLE_RTOL: Final = 1e-15
+"""and by how much, relatively, the ratio of two frequencies may miss that of whole numbers: by its rounding."""
 
 
 def pack_harmonics(
@@ -63,3 +70,32 @@ def fastest_harmonic(harmonics: Floats, felt: float) -> float:
     """
     amplitudes, frequencies = abs(harmonics[0::3]), abs(harmonics[1::3])
     return float(frequencies[amplitudes > felt * frequencies].max(initial=0.0))
+
+
+def common_period(frequencies: Iterable[float]) -> float:
+    """Shortest time that is a whole number of periods of all frequencies above zero; 0 if there is none.
+
+    Parameters
+    ----------
+    frequencies : iterable of float
+        [Hz]
+    """
+    moving, periods = [one for one in frequencies if one > 0.0], 1
+    for one in moving:
+        ratio = Fraction(one / moving[0]).limit_denominator(WHOLE_HIGH)
+        if abs(one / moving[0] - ratio) > WHOLE_RTOL * ratio:
+            return 0.0
+        periods = math.lcm(periods, ratio.denominator)
+    return periods / moving[0] if moving else 0.0
+
+
+@compiled
+def swing_of_cosines(m: Model, at: int, count: int, x: float) -> tuple[float, float]:
+    """Sum of those that change with `x`, and the largest size that it can have."""
+    k, value, swing = at, 0.0, 0.0
+    for _ in range(count):
+        if m.tables[k + 1] != 0.0:
+            value += m.tables[k] * math.cos(m.tables[k + 1] * x + m.tables[k + 2])
+            swing += abs(m.tables[k])
+        k += 3
+    return value, swing

@@ -7,16 +7,20 @@ solver; the piece between two knots is found from the one used before, which is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import Floats, Model, Record
+from gearidae.engine.model.state import SCHEDULES, Floats, Model, Record
 
 LEAST_CUBIC = 3
 """Knots that a cubic takes; two are joined by a straight line."""
+PARTS: Final = 16
+"""Of a cubic piece, each of which is nearly straight."""
 
 
 def pack_schedule(
@@ -160,3 +164,22 @@ def enter_segment(m: Model, which: int, t: float) -> None:
         m.state.segment[which] < own.knot_count and m.tables[own.knots_at + 2 * m.state.segment[which]] <= t
     ):
         m.state.segment[which] += 1
+
+
+@compiled
+def turns_within(m: Model, which: int) -> bool:
+    """Whether a schedule may change its slope before it enters its next segment."""
+    return bool(m.scene.schedule[which].cubic != 0 and m.state.segment[which] == 1)
+
+
+@compiled
+def straight_until(m: Model, t: float, stop: float) -> float:
+    """Time until which all schedules are straight, or nearly so and go one way; at most the next stop."""
+    for which in range(SCHEDULES):
+        if turns_within(m, which):
+            k = m.scene.schedule[which].knots_at + 2 * _piece(m, which, t)
+            begin, part = m.tables[k], (m.tables[k + 2] - m.tables[k]) / PARTS
+            done = math.floor((t - begin) / part)
+            end = begin + (done + 1.0) * part
+            stop = min(stop, end if end > t else end + part)
+    return stop

@@ -8,11 +8,16 @@ and the reference load, speeds are those of the base circles, angles are in radi
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import DRIVE, Model
-from gearidae.engine.torques.harmonic import add_cosines, slope_of_cosines, sum_of_cosines
+from gearidae.engine.model.state import DRIVE, SPEED, Model
+from gearidae.engine.torques.harmonic import (
+    add_cosines,
+    slope_of_cosines,
+    sum_of_cosines,
+    swing_of_cosines,
+)
 from gearidae.engine.torques.held_speed import held_speed_rate, held_speed_value
 from gearidae.engine.torques.law import law_rate, law_value
-from gearidae.engine.torques.schedule import schedule_rate, schedule_value
+from gearidae.engine.torques.schedule import schedule_rate, schedule_value, turns_within
 
 
 @compiled(inline=True)
@@ -52,3 +57,29 @@ def is_constant(m: Model, shaft: int) -> bool:
     own = m.scene.torque[shaft]
     fixed = own.harmonic_count == 0 and own.order_count == 0 and m.scene.schedule[shaft].knot_count == 0
     return fixed and m.work.torque_law[shaft] == 0
+
+
+@compiled
+def is_steady(m: Model, shaft: int, t: float) -> bool:
+    """Whether the torque of a shaft that does not turn stays as it is until a schedule enters its next segment."""
+    own = m.scene.torque[shaft]
+    if own.harmonic_count != 0 or m.work.torque_law[shaft] != 0 or turns_within(m, shaft):
+        return False
+    held = shaft == DRIVE and m.scene.speed_gain != 0.0
+    if held and (turns_within(m, SPEED) or schedule_rate(m, SPEED, t) != 0.0):
+        return False
+    return schedule_rate(m, shaft, t) == 0.0
+
+
+@compiled
+def torque_range(m: Model, shaft: int, t: float, to: float, angle: float) -> tuple[float, float]:
+    """Bounds of `torque_force` at rest over a time in which schedules go one way; without a law."""
+    own = m.scene.torque[shaft]
+    moving, swing = swing_of_cosines(m, own.harmonics_at, own.harmonic_count, t)
+    middle = torque_force(m, shaft, t, angle, 0.0) - moving
+    change = schedule_value(m, shaft, to, 0.0) - schedule_value(m, shaft, t, 0.0)
+    low, high = min(change, 0.0), max(change, 0.0)
+    if shaft == DRIVE and m.scene.speed_gain != 0.0:
+        change = m.scene.speed_gain * (schedule_value(m, SPEED, to, 0.0) - schedule_value(m, SPEED, t, 0.0))
+        low, high = low + min(change, 0.0), high + max(change, 0.0)
+    return middle - swing + low, middle + swing + high

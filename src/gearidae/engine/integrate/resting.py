@@ -1,0 +1,135 @@
+"""Gears at rest: nothing is integrated, and the time goes on to the next stop or to where they begin to move.
+
+Where friction holds both gears, they are at rest to the last bit. Where dry resistance holds the gear alone, the pinion
+vibrates on its teeth until damping has ended that. Under a steady drive it then is at rest, too: from where its
+vibration is smaller than the tolerance it is put to its equilibrium.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.events.events import ROOT, STOP
+from gearidae.engine.events.rest_search import rest_until
+from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
+from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.motion.residual import mesh_forces
+from gearidae.engine.pairs.shaft_angle import torque_angle
+from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.engine.torques.torque import is_steady, torque_force
+
+_PASSES: Final = 2
+"""Newton steps to the equilibrium, each of which is shorter than a tolerance."""
+
+
+@compiled(inline=True)
+def comes_to_rest(m: Model, t: float, y: Floats) -> bool:
+    """Whether gears that have moved up to an accepted time are at rest from there on."""
+    if y[W] != 0.0 or m.scene.kind != GEARS:
+        return False
+    if abs(y[V]) * m.rows[m.scene.error_weights_at + V] >= 1.0 or m.work.driver.resting != 0:
+        return False
+    return is_at_rest(m, t, y)
+
+
+@compiled_once(SOLVER)
+def is_at_rest(m: Model, t: float, y: Floats) -> bool:
+    """Whether nothing moves, or nothing by more than a tolerance."""
+    if m.scene.kind != GEARS or y[W] != 0.0:
+        return False
+    if m.scene.friction.on != 0 and m.state.hold == AT_REST:
+        return y[V] == 0.0
+    if not (_holds_gear(m) and is_steady(m, DRIVE, t)):
+        return False
+    u, v = y[U], y[V]
+    settled = _settle(m, t, y)
+    y[U], y[V] = u, v
+    return settled
+
+
+@compiled
+def holds_anything(m: Model) -> bool:
+    """Whether dry resistance or friction holds anything."""
+    if m.scene.friction.on != 0:
+        return bool(m.state.hold != FREE)
+    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
+
+
+@compiled
+def _holds_gear(m: Model) -> bool:
+    """Whether the gear is held at rest, and the pinion by nothing but its teeth, whose bodies are rigid."""
+    if m.scene.nodes > 0:
+        return False
+    own = m.scene.friction
+    if own.on != 0:
+        return bool(m.state.hold == HELD_GEAR and own.flanks == 0 and own.pinion_hub == 0.0)
+    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
+
+
+@compiled
+def _settle(m: Model, t: float, y: Floats) -> bool:
+    """Stop the pinion and put it to its equilibrium; whether either takes less than a tolerance."""
+    first, v = m.scene.error_weights_at, y[V]
+    if abs(v) * m.rows[first + V] >= 1.0:
+        return False
+    y[V] = 0.0
+    for _ in range(_PASSES):
+        step = _step_to_equilibrium(m, t, y, v)
+        if not abs(step) * m.rows[first + U] < 1.0:
+            return False
+        if m.scene.population.flanks == 0:  # a step might join an asperity
+            y[U] += step
+    return True
+
+
+@compiled
+def _step_to_equilibrium(m: Model, t: float, y: Floats, v: float) -> float:
+    """Newton step of a stopped pinion that has moved at `v`; infinite without an equilibrium that draws it back."""
+    force, _, stiffness, _, _, _ = mesh_forces(m, t, y, False)
+    share = 1.0
+    if m.scene.error_count != 0:
+        share -= static_error(m, y[U], y[PHASE])[2]
+    push = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), 0.0) - share * force
+    if stiffness > 0.0:
+        return push / (share * stiffness)
+    return 0.0 if push == 0.0 == v else np.inf
+
+
+@compiled
+def begin_rest(m: Model, t: float, y: Floats) -> None:
+    """Note at a start whether gears are at rest, and stop what is left of their motion."""
+    m.work.driver.resting = int(is_at_rest(m, t, y))
+    if m.work.driver.resting != 0 and m.state.hold != AT_REST:
+        _settle(m, t, y)
+
+
+@compiled_once(SOLVER)
+def rest_step(m: Model, t: float, y: Floats) -> tuple[float, int]:
+    """Pass a time at rest.
+
+    Returns
+    -------
+    time : float
+        Reached, over tau.
+    flag : int
+        `STOP`, `ROOT` where the gears begin to move, or 0.
+    """
+    stop = next_stop(m)
+    time, moves = rest_until(m, t, y, stop)
+    if moves:
+        return time, ROOT
+    return time, STOP if time >= stop else 0
+
+
+@compiled
+def longest_step(m: Model) -> float:
+    """Longest step of an integration that starts with what is held now; 0 for any."""
+    longest, look = m.scene.longest_step, m.scene.rest_look
+    if holds_anything(m) and look < np.inf:
+        return min(longest, look) if longest > 0.0 else look
+    return longest

@@ -1,0 +1,320 @@
+"""A gear at rest: the first time at which it begins to move is found, and the rest before costs nothing."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+import gearidae as gd
+from balances import assert_balanced
+from gearidae.engine import solve
+from gearidae.engine.events.rest_search import rest_until
+from gearidae.engine.model.state import LOAD, U
+from gearidae.engine.motion.dry_limit import push_on_gear
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.torques.harmonic import common_period
+from gearidae.records import EventKind
+from reference import train
+
+PRESET = gd.preset("teodorescu2009").to_dict()
+PAIR = gd.Scene.from_dict(
+    PRESET
+    | {
+        "gears": {
+            "pinion_teeth": 18,
+            "gear_teeth": 54,
+            "module": 3e-6,
+            "face_width": 2.5e-6,
+            "pressure_angle": math.radians(20.0),
+            "density": 2330.0,
+        },
+        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6, "damping": 2e-8},
+        "drive": {"torque": 4e-18},
+        "load": {"torque": 3e-18, "drag": 8e-18},
+        "initial": {"gear_speed": 0.0, "gap": 26e-9, "mesh_phase": 0.3},
+        "run": {"duration": 1.0, "samples": 41},
+    }
+)
+"""An own pair of gears, whose mesh damping ends the vibration of the pinion on a gear that is held."""
+RATIO = 3.0
+INERTIA = PAIR.gears.gear_inertia + RATIO**2 * PAIR.gears.pinion_inertia
+ADVANCE = 0.02
+"""About how far [rad] the gear turns in a slip."""
+LARGEST = 5e-12
+"""Torque of the drive [N m] at which teeth are still rigid."""
+DAMPING = 2e-9
+"""Of the mesh, per frequency of the load [N s^2/m]: vibrations die out in a hundredth of a period."""
+HUBS = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
+
+
+def dipping(frequency, depth, width, periods=4, shaft="load", **changes):
+    """Scene whose load dips below its constant push, or whose drive rises above its load, once a period.
+
+    By a share `depth` of the push, for a share `width` of the period.
+    """
+    drive = min(ADVANCE * INERTIA * frequency**2 / (0.5 * RATIO * depth * width**2), LARGEST)
+    swing = depth / (1.0 - math.cos(math.pi * width))
+    wave = {"frequency": frequency, "phase": 0.0}
+    if shaft == "load":
+        push = RATIO * drive
+        torques = {"drive.torque": drive, "load.torque": push * (1.0 - depth + swing)}
+        wave["amplitude"] = push * swing
+    else:
+        assert swing < 1.0 + 0.5 * depth  # it does not drive the gear back
+        torques = {"drive.torque": drive * (1.0 + depth - swing), "load.torque": RATIO * drive}
+        wave |= {"amplitude": drive * swing, "phase": math.pi}
+    run = {
+        "run.duration": periods / frequency,
+        "run.samples": 10 * periods + 1,
+        "mesh.damping": DAMPING * frequency,
+    }
+    return PAIR.replace({**torques, f"{shaft}.harmonic": wave, **run, **changes})
+
+
+def slip_times(run):
+    return run.events.time[run.events.kind == EventKind.SLIP]
+
+
+def turned(run):
+    """Angle since the pinion's landing: from the second tenth of the first period."""
+    return run.samples["gear_angle"][-1] - run.samples["gear_angle"][2]
+
+
+def instants(scene):
+    return np.linspace(0.0, scene.run.duration, 4_001)
+
+
+def assert_all_slips(run, scene, frequency):
+    """Each due slip comes, and the gear turns as far to 1 %.
+
+    The tip relief of a second pair and contacts that still vibrate change the push by 1e-4 of it, which shifts the
+    slips by as much of a period, and changes the angle of a dip of 1 % by another per cent.
+    """
+    due, angle = train.slips(scene, frequency)
+    depth = max(
+        1.0 - train.torque(scene.load, t) / train.torque(scene.drive, t) / RATIO for t in instants(scene)
+    )
+    times = slip_times(run)
+    assert len(due) >= 3
+    for time in due:
+        assert np.abs(times - time).min() < 5e-4 / frequency
+    assert turned(run) == pytest.approx(angle, rel=0.01 + 1e-4 / depth)
+
+
+# -- dips of the load and pulses of the drive ------------------------------------------------------------------------
+
+DIPS = [
+    (50.0, 0.01, 0.06),
+    (50.0, 0.9, 0.12),
+    (100.0, 0.3, 0.1),
+    (200.0, 0.6, 0.14),
+    (500.0, 0.1, 0.08),
+    (2e3, 0.3, 0.1),
+    (5e3, 0.05, 0.06),
+    (2e4, 0.01, 0.14),
+    (2e4, 0.9, 0.1),
+]
+"""Frequency [Hz], share of the push, share of the period."""
+
+
+@pytest.mark.parametrize("method", ["auto", "bdf"])
+@pytest.mark.parametrize("dip", DIPS)
+def test_no_dip_of_the_load_is_missed(dip, method):
+    """Against the train as one body, solved from rest to rest by an independent method."""
+    scene = dipping(*dip, **{"run.method": method})
+    run = solve(scene)
+    assert_all_slips(run, scene, dip[0])
+    assert_balanced(run.balance, scene)
+
+
+@pytest.mark.parametrize("dip", [(100.0, 0.3, 0.1), (500.0, 0.05, 0.06)])
+def test_no_dip_is_missed_by_the_portable_driver(dip):
+    scene = dipping(*dip)
+    assert_all_slips(solve(scene, backend="sksundae"), scene, dip[0])
+
+
+@pytest.mark.parametrize("method", ["auto", "bdf"])
+@pytest.mark.parametrize("frequency", [100.0, 2e3])
+def test_no_pulse_of_the_drive_is_missed(frequency, method):
+    """The pinion follows the drive on its teeth, so that steps are integrated: they are short enough."""
+    scene = dipping(frequency, 0.04, 0.1, shaft="drive", **{"run.method": method})
+    assert_all_slips(solve(scene), scene, frequency)
+
+
+@gd.register_torque("rest_wave", parameters=("middle", "amplitude", "frequency"))
+def wave(t, speed, p):
+    """A harmonic that the engine does not know as one."""
+    return p[0] + p[1] * math.cos(2.0 * math.pi * p[2] * t)
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_no_dip_of_a_registered_law_is_missed(backend):
+    scene = dipping(200.0, 0.3, 0.1)
+    harmonic = scene.load.harmonic[0]
+    law = {
+        "name": "rest_wave",
+        "middle": scene.load.torque,
+        "amplitude": harmonic.amplitude,
+        "frequency": harmonic.frequency,
+    }
+    by_law = scene.replace({"load.harmonic": [], "load.torque": 0.0, "load.law": law})
+    assert_all_slips(solve(by_law, backend=backend), scene, 200.0)
+
+
+KINDS = {
+    "flanks": {"contact.friction": 0.1},
+    "hubs": HUBS,
+    "gear hub": HUBS | {"gears.pinion_hub_radius": 0.0},
+    "flanks and hubs": HUBS | {"contact.friction": 0.1},
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("shaft", ["load", "drive"])
+def test_stops_on_the_way_change_nothing(kind, shaft):
+    """Knots of a schedule that is zero: the solver stops and restarts at each, so that it cannot pass over a dip."""
+    scene = dipping(500.0, 0.6 if shaft == "load" else 0.04, 0.1, shaft=shaft, **KINDS[kind])
+    end, parts = scene.run.duration, 997
+    knots = [[k * end / parts, 0.0] for k in range(parts)]
+    free, stopped = solve(scene), solve(scene.replace({"load.schedule": knots}))
+    starts = []
+    for run in (free, stopped):
+        times = slip_times(run)
+        starts.append(times[np.diff(times, prepend=-1.0) > 0.3 / 500.0])
+    assert len(starts[0]) >= 3
+    np.testing.assert_allclose(starts[0], starts[1], rtol=0, atol=1e-4 / 500.0)
+    assert turned(free) == pytest.approx(turned(stopped), rel=0.01)
+    assert_balanced(free.balance, scene)
+
+
+# -- what a rest costs -----------------------------------------------------------------------------------------------
+
+LONG = 1e4
+STEPS = 20_000  # of the landing of the pinion and of its vibration, which dies out
+LOOKS = 30_000
+LANDED = 0.1
+"""Until the pinion has landed [s], whose impact may push the gear on."""
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+@pytest.mark.parametrize("friction", [{}, {"contact.friction": 0.1}, HUBS])
+def test_ten_thousand_seconds_of_rest_under_a_load_of_twenty_kilohertz(backend, friction):
+    """The load never falls to the push: no step and hardly a look is needed for 200 million periods."""
+    wave = {"amplitude": 4e-18, "frequency": 2e4}
+    changes = {"load.torque": 2e-17, "load.harmonic": wave, "run.duration": LONG}
+    run = solve(PAIR.replace(changes | friction), backend=backend)
+    assert run.status == "finished"
+    assert run.statistics.steps < STEPS
+    assert run.statistics.guard_evaluations < LOOKS
+    assert not run.samples["gear_speed"].any()
+    assert (slip_times(run) < LANDED).all()
+
+
+def test_ten_thousand_seconds_in_which_bounds_say_nothing():
+    """Drive and load rise and fall together: only together do they hold, which one common period shows."""
+    changes = {
+        "contact.friction": 0.1,
+        "drive.torque": 4e-18,
+        "drive.harmonic": {"amplitude": 1e-18, "frequency": 2e4},
+        "load.torque": 1.3e-17,
+        "load.harmonic": {"amplitude": 3e-18, "frequency": 2e4},
+        "run.duration": LONG,
+    }
+    run = solve(PAIR.replace(changes))
+    assert run.status == "finished"
+    assert run.statistics.steps < STEPS
+    assert run.statistics.guard_evaluations < LOOKS
+
+
+def test_a_ramp_of_the_load_ends_a_long_rest_in_the_right_period():
+    """A load of 20 kHz that falls to its last period's push in 1,000 s: periods are passed by bisection."""
+    push, amplitude, frequency = 3 * 4e-18, 2e-18, 2e4
+    changes = {
+        "load.torque": 0.0,
+        "load.schedule": [[0.0, 3e-17], [1000.0, 1e-17]],
+        "load.harmonic": {"amplitude": amplitude, "frequency": frequency},
+        "run.duration": 900.5,
+        "run.samples": 2,
+    }
+    run = solve(PAIR.replace({**changes, "run.stop": "turns 0.001"}))
+    # the least of a period passes below the push when the middle is an amplitude above it; the push is known to 1e-4
+    mean = 1000.0 * (3e-17 - push - amplitude) / 2e-17
+    times = slip_times(run)
+    first = times[times > LANDED][0]
+    assert first == pytest.approx(mean, abs=1e-4 * push / 2e-20)
+    assert (first * frequency) % 1.0 == pytest.approx(0.5, abs=0.01)
+    assert run.statistics.guard_evaluations < 10 * LOOKS
+
+
+# -- the search alone ------------------------------------------------------------------------------------------------
+
+
+PUSH = 1.2e-17
+
+
+def resting(harmonics, knots):
+    """Model of a gear that is held, and a state in which the pinion pushes by about `PUSH`; that push [N m]."""
+    load = [{"amplitude": a, "frequency": f, "phase": p} for a, f, p in harmonics]
+    scene = PAIR.replace(
+        {"load.torque": 0.0, "load.schedule": knots, "load.harmonic": load, "drive.torque": PUSH / RATIO}
+    )
+    problem = make_problem(scene)
+    m, y = problem.model, problem.start.copy()
+    m.state.slip, m.state.segment[LOAD] = 0.0, 1
+    unit = float(m.scene.force_unit * m.scene.gear_radius)
+
+    def push(u):
+        y[U] = u
+        return push_on_gear(m, 0.0, y) * unit - PUSH
+
+    y[U] = brentq(push, y[U] - 10.0, y[U] + 4.0)
+    return m, y, PUSH + push(y[U])
+
+
+waves = st.lists(
+    st.tuples(
+        st.floats(1e-19, 2e-17), st.sampled_from([3.0, 10.0, 16.0, 23.5, 31.4159]), st.floats(0.0, 6.28)
+    ),
+    min_size=1,
+    max_size=3,
+)
+
+
+@settings(max_examples=40)
+@given(waves, st.floats(1e-17, 6e-17), st.floats(0.5e-17, 6e-17))
+def test_the_first_dip_is_that_of_a_dense_scan(harmonics, first, last):
+    """In a second of rest under a ramp with harmonics, with a common period and without one."""
+    knots = [[0.0, first], [1.0, last]]
+    m, y, push = resting(harmonics, knots)
+    tau, now, moves = float(m.scene.time_unit), 0.0, False
+    while not moves and now < m.scene.end:
+        now, moves = rest_until(m, now, y, float(m.scene.end))
+    grid = np.linspace(0.0, 1.0, 400_001)
+    load = np.interp(grid, *zip(*knots, strict=True))
+    for a, f, p in harmonics:
+        load += a * np.cos(2.0 * np.pi * f * grid + p)
+    # a slip needs 1e-12 of the reference load more; dips between two places of the grid are that shallow, too
+    below = np.flatnonzero(load < push - 1e-10 * push)
+    at_least = np.flatnonzero(load < push + 1e-6 * push)
+    if below.size:
+        assert moves
+        assert now * tau <= grid[below[0]] + 1e-12
+    if moves:
+        assert now * tau >= grid[at_least[0]] - 2.5e-6
+    elif now >= m.scene.end:
+        assert not below.size
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "period"),
+    [((50.0,), 0.02), ((50.0, 75.0), 0.04), ((2e4, 50.0), 0.02), ((2.5, 0.0), 0.4), ((), 0.0)],
+)
+def test_common_periods(frequencies, period):
+    assert common_period(frequencies) == pytest.approx(period, rel=1e-14, abs=0)
+
+
+def test_frequencies_without_a_common_period():
+    assert common_period((1.0, math.sqrt(2.0))) == 0.0
