@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,7 +14,7 @@ from gearidae.archive.variables import SAMPLES
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
-from gearidae.scene.units import from_text
+from gearidae.scene.carried import cf_unit, numbers_of
 
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""
@@ -23,7 +22,6 @@ CALIBRATION = 0.015
 """Relative uncertainty of a speed of whose sensor nothing is known."""
 _UNEVEN = 0.1
 """Largest departure of a sample's time from the uniform grid, in sampling intervals."""
-_EXPONENT = re.compile(r"(?<=[A-Za-z])(-?\d)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,21 +205,10 @@ def to_si(array: xr.DataArray, units: str, key: str) -> Floats:
     SceneError
         If the values are no numbers or the unit does not fit.
     """
-    given = str(array.attrs.get("units", units))
-    if array.dtype.kind not in "fiu":
-        raise SceneError(key, array.dtype, "must be numbers")
-    values = array.values.astype(np.float64, copy=False)
-    if given == units:
-        return values
     try:
-        return values * from_text(f"1 {_powers(given)}", "rad/s" if units == "rad s-1" else _powers(units))
+        return numbers_of(array, "rad/s" if units == "rad s-1" else cf_unit(units))
     except ValueError as error:
-        raise SceneError(key, f"in {given}", str(error)) from None
-
-
-def _powers(units: str) -> str:
-    """Write the exponents of a CF unit (``s-1``) as scenes do (``s^-1``)."""
-    return _EXPONENT.sub(r"^\1", units)
+        raise SceneError(key, f"in {array.attrs.get('units', array.dtype)}", str(error)) from None
 
 
 def _uniform(time: Floats) -> tuple[float, float]:

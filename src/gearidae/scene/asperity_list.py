@@ -20,6 +20,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from gearidae.errors import SceneError
+from gearidae.scene.carried import carried_unit, number_of
 from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
@@ -277,9 +278,12 @@ def _cell(cell: Any, name: str, row: int, unit: float) -> Any:
             raise ValueError(f"{where} is {shorten(cell)}; must be drive, coast or empty")
         return word
     try:
-        number = float(cell) * unit
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{where} is {shorten(cell)}, no number") from None
+        number = float(cell) if isinstance(cell, str) else number_of(cell, "m" if name in _LENGTHS else "1")
+    except ValueError:
+        number = None
+    if number is None:
+        raise ValueError(f"{where} is {shorten(cell)}, no number")
+    number *= 1.0 if carried_unit(cell)[0] else unit
     low, high = _NUMBERS[name]
     if not low <= number <= high:
         raise ValueError(f"{where} is {number:g}; must lie in {low:g}..{high:g}")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
 from typing import Annotated, Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from pydantic import BeforeValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from gearidae.scene.carried import number_of
 from gearidae.scene.units import from_text
 
 
@@ -128,7 +128,7 @@ class Quantity(_Bounded):
         ValueError
             Saying what is allowed.
         """
-        number = from_text(value, self.unit) if isinstance(value, str) else _as_float(value)
+        number = from_text(value, self.unit) if isinstance(value, str) else number_of(value, self.unit)
         if number is None:
             raise ValueError(self.allowed())
         if not math.isfinite(number):
@@ -171,7 +171,7 @@ class Count(_Bounded):
         ValueError
             Saying what is allowed.
         """
-        number = _as_float(value)
+        number = number_of(value, "1")
         if number is None or not number.is_integer() or not self.admits(number):
             raise ValueError(self.allowed())
         return int(number)
@@ -229,16 +229,6 @@ class Sampling(Count):
     def rate(text: str) -> float:
         """Return the rate [Hz] in a text as `read` makes it."""
         return float(text.removesuffix(" Hz"))
-
-
-def _as_float(value: object) -> float | None:
-    """Convert a number of any kind, None for what is no number; infinite for what no float can hold."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return None
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf
 
 
 Phase = Annotated[float, Quantity(unit="rad", at_least=-1e9, at_most=1e9)]

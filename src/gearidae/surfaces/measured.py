@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.errors import SceneError
+from gearidae.scene.carried import number_of
 from gearidae.scene.dump import dump_keys
 from gearidae.scene.group import shorten
 from gearidae.scene.prefixes import with_prefix
@@ -274,12 +275,11 @@ def _extent(size: Any, shape: tuple[int, ...]) -> tuple[float, float]:
 def _length(name: str, value: Any) -> float:
     """Read a length [m] from a number or a text with a unit."""
     try:
-        number = from_text(value, "m") if isinstance(value, str) else float(value)
+        number = from_text(value, "m") if isinstance(value, str) else number_of(value, "m")
     except ValueError as error:
-        wrong = str(error) if isinstance(value, str) else "must be a length"
-        raise SceneError(name, shorten(value), wrong) from None
-    except TypeError:
-        raise SceneError(name, shorten(value), "must be a length [m], or a text with a unit") from None
+        raise SceneError(name, shorten(value), str(error)) from None
+    if number is None:
+        raise SceneError(name, shorten(value), "must be a length [m], or a text with a unit")
     if not 1e-12 <= number <= 1.0:
         raise SceneError(name, shorten(value), "must be a length in 1e-12..1 m")
     return number
