@@ -52,7 +52,7 @@ class OnlineAssessment:
         map: xr.Dataset,  # noqa: A002 - as in assess
         *,
         history: str = "auto",
-        anti_alias_filter: float | None = None,
+        anti_alias_filter: float | str | None = None,
         calibration: float | str = CALIBRATION,
         offset: float | str = 0.0,
     ) -> None:

@@ -13,6 +13,7 @@ from gearidae.scene.quantity import Quantity
 
 _HISTORIES: Final = ("auto", "start", "unknown")
 _CALIBRATION: Final = Quantity(unit="1", at_least=0.0, at_most=0.1)
+_CUTOFF: Final = Quantity(unit="Hz", above=0.0)
 _OFFSET: Final = Quantity(unit="rad/s", at_least=0.0)
 
 
@@ -44,7 +45,7 @@ class Sensor:
 
 def check_sensor(
     history: str = "auto",
-    anti_alias_filter: float | None = None,
+    anti_alias_filter: float | str | None = None,
     calibration: float | str = CALIBRATION,
     offset: float | str = 0.0,
 ) -> Sensor:
@@ -64,22 +65,10 @@ def check_sensor(
         raise SceneError("history", history, f"must be one of {', '.join(_HISTORIES)}")
     return Sensor(
         history,
-        _cutoff(anti_alias_filter),
+        math.inf if anti_alias_filter is None else _number("anti_alias_filter", anti_alias_filter, _CUTOFF),
         _number("calibration", calibration, _CALIBRATION),
         _number("offset", offset, _OFFSET),
     )
-
-
-def _cutoff(anti_alias_filter: float | None) -> float:
-    if anti_alias_filter is None:
-        return math.inf
-    try:
-        cutoff = float(anti_alias_filter)
-    except (TypeError, ValueError):
-        cutoff = math.nan
-    if not cutoff > 0.0:
-        raise SceneError("anti_alias_filter", anti_alias_filter, "must be a frequency in Hz, above zero")
-    return cutoff
 
 
 def _number(name: str, value: float | str, allowed: Quantity) -> float:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from datetime import timedelta
 from numbers import Real
 from typing import Any, Final
@@ -86,7 +87,7 @@ def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
     Parameters
     ----------
     values : array_like
-        What the user gave; a list may also hold texts and numbers with units.
+        What the user gave; a list may also hold texts and numbers that carry units.
     unit : str
         The SI unit wanted, ``"1"`` for pure numbers.
     stated : str, optional
@@ -110,38 +111,35 @@ def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
     if kind in "OUST" and cells.ndim:
         return numbers_of([*np.ma.asarray(plain)] if np.ma.isMA(plain) else [*cells], unit, own or stated)
     if kind == "m":
-        numbers, own = _seconds(cells), "s"
-    elif kind in "fiu":
-        numbers = cells.astype(np.float64)
-    else:
+        cells, own = _seconds(cells), "s"
+    elif kind not in "fiu":
         raise ValueError(f"holds {_KINDS.get(kind, f'entries of type {type(plain).__name__}')}, no numbers")
+    numbers: Floats = cells.astype(np.float64)
     if np.ma.isMA(plain):
-        numbers = np.where(np.ma.getmaskarray(plain), np.nan, numbers)
-    if (own := own or stated) in ("", unit):
-        return numbers
-    factor, offset = factor_and_offset(own, unit)
-    return numbers * factor + offset if offset else numbers * factor
+        numbers[np.ma.getmaskarray(plain)] = np.nan
+    if (own := own or stated) not in ("", unit):
+        factor, offset = factor_and_offset(own, unit)
+        numbers = numbers * factor + offset if offset else numbers * factor
+    return numbers
 
 
-def _entry(cell: object, unit: str, stated: str, row: int) -> Any:
+def _entry(cell: Any, unit: str, stated: str, row: int) -> Any:
     """Read an entry of a list: a number, a text of one, or a row of a map."""
-    if np.ndim(getattr(cell, "magnitude", cell)) > 0:  # type: ignore[arg-type]
-        return numbers_of(cell, unit, stated)
     if cell is None or (isinstance(cell, str) and not cell.strip()):
         raise ValueError(f"row {row} is empty")
+    if np.ndim(getattr(cell, "magnitude", cell)) > 0:
+        return numbers_of(cell, unit, stated)
     if isinstance(cell, str):
-        try:
+        with suppress(ValueError):
             cell = float(cell)
-        except ValueError:
-            try:
-                return from_text(cell, unit)
-            except ValueError:
-                raise ValueError(f"row {row} is {cell[:40]!r}, no number") from None
-    bare = not carried_unit(cell)[0] and not isinstance(cell, timedelta | np.timedelta64)
-    number = number_of(cell, unit)
+    try:
+        number = from_text(cell, unit) if isinstance(cell, str) else number_of(cell, unit)
+    except ValueError as error:
+        raise ValueError(f"row {row} is {str(cell)[:40]!r}, no number ({error})") from None
     if number is None:
         raise ValueError(f"row {row} is {str(cell)[:40]!r}, no number")
-    return float(numbers_of(number, unit, stated)) if bare and stated else number
+    bare = isinstance(cell, Real) and not isinstance(cell, np.timedelta64)
+    return numbers_of(number, unit, stated) if bare else number
 
 
 def _seconds(duration: Any) -> Any:

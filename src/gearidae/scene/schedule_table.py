@@ -171,14 +171,14 @@ def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, i
 def _numbers(name: str, column: Any, unit: str) -> Floats:
     """Read a column in SI units; whatever is no finite number is named with its row, counted from 1."""
     where = f"column {name[:60]!r}"
-    if np.size(getattr(column, "magnitude", column)) > MOST_KNOTS:
-        raise ValueError(f"has {len(column)} rows or more; there may be {MOST_KNOTS} knots at most")
     try:
         numbers = numbers_of(column, unit, split_unit(name)[1])
     except ValueError as error:
         raise ValueError(f"{where}{', ' if str(error).startswith('row') else ': '}{error}") from None
     if numbers.ndim != 1:
         raise ValueError(f"{where} must be one-dimensional")
+    if numbers.size > MOST_KNOTS:
+        raise ValueError(f"has {numbers.size} rows or more; there may be {MOST_KNOTS} knots at most")
     if not np.isfinite(numbers).all():
         row = int(np.isfinite(numbers).argmin())
         raise ValueError(f"{where}, row {row + 1} is {numbers[row]}, not a finite number")

@@ -113,7 +113,8 @@ def refuse_bare(texts: Iterable[object]) -> None:
     ValueError
         Naming the first of both.
     """
-    bare, dressed = [], []
+    bare: list[str] = []
+    dressed: list[str] = []
     for text in texts:
         match = _NUMBER_AND_UNIT.fullmatch(_plain(str(text)))
         if match is not None:

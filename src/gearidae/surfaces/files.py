@@ -6,8 +6,6 @@ import math
 import os
 import re
 import warnings
-from contextlib import redirect_stdout
-from io import StringIO
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -122,18 +120,21 @@ def _read(path: Path, unit: str | None) -> tuple[Scan, bool]:
 
 
 def _is_of_another_program(path: Path) -> bool:
-    """Whether a file is no text, or has lines above its rows of numbers and none that is no row below the first."""
+    """Whether a file is no text, or has lines of its own kind above rows of numbers, all with as many of them."""
     try:
         with path.open(encoding="utf-8") as file:
-            rows = [_is_row(line) for line in file if line.strip()]
+            widths = [_row_width(line) for line in file if line.partition("#")[0].strip()]
     except (OSError, UnicodeDecodeError):
         return True
-    return True in rows[1:] and not rows[0] and all(rows[rows.index(True) :])
+    first = next((k for k, width in enumerate(widths) if width), 0)
+    return first > 0 and len(set(widths[first:])) == 1
 
 
-def _is_row(line: str) -> bool:
-    return all(
-        as_number(cell, ".") is not None or cell.lower() == "bad" for cell in _BETWEEN.split(line.strip())
+def _row_width(line: str) -> int:
+    """Count the numbers in a line; 0 if it holds anything else."""
+    cells = _BETWEEN.split(line.strip())
+    return (
+        len(cells) if all(as_number(cell, ".") is not None or cell.lower() == "bad" for cell in cells) else 0
     )
 
 
@@ -223,11 +224,8 @@ def _by_surface_topography(path: Path, unit: str | None) -> Scan:
         ) from None
     sized = True
     try:
-        with (
-            warnings.catch_warnings(),
-            redirect_stdout(StringIO()),
-        ):  # some of its readers print what they try
-            warnings.simplefilter("ignore")  # some leave files open
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # some of its readers leave files open
             try:
                 scan: Any = read_topography(str(path))
             except ValueError as error:

@@ -55,8 +55,8 @@ def remarks(ds: xr.Dataset, cutoff: float | None) -> tuple[str, ...]:
     ]
     if streaks := ds.attrs["streaks"]:
         said.append(
-            f"{streaks} of {ds.attrs['points'][0]} rows have a streak that differs from the rows on both sides, as scars "
-            "of a scan do: the tips are too sharp; repair or leave them out."
+            f"{streaks} of {ds.attrs['points'][0]} rows have a streak that differs from the rows on both sides, as "
+            "scars of a scan do: the tips are too sharp; repair or leave them out."
         )
     for lines, noise in zip(("rows", "columns"), ds.attrs["line_noise"], strict=True):
         if noise:
