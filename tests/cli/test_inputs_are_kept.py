@@ -31,14 +31,13 @@ def folder(tmp_path, monkeypatch):
         ["surface", "scan.npy", "--size", "1 um", "--cutoff", "50 nm", "--case=case.toml", "--output=case.toml"],
         ["run", "case.toml", "-o", "case.toml"],
         ["run", "case.toml", "-o", "link.toml"],
-        ["sweep", "case.toml", "--over", "roller.torque=1,2", "-o", "case.toml"],
+        ["sweep", "case.toml", "--over", "surface.energy=1,1.5", "-o", "case.toml"],
     ],
 )  # fmt: skip
 def test_an_output_onto_an_input_is_refused(command, folder, capsys):
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     assert main([*command, "--overwrite"]) == 2
-    (line,) = capsys.readouterr().err.strip().splitlines()
-    assert "input of this command" in line or command[0] == "sweep"
+    assert "input of this command" in capsys.readouterr().err.splitlines()[-1]
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
@@ -65,7 +64,7 @@ def test_a_name_with_the_character_nul():
             as_path(name)
         with pytest.raises(gd.SceneError, match="case file"):
             gd.load_case(name)
-    with pytest.raises(gd.SceneError, match="drive.schedule"):
+    with pytest.raises(gd.SceneError, match=r"drive\.schedule"):
         gd.preset("teodorescu2009_low_speed").replace({"drive.schedule": {"file": "a\0b.csv"}})
     with pytest.raises(gd.SceneError):
         gd.open_archive("a\0b.nc")

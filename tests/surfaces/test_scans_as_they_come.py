@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import sys
 
 import numpy as np
 import pandas as pd
@@ -106,8 +107,7 @@ def metropro(heights, step):
     header = bytearray(834)
     rows, columns = heights.shape
     struct.pack_into(">IHI", header, 0, 0x881B036F, 1, 834)
-    struct.pack_into(">HHHH", header, 48, 0, 0, 0, 0)
-    struct.pack_into(">HHHHI", header, 60, 0, 0, columns, rows, 4 * rows * columns)
+    struct.pack_into(">HHHHI", header, 64, 0, 0, columns, rows, 4 * rows * columns)
     scale, wavelength, oblique, resolution = 0.5, 6.328e-7, 1.0, 4096
     struct.pack_into(">f", header, 164, scale)
     struct.pack_into(">f", header, 168, wavelength)
@@ -151,7 +151,7 @@ def test_a_fault_within_the_numbers_is_never_read_over(heights, fault, tmp_path)
 
 
 def test_without_the_library_the_file_of_another_program_is_named_as_such(monkeypatch, tmp_path):
-    monkeypatch.setitem(__import__("sys").modules, "SurfaceTopography", None)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
     (tmp_path / "scan.dat").write_bytes(bytes(range(256)) * 4)
     with pytest.raises(gd.SceneError, match=r"a file of another program.*pip install 'gearidae\[surfaces\]'"):
         read_scan(tmp_path / "scan.dat")
