@@ -185,22 +185,16 @@ def test_a_part_of_the_table(maps):
 
 @pytest.mark.parametrize("title", TITLES)
 @pytest.mark.parametrize(
-    ("factor", "size"), [(-2.0, 1), (-2.0, 2), (40.0, 1), (0.0, 1)], ids=["back", "two", "spike", "missed"]
+    ("factor", "size"), [(-2.0, 1), (-2.0, 2), (40.0, 1), (0.5, 1)], ids=["back", "two", "spike", "missed"]
 )
 def test_a_spike_is_named_by_its_sample(factor, size, title, maps, speeds):
-    """Wherever it takes the answer away; once the gear was said to turn back."""
+    """Once the gear was said to turn back, or a clear verdict was wrong: 0.753 to 0.766."""
     signal = record(speeds["auto", 1.0, 0.78])
-    clean = assess(signal, maps[title])
-    assert clean.conclusive
-    named = 0
+    assert assess(signal, maps[title]).conclusive
     for place in (4000, 11111, 17000):
         spoilt = signal.copy()
         spoilt[place : place + size] = factor * float(spoilt.median())
         found = assess(spoilt, maps[title])
-        if found.conclusive:
-            assert found.low <= 0.78 <= found.high
-            continue
-        named += 1
         assert found.verdict == "does not fit"
         assert f"sample {place} (" in found.explanation
         frame = (
@@ -209,8 +203,9 @@ def test_a_spike_is_named_by_its_sample(factor, size, title, maps, speeds):
             .rename("gear_speed [rad/s]")
             .rename_axis("time [s]")
         )
-        assert assess(frame.to_frame(), maps[title], bridge=2).conclusive
-    assert named > 0 or factor == 0.0
+        bridged = assess(frame.to_frame(), maps[title], bridge=2)
+        assert bridged.conclusive
+        assert bridged.low < 0.78 < bridged.high
 
 
 def test_no_clean_record_has_a_lone_sample(speeds):

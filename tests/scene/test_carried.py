@@ -61,7 +61,7 @@ def test_durations_and_units_are_converted(times):
 
 @pytest.mark.parametrize("values", NO_NUMBERS)
 def test_what_is_no_number_is_refused(values):
-    with pytest.raises(ValueError, match="no number|does not fit|varies"):
+    with pytest.raises(ValueError, match=r"no number|does not fit|varies"):
         numbers_of(values, "N m")
     with pytest.raises(gd.SceneError, match=r"drive\.schedule.*column 'value'"):
         LOW.replace({"drive.schedule": {"time": [0, 1, 2], "value": values}})

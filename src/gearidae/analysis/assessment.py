@@ -189,7 +189,7 @@ def judge(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
     speed = signal.forward()
     speed = replace(speed, calibration=sensor.uncertainty(float(np.median(speed.values))))
     found = _judged(speed, model, sensor)
-    if not found.conclusive and (alone := doubts.lone_samples(speed)):
+    if alone := doubts.lone_samples(speed):
         return _without_answer(found, "does not fit", lone_words(speed, alone))
     if found.verdict != "gear stops":
         found = _calibrated(found, speed, model)

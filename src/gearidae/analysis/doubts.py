@@ -84,18 +84,7 @@ def unsteadiness(signal: Signal) -> float:
 
 
 def lone_samples(signal: Signal) -> list[int]:
-    """Find samples that no gear can follow: one or two that are off by much between others that agree.
-
-    Parameters
-    ----------
-    signal : Signal
-        Gear speed.
-
-    Returns
-    -------
-    list of int
-        The first of each place: spikes, and pulses that a sensor has missed.
-    """
+    """Find the first of one or two samples that are far off between others that agree: spikes and missed pulses."""
     usual = scipy.ndimage.median_filter(signal.values, _NEIGHBOURS, mode="nearest")
     off = np.abs(signal.values - usual)
     edges = np.flatnonzero(

@@ -104,7 +104,7 @@ def read_signal(
     table = {"skip": skip, "delimiter": delimiter, "decimal": decimal}
     name = signal if isinstance(signal, str | os.PathLike) else type(signal).__name__
     try:
-        step = _step(interval)
+        step = None if interval is None else _STEP.take("interval", interval)
         wanted, most = _checked(columns, bridge, timed=step is None), int(bridge)
         if not isinstance(signal, str | os.PathLike):
             _refuse(table, "a DataFrame")
@@ -130,23 +130,15 @@ def _checked(columns: Sequence[str] | None, bridge: int, *, timed: bool) -> dict
     if isinstance(bridge, bool) or not isinstance(bridge, Integral) or bridge < 0:
         raise SceneError("bridge", shorten(bridge), "must be a whole number of samples, 0 or more")
     wanted: dict[str, str | None] = dict.fromkeys(_SI if timed else ("gear_speed",))
-    if columns is None:
-        return wanted
     names = [columns] if isinstance(columns, str) and not timed else columns
-    enough = (2,) if timed else (1, 2)
-    if isinstance(names, str) or len(names) not in enough or not all(isinstance(name, str) for name in names):
+    if names is None:
+        return wanted
+    if isinstance(names, str) or not len(wanted) <= len(names) <= 2 or set(map(type, names)) != {str}:
         both = "" if timed else ", or that of the speed alone"
         raise SceneError(
             "columns", shorten(columns), f"must be two headings, that of the time and that of the speed{both}"
         )
     return dict(zip(wanted, [name.strip() for name in names[-len(wanted) :]], strict=True))
-
-
-def _step(interval: float | str | None) -> float | None:
-    try:
-        return None if interval is None else _STEP.read(interval)
-    except ValueError as error:
-        raise SceneError("interval", shorten(interval), str(error)) from None
 
 
 def _refuse(table: Mapping[str, object], what: str) -> None:

@@ -42,7 +42,7 @@ class Column(NamedTuple):
 
 def has_columns(headings: Sequence[str], wanted: Wanted) -> bool:
     """Whether texts are headings of a table with the wanted columns."""
-    asked = [name for name in wanted.values() if name is not None and _number(name) is None]
+    asked = [name for name in wanted.values() if name is not None]
     if asked:
         return all(_place_of(headings, name) is not None for name in asked)
     named = [_named(headings, meaning) for meaning in wanted]
@@ -86,24 +86,22 @@ def _number(name: str) -> int | None:
 
 
 def _place_of(headings: Sequence[str], name: str) -> int | None:
-    """Find a column by its heading, also by that without its unit where this is none of the name's kind."""
-    place = column_of(headings, name)
-    return column_of([split_unit(heading)[0] for heading in headings], name) if place is None else place
+    """Find a column by its heading, by that without its unit, or by its number."""
+    place, number = column_of(headings, name), _number(name)
+    if place is None:
+        place = column_of([split_unit(heading)[0] for heading in headings], name)
+    if place is None and number is not None and (not headings or number <= len(headings)):
+        return number - 1
+    return place
 
 
 def _given(headings: Sequence[str], meaning: str, name: str) -> Column:
-    place, number, unit = _place_of(headings, name), _number(name), split_unit(name)[1]
-    if place is None and number is not None:
-        if headings and number > len(headings):
-            raise ValueError(f"has no column {number} among {listed(headings)}")
-        heading = headings[number - 1] if headings else f"column {number}"
-        place = number - 1
-    elif place is None:
+    place = _place_of(headings, name)
+    if place is None:
         raise ValueError(f"has no column {name!r}, or more than one, among {listed(headings)}")
-    else:
-        heading = headings[place]
+    heading, unit = headings[place] if headings else f"column {place + 1}", split_unit(name)[1]
     own = split_unit(heading)[1]
-    if own and unit and own != unit and _fits(_spelt(own), _UNITS[meaning]):
+    if own and unit and own != unit and _fits(_spelt(own), _UNITS[meaning]):  # that of a voltage is replaced
         raise ValueError(f"the column {heading!r} is not in {unit}: leave the unit out")
     if not (unit := unit or own):
         raise ValueError(f"{name!r} states no unit: give it in brackets, as in {name + ' [ms]'!r}")

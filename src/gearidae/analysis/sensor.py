@@ -8,7 +8,6 @@ from typing import Final
 
 from gearidae.analysis.signal import CALIBRATION
 from gearidae.errors import SceneError
-from gearidae.scene.group import shorten
 from gearidae.scene.quantity import Quantity
 
 _HISTORIES: Final = ("auto", "start", "unknown")
@@ -65,14 +64,7 @@ def check_sensor(
         raise SceneError("history", history, f"must be one of {', '.join(_HISTORIES)}")
     return Sensor(
         history,
-        math.inf if anti_alias_filter is None else _number("anti_alias_filter", anti_alias_filter, _CUTOFF),
-        _number("calibration", calibration, _CALIBRATION),
-        _number("offset", offset, _OFFSET),
+        math.inf if anti_alias_filter is None else _CUTOFF.take("anti_alias_filter", anti_alias_filter),
+        _CALIBRATION.take("calibration", calibration),
+        _OFFSET.take("offset", offset),
     )
-
-
-def _number(name: str, value: float | str, allowed: Quantity) -> float:
-    try:
-        return allowed.read(value)
-    except ValueError as error:
-        raise SceneError(name, shorten(value), str(error)) from None

@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.scene.units import factor_and_offset, from_text
+from gearidae.scene.units import from_text
 
 _EXPONENT: Final = re.compile(r"(?<=[A-Za-z])(?=-?\d)")
 """Where an exponent begins in a unit as CF writes it (``s-1``)."""
@@ -44,7 +44,7 @@ def cf_unit(units: str) -> str:
     return _EXPONENT.sub("^", units)
 
 
-def number_of(value: object, unit: str) -> float | None:
+def number_of(value: object, unit: str, stated: str = "") -> float | None:
     """Read one number.
 
     Parameters
@@ -53,6 +53,8 @@ def number_of(value: object, unit: str) -> float | None:
         What the user gave; without a unit it is in SI units.
     unit : str
         The SI unit wanted, ``"1"`` for a pure number.
+    stated : str, optional
+        Unit of a number that carries none, in place of SI.
 
     Returns
     -------
@@ -68,35 +70,26 @@ def number_of(value: object, unit: str) -> float | None:
     plain = plain[()] if isinstance(plain, np.ndarray) and plain.ndim == 0 else plain
     if plain is np.ma.masked or type(plain).__name__ in _MISSING:
         return math.nan
-    if isinstance(plain, timedelta):
-        own, plain = "s", plain.total_seconds()
-    elif isinstance(plain, np.timedelta64):
-        own, plain = "s", _seconds(plain)
+    if isinstance(plain, timedelta | np.timedelta64):
+        own, plain = "s", plain.total_seconds() if isinstance(plain, timedelta) else _seconds(plain)
     if isinstance(plain, bool) or not isinstance(plain, Real):
         return None
     try:
         number = float(plain)
     except OverflowError:
         return math.inf
+    own = own or stated
     return from_text(f"{number!r} {own}", unit) if own not in ("", unit) and math.isfinite(number) else number
 
 
 def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
-    """Read an array of numbers.
+    """Read an array of numbers [SI], NaN where one is missing; a list may also hold texts, and numbers with units.
 
     Parameters
     ----------
     values : array_like
-        What the user gave; a list may also hold texts and numbers that carry units.
-    unit : str
-        The SI unit wanted, ``"1"`` for pure numbers.
-    stated : str, optional
-        Unit of numbers that carry none, such as that in a column's heading; SI without one.
-
-    Returns
-    -------
-    ndarray
-        [SI], of the shape of `values`; NaN where a number is missing.
+    unit, stated
+        As for `number_of`.
 
     Raises
     ------
@@ -107,20 +100,20 @@ def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
     if isinstance(plain, list | tuple) and not set(map(type, plain)) <= {int, float}:
         return np.array([_entry(cell, unit, own or stated, row) for row, cell in enumerate(plain, 1)])
     cells = np.asarray(plain)
-    kind = cells.dtype.kind
-    if kind in "OUST" and cells.ndim:
+    if cells.dtype.kind in "OUST" and cells.ndim:
         return numbers_of([*np.ma.asarray(plain)] if np.ma.isMA(plain) else [*cells], unit, own or stated)
-    if kind == "m":
+    if cells.dtype.kind == "m":
         cells, own = _seconds(cells), "s"
-    elif kind not in "fiu":
+    elif (kind := cells.dtype.kind) not in "fiu":
         raise ValueError(f"holds {_KINDS.get(kind, f'entries of type {type(plain).__name__}')}, no numbers")
     numbers: Floats = cells.astype(np.float64)
     if np.ma.isMA(plain):
         numbers[np.ma.getmaskarray(plain)] = np.nan
-    if (own := own or stated) not in ("", unit):
-        factor, offset = factor_and_offset(own, unit)
-        numbers = numbers * factor + offset if offset else numbers * factor
-    return numbers
+    if (own := own or stated) in ("", unit):
+        return numbers
+    zero = from_text(f"0 {own}", unit)
+    numbers *= from_text(f"1 {own}", unit, difference=True)
+    return numbers + zero if zero else numbers
 
 
 def _entry(cell: Any, unit: str, stated: str, row: int) -> Any:
@@ -132,14 +125,14 @@ def _entry(cell: Any, unit: str, stated: str, row: int) -> Any:
     if isinstance(cell, str):
         with suppress(ValueError):
             cell = float(cell)
+    why = ""
     try:
-        number = from_text(cell, unit) if isinstance(cell, str) else number_of(cell, unit)
+        number = from_text(cell, unit) if isinstance(cell, str) else number_of(cell, unit, stated)
     except ValueError as error:
-        raise ValueError(f"row {row} is {str(cell)[:40]!r}, no number ({error})") from None
+        number, why = None, f" ({error})"
     if number is None:
-        raise ValueError(f"row {row} is {str(cell)[:40]!r}, no number")
-    bare = isinstance(cell, Real) and not isinstance(cell, np.timedelta64)
-    return numbers_of(number, unit, stated) if bare else number
+        raise ValueError(f"row {row} is {str(cell)[:40]!r}, no number{why}")
+    return number
 
 
 def _seconds(duration: Any) -> Any:

@@ -16,7 +16,9 @@ from pydantic import BeforeValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from gearidae.errors import SceneError
 from gearidae.scene.carried import number_of
+from gearidae.scene.group import shorten
 from gearidae.scene.units import from_text
 
 
@@ -136,6 +138,13 @@ class Quantity(_Bounded):
         if not self.admits(number):
             raise ValueError(f"must {self._wanted()}")
         return number
+
+    def take(self, name: str, value: object) -> float:
+        """Read a setting of this name as `read` does; a `SceneError` says what is wrong with it."""
+        try:
+            return self.read(value)
+        except ValueError as error:
+            raise SceneError(name, shorten(value), str(error)) from None
 
     def allowed(self) -> str:
         """Return what may stand here, in words."""

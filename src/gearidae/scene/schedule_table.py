@@ -24,7 +24,6 @@ from gearidae.scene.carried import numbers_of
 from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
 from gearidae.scene.text_table import column_of, listed, split_unit
-from gearidae.scene.units import from_text
 
 _KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
 _SOURCES: Final = ("file", "data", "knots", "packed")
@@ -142,13 +141,12 @@ def _of_file(table: Mapping[str, Any], units: tuple[str, str]) -> list[Floats]:
     try:
         found = open_table(path, largest=_LARGEST, names=names, unit_row=True)
         wanted = _wanted(table, found.headings)
-        factors = [
-            _factor(name, split_unit(name)[1], unit) for (name, _), unit in zip(wanted, units, strict=True)
+        columns = found.numbers([place for _, place in wanted], most=MOST_KNOTS).T
+        return [
+            _numbers(name, cells, unit) for (name, _), cells, unit in zip(wanted, columns, units, strict=True)
         ]
-        numbers = found.numbers([place for _, place in wanted], most=MOST_KNOTS)
     except ValueError as error:
         raise ValueError(f"the file {path.name}: {error}") from None
-    return list((numbers * factors).T)
 
 
 def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, int]]:
@@ -183,11 +181,3 @@ def _numbers(name: str, column: Any, unit: str) -> Floats:
         row = int(np.isfinite(numbers).argmin())
         raise ValueError(f"{where}, row {row + 1} is {numbers[row]}, not a finite number")
     return numbers
-
-
-def _factor(name: str, own_unit: str, unit: str) -> float:
-    """Return how many `unit` the unit of a column of this name is; 1 without one."""
-    try:
-        return from_text(f"1 {own_unit}", unit) if own_unit else 1.0
-    except ValueError as error:
-        raise ValueError(f"column {name[:60]!r}: {error}") from None

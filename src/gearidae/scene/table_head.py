@@ -181,17 +181,13 @@ def _from_first_row(
 ) -> list[_Line]:
     """Find the first rows that hold numbers at some places; lines above a table may do so by chance."""
     for first in range(len(lines)):
-        rows = [line.text for line in lines[first : first + _ROWS_IN_TURN]]
-        between = _delimiter(rows) if delimiter is None else delimiter
-        point = _decimal(rows, between) if decimal is None else decimal
-        if all(_holds_numbers(_split(row, between), places, point) for row in rows):
+        texts = [line.text for line in lines[first : first + _ROWS_IN_TURN]]
+        between = _delimiter(texts) if delimiter is None else delimiter
+        point = _decimal(texts, between) if decimal is None else decimal
+        rows = [_split(text, between) for text in texts]
+        if all(as_number("".join(row[k : k + 1] or "?"), point) is not None for row in rows for k in places):
             return lines[first:]
-    wanted = " and ".join(str(place + 1) for place in places)
-    raise ValueError(f"has no rows with numbers in column {wanted}")
-
-
-def _holds_numbers(cells: list[str], places: Sequence[int], decimal: str) -> bool:
-    return len(cells) > max(places) and all(as_number(cells[place], decimal) is not None for place in places)
+    raise ValueError(f"has no rows with numbers in column {' and '.join(str(place + 1) for place in places)}")
 
 
 def _with_cells(headings: tuple[str, ...], row: list[str]) -> tuple[str, ...]:

@@ -89,20 +89,6 @@ def from_text(text: str, unit: str, *, difference: bool = False) -> float:
         raise ValueError("must be a finite number") from None
 
 
-def factor_and_offset(own_unit: str, unit: str) -> tuple[float, float]:
-    """Return how many `unit` one `own_unit` is, and where its zero is in `unit`.
-
-    Raises
-    ------
-    ValueError
-        If the units do not fit.
-    """
-    if not own_unit.strip():
-        return 1.0, 0.0
-    factor, zero = _scale(_plain(own_unit), unit, False)
-    return float(factor), float(zero)
-
-
 def refuse_bare(texts: Iterable[object]) -> None:
     """Refuse numbers without a unit beside others with one: a reader takes them for that unit, SI would be another.
 

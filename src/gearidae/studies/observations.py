@@ -67,7 +67,7 @@ class Observation:
                 raise SceneError(
                     "value", shorten(self.value), "must be True or False: whether the gear stuck"
                 )
-            object.__setattr__(self, "misjudged", _number("misjudged", self.misjudged, _SHARE))
+            object.__setattr__(self, "misjudged", _SHARE.take("misjudged", self.misjudged))
             return
         try:
             refuse_bare((self.value, self.uncertainty))
@@ -75,7 +75,7 @@ class Observation:
             raise SceneError("uncertainty", shorten(self.uncertainty), str(error)) from None
         for name in ("value", "uncertainty"):
             kind = Quantity(unit="Hz" if self.of == RING else "1")
-            object.__setattr__(self, name, _number(name, getattr(self, name), kind))
+            object.__setattr__(self, name, kind.take(name, getattr(self, name)))
         if not self.spread > 0.0:
             raise SceneError("uncertainty", self.spread, "must be above 0")
 
@@ -122,11 +122,3 @@ class Observation:
             squares = ((predicted - float(self.value)) / self.spread) ** 2
         found = -0.5 * squares - math.log(self.spread * math.sqrt(2.0 * math.pi))
         return np.where(np.isnan(found), -math.inf, found)
-
-
-def _number(name: str, given: Any, kind: Quantity) -> float:
-    """Read a number in SI; of a frequency or a share also one with a unit."""
-    try:
-        return kind.read(given)
-    except ValueError as error:
-        raise SceneError(name, shorten(given), str(error)) from None

@@ -132,10 +132,8 @@ def _is_of_another_program(path: Path) -> bool:
 
 def _row_width(line: str) -> int:
     """Count the numbers in a line; 0 if it holds anything else."""
-    cells = _BETWEEN.split(line.strip())
-    return (
-        len(cells) if all(as_number(cell, ".") is not None or cell.lower() == "bad" for cell in cells) else 0
-    )
+    cells = _BETWEEN.split(line.strip().lower())
+    return len(cells) * all(cell == "bad" or as_number(cell, ".") is not None for cell in cells)
 
 
 def _factor(unit: str) -> float:

@@ -71,32 +71,19 @@ def line_noise(heights: Floats, size: tuple[float, float]) -> tuple[float, float
 
 
 def repeated_lines(heights: Floats) -> int:
-    """Count the rows that equal another one point by point, or have one height throughout, as where a scan stops.
-
-    Parameters
-    ----------
-    heights : ndarray, shape (rows, columns)
-        As they were measured [m]; NaN where there is none. Rows without any are holes.
-    """
+    """Count rows [m] that equal another one, or have one height throughout, as where a scan stops; NaN is a hole."""
     rows = heights[~np.isnan(heights).all(axis=1)]
     relief = rows[np.nanmin(rows, axis=1) < np.nanmax(rows, axis=1)]
     return len(rows) - len({row.tobytes() for row in relief})
 
 
 def streaks(heights: Floats) -> int:
-    """Count the rows with a stretch that stands above, or below, both neighbouring rows: scars of a scan.
-
-    Parameters
-    ----------
-    heights : ndarray, shape (rows, columns)
-        [m]; NaN where there is none.
-    """
+    """Count rows [m] with a stretch that stands above, or below, both neighbouring rows: scars of a scan."""
     steps = np.diff(heights, axis=0)
     least = _OUTSTANDING * float(np.nanmedian(np.abs(steps)))
-    above = np.minimum(steps[:-1], -steps[1:]) > least
-    below = np.maximum(steps[:-1], -steps[1:]) < -least
-    found = [ndimage.binary_erosion(out, np.ones((1, _STRETCH))).any(axis=1) for out in (above, below)]
-    return int((found[0] | found[1]).sum())
+    above, below = (np.minimum(sign * steps[:-1], -sign * steps[1:]) > least for sign in (1.0, -1.0))
+    long = [ndimage.binary_erosion(out, np.ones((1, _STRETCH))).any(axis=1) for out in (above, below)]
+    return int((long[0] | long[1]).sum())
 
 
 def _medians(heights: Floats) -> Floats:
