@@ -98,7 +98,7 @@ def test_a_gap_in_the_record_is_named(chart, record):
 def test_settings_are_those_of_assess(chart):
     with pytest.raises(gd.SceneError, match="history = perhaps"):
         OnlineAssessment(chart, history="perhaps")
-    with pytest.raises(gd.SceneError, match="must be a frequency"):
+    with pytest.raises(gd.SceneError, match="anti_alias_filter"):
         OnlineAssessment(chart, anti_alias_filter=0.0)
     with pytest.raises(gd.SceneError, match="must be a Dataset"):
         OnlineAssessment("map.nc")
