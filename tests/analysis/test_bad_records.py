@@ -181,3 +181,37 @@ def test_a_part_of_the_table(maps):
             clear += row.clear
     # the verdict must not be safe by never being clear: half of what is above the map and turns is
     assert clear >= 0.4 * 2 * 6 * len(REDUCED)
+
+
+@pytest.mark.parametrize("title", TITLES)
+@pytest.mark.parametrize(
+    ("factor", "size"), [(-2.0, 1), (-2.0, 2), (40.0, 1), (0.5, 1)], ids=["back", "two", "spike", "missed"]
+)
+def test_a_spike_is_named_by_its_sample(factor, size, title, maps, speeds):
+    """Once the gear was said to turn back, or a clear verdict was wrong: 0.753 to 0.766."""
+    signal = record(speeds["auto", 1.0, 0.78])
+    assert assess(signal, maps[title]).conclusive
+    for place in (4000, 11111, 17000):
+        spoilt = signal.copy()
+        spoilt[place : place + size] = factor * float(spoilt.median())
+        found = assess(spoilt, maps[title])
+        assert found.verdict == "does not fit"
+        assert f"sample {place} (" in found.explanation
+        frame = (
+            spoilt.where(spoilt != spoilt[place])
+            .to_series()
+            .rename("gear_speed [rad/s]")
+            .rename_axis("time [s]")
+        )
+        bridged = assess(frame.to_frame(), maps[title], bridge=2)
+        assert bridged.conclusive
+        assert bridged.low < 0.78 < bridged.high
+
+
+def test_no_clean_record_has_a_lone_sample(speeds):
+    from gearidae.analysis.doubts import lone_samples
+    from gearidae.analysis.signal import signals
+
+    for speed in speeds.values():
+        for rate in (100e3, 50e3, 25e3, 10e3):
+            assert lone_samples(signals(record(speed, rate), gear_teeth=76).signals[0]) == []

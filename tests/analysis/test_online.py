@@ -98,7 +98,16 @@ def test_a_gap_in_the_record_is_named(chart, record):
 def test_settings_are_those_of_assess(chart):
     with pytest.raises(gd.SceneError, match="history = perhaps"):
         OnlineAssessment(chart, history="perhaps")
-    with pytest.raises(gd.SceneError, match="must be a frequency"):
+    with pytest.raises(gd.SceneError, match="anti_alias_filter"):
         OnlineAssessment(chart, anti_alias_filter=0.0)
     with pytest.raises(gd.SceneError, match="must be a Dataset"):
         OnlineAssessment("map.nc")
+
+
+@pytest.mark.parametrize(
+    "speed",
+    [np.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0]), np.array([True, False, True]), np.array([1j, 2, 3])],
+)
+def test_what_is_no_speed_is_refused(speed, chart):
+    with pytest.raises(gd.SceneError, match="speed"):
+        OnlineAssessment(chart).feed([0.0, 1e-5, 2e-5], speed)

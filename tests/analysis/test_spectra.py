@@ -94,7 +94,7 @@ def gap_in_time():
         (signal(np.ones(100)).drop_vars("time"), {}, "lacks the dimension time"),
         (signal(np.ones(100)).to_dataset(), {"variable": "pinion_speed"}, "there is gear_speed"),
         (signal(np.ones(100), units="Hz"), {}, "does not fit"),
-        (signal(np.full(100, "a")), {}, "must be numbers"),
+        (signal(np.full(100, "a")), {}, "no number"),
         (gap_in_time(), {}, "off the uniform grid"),
         (np.ones(100), {}, "must be an xarray Dataset or DataArray"),
     ],

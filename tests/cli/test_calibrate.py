@@ -125,6 +125,19 @@ def test_numbers_with_uncertainties_and_conditions_reach_the_observation(folder)
     assert (rung.of, rung.value, rung.spread) == ("ring_frequency", 5200.0, 100.0)
     assert rung.conditions == {"mesh.backlash": "0.2 um", "drive.torque": 5e-18}
     assert _observation("min_gear_speed=1.5+-0.1").value == 1.5
+    assert _observation("sticks=TRUE; misjudged=5 %") == Observation(value=True, misjudged=0.05)
+
+
+def test_cells_of_a_spreadsheet(tmp_path):
+    """Excel writes TRUE; a frequency in kilohertz beside an uncertainty without a unit is refused."""
+    path = tmp_path / "seen.csv"
+    path.write_text("of,value,uncertainty,misjudged\nsticks,TRUE,,5 %\nring_frequency,1.87 kHz,10 Hz,\n")
+    stuck, rung = gd.studies.read_observations(path)
+    assert (stuck.value, stuck.misjudged) == (True, 0.05)
+    assert (rung.value, rung.spread) == (1870.0, 10.0)
+    path.write_text("of,value,uncertainty\nring_frequency,1.87,0.01 kHz\n")
+    with pytest.raises(gd.SceneError, match=r"observation 1 of .*1\.87 has no unit beside 0\.01 kHz"):
+        gd.studies.read_observations(path)
 
 
 @pytest.mark.parametrize(
@@ -136,7 +149,9 @@ def test_numbers_with_uncertainties_and_conditions_reach_the_observation(folder)
         (["--seen", "ring_frequency=5 kHz"], "--seen uncertainty"),
         (["--seen", "sticks=true; misjugded=0.1"], "did you mean misjudged?"),
         (["--seen", "sticks=true; drive.torqe=1"], "drive.torque"),
-        (["--seen", "stiks=true"], "finite number"),
+        (["--seen", "stiks=true"], "must be a number"),
+        (["--seen", "ring_frequency=1.87 +- 0.01 kHz"], "1.87 has no unit beside 0.01 kHz"),
+        (["--seen", "ring_frequency=1.87 kHz +- 0.01"], "0.01 has no unit beside 1.87 kHz"),
         (["--seen", "min_gear_sped=1 +- 1"], "did you mean min_gear_speed?"),
         (["--seen", "sticks=true; coating.sam_fraction=0.5"], "cannot be a condition too"),
         (["--observations", "none.csv"], "cannot be read"),

@@ -118,3 +118,9 @@ def test_several_pairs_after_one_option(given, spread_out):
 @pytest.mark.parametrize("case", ["cases/low_speed.toml", "low_speed", "../a/low_speed.toml"])
 def test_results_are_named_after_their_case(case):
     assert default_output(case, ".nc") == Path("low_speed.nc")
+
+
+@pytest.mark.parametrize("text", ["4.4 aN m,4.6", "4.4e-18,4.6 aN m", "[4.4e-18, '4.6 aN m']"])
+def test_swept_values_have_units_all_or_none(text):
+    with pytest.raises(SceneError, match="has no unit beside"):
+        sweep_values([f"drive.torque={text}"])

@@ -75,3 +75,17 @@ def test_planes_that_nothing_holds_apart_are_refused():
     with pytest.raises(gd.SceneError, match="hamaker"):
         adhesion_energy(BARE, -1e-20)
     assert adhesion_energy(BARE, 0.0, "hertz") == 0.0
+
+
+@pytest.mark.parametrize(("roughness", "hamaker"), [(0.5e-9, 1e-19), (1e-9, 1e-19), (1e-9, 4e-19)])
+def test_rough_planes_take_no_more_than_smooth_ones(roughness, hamaker):
+    """What smooth planes take at the closest spacing of atoms; once 1.7 to 20 J/m^2."""
+    surface = BARE.model_copy(update={"roughness": roughness})
+    with pytest.warns(UserWarning, match=r"asperities.* dominate.*smooth planes"):
+        found = adhesion_energy(surface, hamaker)
+    assert found == pytest.approx(2 * surface.energy + hamaker / (12 * math.pi * FLOOR**2), rel=1e-12, abs=0)
+
+
+def test_the_bound_of_smooth_planes_is_the_usual_one_below_it():
+    surface = BARE.model_copy(update={"roughness": 3e-9})
+    assert adhesion_energy(surface, 4e-19) < 2 * surface.energy

@@ -188,3 +188,12 @@ def test_knots_equal_plain_tuples_only_if_linear():
     assert Knots(SI, "cubic") != SI
     assert hash(Knots(SI, "cubic")) == hash(SI)
     assert Knots((), "cubic") == ()
+
+
+@pytest.mark.parametrize(
+    "knots",
+    [[["0 ms", "1 pN m"], [5, "2 pN m"]], [[0, "1 pN m"], ["5 ms", 2]], [[0, 1e-18], ["5 ms", 0], [6, 0]]],
+)
+def test_a_bare_number_beside_a_unit_is_refused(knots):
+    with pytest.raises(SceneError, match=r"drive\.schedule.*has no unit beside"):
+        schedule(knots)

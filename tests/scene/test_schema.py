@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -104,3 +106,31 @@ def test_presets_name_known_keys_only():
         for table, content in gd.preset(name).to_dict().items():
             if isinstance(content, dict):
                 assert set(content) <= set(resolve(at(table))["properties"])
+
+
+@pytest.fixture(scope="module")
+def validator():
+    return pytest.importorskip("jsonschema").Draft202012Validator(SCHEMA)
+
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda path: path.stem)
+def test_every_shipped_case_is_valid(case, validator):
+    assert not list(validator.iter_errors(tomllib.loads(case.read_text())))
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_every_preset_is_valid(name, validator):
+    assert not list(validator.iter_errors(tomllib.loads(dump_case(gd.preset(name)))))
+
+
+@pytest.mark.parametrize("key", ["drive.speed", "drive.schedule", "load.schedule"])
+def test_schedules_are_pairs_or_a_table(key, validator):
+    table, _, name = key.partition(".")
+    case = tomllib.loads(dump_case(gd.preset("teodorescu2009_low_speed")))
+    for given in ([[0, 1], ["5 ms", 2]], {"file": "x.csv", "time": "t [s]"}, {"knots": [[0, 1]]}):
+        assert validator.is_valid({**case, table: {**case.get(table, {}), name: given}})
+    for wrong in ([[0, 1, 2]], [[True, 1]], True):
+        assert not validator.is_valid({**case, table: {**case.get(table, {}), name: wrong}})

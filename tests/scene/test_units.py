@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.scene.units import from_text
+from gearidae.scene.units import from_text, refuse_bare
 
 
 @pytest.mark.parametrize(
@@ -156,3 +156,29 @@ def test_pint_is_loaded_only_for_texts() -> None:
         "assert 'pint' in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+
+
+@pytest.mark.parametrize(
+    "unit", ["count", "counts", "kcount", "%", "percent", "ppm", "bit", "byte", "permille"]
+)
+def test_counts_and_parts_are_no_angles(unit: str) -> None:
+    for text, wanted in ((f"25 {unit}/s", "rad/s"), (f"25 {unit}", "rad"), (f"1 N m s/{unit}", "N m s/rad")):
+        with pytest.raises(ValueError, match="does not fit"):
+            from_text(text, wanted)
+    assert from_text("25 count/s", "Hz") == 25.0
+    assert from_text("169 count/um^2", "1/m^2") == 1.69e14
+
+
+@pytest.mark.parametrize(
+    "texts", [("1", "2 nm"), ("2 nm", 1.0), ("-1e-9", "2nm", "3"), ("0", "25 degC"), ("0.5", "60 %")]
+)
+def test_a_bare_number_beside_a_unit_is_refused(texts: tuple[object, ...]) -> None:
+    with pytest.raises(ValueError, match="has no unit beside"):
+        refuse_bare(texts)
+
+
+@pytest.mark.parametrize(
+    "texts", [("1", 2.0), ("1 nm", "2 um"), (0, "0.0", "2 nm"), ("a", None, True, "1 nm")]
+)
+def test_numbers_that_are_alike_are_left_alone(texts: tuple[object, ...]) -> None:
+    refuse_bare(texts)

@@ -22,7 +22,7 @@ def of_functions(*frozen):
     ("text", "frozen"),
     [
         ("normal(450 nm, 50 nm)", stats.norm(450e-9, 50e-9)),
-        ("Normal( 0.45um,5e-8 )", stats.norm(450e-9, 50e-9)),
+        ("Normal( 0.45um,50nm )", stats.norm(450e-9, 50e-9)),
         ("uniform(400 nm, 0.5 um)", stats.uniform(400e-9, 100e-9)),
         ("lognormal(450 nm, 1.2)", stats.lognorm(np.log(1.2), scale=450e-9)),
         ("truncnormal(450 nm, 50 nm, 400 nm, 600 nm)", stats.truncnorm(-1.0, 3.0, 450e-9, 50e-9)),
@@ -62,6 +62,14 @@ def test_a_lognormal_has_two_thirds_within_its_geometric_deviation():
     ("key", "given", "words"),
     [
         ("surface.asperity_radius", "normal(450 nm, 50 J)", "standard deviation"),
+        ("surface.asperity_radius", "normal(450 nm, 5e-8)", "5e-8 has no unit beside 450 nm"),
+        ("drive.torque", "uniform(4.4 aN m, 4.6)", "4.6 has no unit beside 4.4 aN m"),
+        (
+            "drive.torque",
+            "truncnormal(4.5e-18, 0.1 aN m, 4 aN m, 5 aN m)",
+            "4.5e-18 has no unit beside 0.1 aN m",
+        ),
+        ("coating.sam_fraction", "uniform(0.5, 60 %)", "0.5 has no unit beside 60 %"),
         ("surface.asperity_radius", "normal(450 nm)", "2 values, not 1"),
         ("surface.asperity_radius", "normal(450 nm, -1 nm)", "above 0"),
         ("surface.asperity_radius", "normal(nan, 1 nm)", "standard deviation"),

@@ -234,7 +234,7 @@ def test_maps_that_are_not_square(heights):
     ("change", "message"),
     [
         ({"size": "4 kg"}, "does not fit"),
-        ({"size": -1.0}, "must be a length"),
+        ({"size": -1.0}, "must lie in 1e-12..1 m"),
         ({"size": (1e-6, 1e-6, 1e-6)}, "one length or two"),
         ({"cutoff": "1 nm"}, "two points of the map"),
         ({"cutoff": "1 um"}, "an eighth"),

@@ -19,6 +19,7 @@ from gearidae.analysis.assessment_table import assessment_table
 from gearidae.analysis.assessment_words import (
     calibration_words,
     listed,
+    lone_words,
     misfit,
     other_speed,
     silence,
@@ -69,8 +70,8 @@ class Assessment:
         - ``ambiguous``: quite different fractions do; `low` and `high` are the ends of what is possible.
         - ``no impacts``: nothing rings above the noise.
         - ``outside the map``: it rings lower or higher than anything in the map.
-        - ``does not fit``: no fraction of the map explains it, what stands out is no response to the impacts, or the
-          gear turns at another speed than in the map.
+        - ``does not fit``: no fraction of the map explains it, what stands out is no response to the impacts, a sample
+          is a spike, or the gear turns at another speed than in the map.
         - ``gear stops``: it stops, turns back, or turns more slowly than in any run of the map.
         - ``rounded too coarsely``: the ringing is smaller than the step to which the speed is rounded.
         - ``sampled too slowly``: what shows could be the image of faster ringing.
@@ -122,7 +123,7 @@ def assess(
     map: xr.Dataset,  # noqa: A002 - what it is called in the field, and in the command line
     *,
     history: str = "auto",
-    anti_alias_filter: float | None = None,
+    anti_alias_filter: float | str | None = None,
     calibration: float | str = CALIBRATION,
     offset: float | str = 0.0,
     **reading: Unpack[Reading],
@@ -139,15 +140,15 @@ def assess(
     history : {'auto', 'start', 'unknown'}, optional
         Whether the record begins with the start that the map was made for. ``auto`` supposes so if the first
         impact comes when the map's does, unless that does not explain the signal.
-    anti_alias_filter : float, optional
-        Cut-off frequency of a low-pass filter before the sampling [Hz]. Without it, ringing above half the sampling
-        rate may be in the record, at another frequency than its own.
+    anti_alias_filter : float or str, optional
+        Cut-off frequency of a low-pass filter before the sampling [Hz], or ``"4 kHz"``. Without it, ringing above half
+        the sampling rate may be in the record, at another frequency than its own.
     calibration : float or str, optional
         Relative standard uncertainty of the measured speed [1], or ``"4 %"``; at most 10 %.
     offset : float or str, optional
         Standard uncertainty of the sensor's zero [rad/s], or with a unit.
     **reading
-        ``columns``, ``skip``, ``delimiter``, ``decimal`` and ``bridge``, as for `read_signal`.
+        ``columns``, ``skip``, ``delimiter``, ``decimal``, ``bridge`` and ``interval``, as for `read_signal`.
 
     Returns
     -------
@@ -188,6 +189,8 @@ def judge(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
     speed = signal.forward()
     speed = replace(speed, calibration=sensor.uncertainty(float(np.median(speed.values))))
     found = _judged(speed, model, sensor)
+    if alone := doubts.lone_samples(speed):
+        return _without_answer(found, "does not fit", lone_words(speed, alone))
     if found.verdict != "gear stops":
         found = _calibrated(found, speed, model)
     if speed.values is signal.values:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from gearidae.analysis.fitting import SPEED_RANGE, Fit, RingSet
 from gearidae.analysis.map_model import BEFORE, MapModel
 from gearidae.analysis.ringing import Ring
+from gearidae.analysis.signal import Signal
 from gearidae.arrays import Floats
 
 
@@ -113,3 +115,14 @@ def listed(frequencies: Floats) -> str:
     """Show the first frequencies [Hz]."""
     text = ", ".join(f"{value:.4g}" for value in frequencies[:5])
     return text + (" ..." if len(frequencies) > 5 else "")
+
+
+def lone_words(signal: Signal, alone: Sequence[int]) -> str:
+    """Name a sample that is a spike."""
+    first, values = alone[0], signal.values
+    more = f" and {len(alone) - 1} more" if len(alone) > 1 else ""
+    return (
+        f"sample {first} ({signal.time[first]:.9g} s){more} is {values[first]:.4g} rad/s beside "
+        f"{values[max(first - 1, 0)]:.4g} rad/s: a spike or a missed pulse, no motion of the gear; leave such cells "
+        "empty and bridge them (bridge=2, --bridge 2)"
+    )

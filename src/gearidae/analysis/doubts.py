@@ -49,6 +49,9 @@ _OTHER_SPEED = 2.0
 another torque."""
 _SURE = 0.005
 """Relative standard uncertainty of that difference at least."""
+_LONE, _AGREEING, _MOST_ALONE, _NEIGHBOURS = 0.4, 0.2, 2, 9
+"""Up to two samples are alone if they are off the median of nine by this part of the usual speed, and those beside them
+by less than a fifth of that: a missed pulse halves the speed, ringing goes on for many samples."""
 _FADED = 0.5
 """A ring falls below this part of its amplitude before the next impact; in all runs of the preset, to a hundredth."""
 
@@ -78,6 +81,21 @@ def unsteadiness(signal: Signal) -> float:
     first = float(np.median(signal.values[: int(early) + 1]))
     last = float(np.median(signal.values[int(late) :]))
     return abs(first - last) / (0.5 * (first + last)) if first + last > 0.0 else 0.0
+
+
+def lone_samples(signal: Signal) -> list[int]:
+    """Find the first of one or two samples that are far off between others that agree: spikes and missed pulses."""
+    usual = scipy.ndimage.median_filter(signal.values, _NEIGHBOURS, mode="nearest")
+    off = np.abs(signal.values - usual)
+    edges = np.flatnonzero(
+        np.diff(off > _LONE * np.abs(np.median(signal.values)), prepend=False, append=False)
+    )
+    return [
+        int(start)
+        for start, end in zip(edges[::2], edges[1::2], strict=True)
+        if end - start <= _MOST_ALONE
+        and max(off[max(start - 1, 0)], off[min(end, len(off) - 1)]) < _AGREEING * off[start:end].max()
+    ]
 
 
 def stop(signal: Signal, model: MapModel) -> str:

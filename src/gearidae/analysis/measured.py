@@ -11,20 +11,22 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.record_columns import Column, find_columns, has_columns
+from gearidae.analysis.record_columns import Column, Wanted, find_columns, has_columns, numbered_places
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.library import loaded
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.scene.carried import numbers_of
 from gearidae.scene.group import shorten
+from gearidae.scene.quantity import Quantity
 from gearidae.scene.table_head import open_table
-from gearidae.scene.text_table import check_regular
+from gearidae.scene.text_table import check_regular, split_unit
 
 if TYPE_CHECKING:
     import pandas as pd
 
 _SI = {"time": "s", "gear_speed": "rad s-1"}
-_SETTINGS = ("columns", "skip", "delimiter", "decimal", "bridge")
+_SETTINGS = ("columns", "skip", "delimiter", "decimal", "bridge", "interval")
 _DELIMITERS = {
     "tab": "\t",
     "tabs": "\t",
@@ -35,6 +37,7 @@ _DELIMITERS = {
     "blanks": "",
     " ": "",
 }
+_STEP = Quantity(unit="s", above=0.0)
 _LARGEST = 2**30
 """Files larger than this [bytes] are refused: a record of a minute at 100 kHz has a tenth of it."""
 
@@ -47,6 +50,7 @@ class Reading(TypedDict, total=False):
     delimiter: str | None
     decimal: str | None
     bridge: int
+    interval: float | str | None
 
 
 def read_signal(
@@ -57,6 +61,7 @@ def read_signal(
     delimiter: str | None = None,
     decimal: str | None = None,
     bridge: int = 0,
+    interval: float | str | None = None,
 ) -> xr.Dataset:
     """Read a record of the gear's speed.
 
@@ -68,9 +73,10 @@ def read_signal(
         ``units``. In text, the headings may stand below other lines, their units in the line below them, or both in a
         remark (after ``#``) as ``numpy.savetxt`` writes them. Other columns are ignored.
     columns : pair of str, optional
-        Headings of time and speed, with the units where the headings have none; variables of a netCDF file. By default
-        the columns called ``time`` (or ``t``) and ``gear_speed`` (or ``speed``), or else the only ones with a unit of
-        time and of angular speed.
+        Headings of time and speed, with the units where the headings have none, or their numbers from 1 with the units
+        (``"1 [s]"``, ``"2 [rad/s]"``), for which no headings are needed; variables of a netCDF file. With `interval`
+        that of the speed is enough. By default the columns called ``time`` (or ``t``) and ``gear_speed`` (or
+        ``speed``), or else the only ones with a unit of time and of angular speed.
     skip : int, optional
         Lines above that of the headings, which is recognised by the columns otherwise.
     delimiter : str, optional
@@ -80,6 +86,9 @@ def read_signal(
     bridge : int, optional
         Missing samples in a row that are interpolated. A longer gap is an error; what is missing at the end is not part
         of the record.
+    interval : float or str, optional
+        Time between samples [s], or with a unit (``"10 us"``), of a table: no column of time is needed, and none is
+        read.
 
     Returns
     -------
@@ -95,15 +104,16 @@ def read_signal(
     table = {"skip": skip, "delimiter": delimiter, "decimal": decimal}
     name = signal if isinstance(signal, str | os.PathLike) else type(signal).__name__
     try:
-        wanted, most = _checked(columns, bridge), int(bridge)
+        step = None if interval is None else _STEP.take("interval", interval)
+        wanted, most = _checked(columns, bridge, timed=step is None), int(bridge)
         if not isinstance(signal, str | os.PathLike):
             _refuse(table, "a DataFrame")
-            ds = _from_frame(signal, wanted)
+            ds = _from_frame(signal, wanted, step)
         elif _is_netcdf(Path(signal)):
-            _refuse(table, "a netCDF file")
+            _refuse({**table, "interval": interval}, "a netCDF file")
             ds = _from_netcdf(Path(signal), wanted)
         else:
-            ds = _from_text(Path(signal), wanted, table)
+            ds = _from_text(Path(signal), wanted, table, step)
         ds = _bridged(ds, most)
         signals(ds)  # refuses an uneven time and the like while the file can be named
     except SceneError as error:
@@ -115,17 +125,20 @@ def read_signal(
     return ds
 
 
-def _checked(columns: Sequence[str] | None, bridge: int) -> tuple[str, str] | None:
-    """Refuse settings that are none."""
+def _checked(columns: Sequence[str] | None, bridge: int, *, timed: bool) -> dict[str, str | None]:
+    """Refuse settings that are none; return what columns are wanted."""
     if isinstance(bridge, bool) or not isinstance(bridge, Integral) or bridge < 0:
         raise SceneError("bridge", shorten(bridge), "must be a whole number of samples, 0 or more")
-    if columns is None:
-        return None
-    if isinstance(columns, str) or len(columns) != 2 or not all(isinstance(name, str) for name in columns):
+    wanted: dict[str, str | None] = dict.fromkeys(_SI if timed else ("gear_speed",))
+    names = [columns] if isinstance(columns, str) and not timed else columns
+    if names is None:
+        return wanted
+    if isinstance(names, str) or not len(wanted) <= len(names) <= 2 or set(map(type, names)) != {str}:
+        both = "" if timed else ", or that of the speed alone"
         raise SceneError(
-            "columns", shorten(columns), "must be two headings, that of the time and that of the speed"
+            "columns", shorten(columns), f"must be two headings, that of the time and that of the speed{both}"
         )
-    return columns[0].strip(), columns[1].strip()
+    return dict(zip(wanted, [name.strip() for name in names[-len(wanted) :]], strict=True))
 
 
 def _refuse(table: Mapping[str, object], what: str) -> None:
@@ -140,12 +153,13 @@ def _is_netcdf(source: Path) -> bool:
         return file.read(8).startswith((b"\x89HDF\r\n\x1a\n", b"CDF"))
 
 
-def _from_netcdf(source: Path, wanted: tuple[str, str] | None) -> xr.Dataset:
+def _from_netcdf(source: Path, wanted: Wanted) -> xr.Dataset:
     try:
         ds = loaded(source)
     except Exception as error:
         raise ValueError(f"is damaged or not a netCDF file ({error})") from error
-    for name, asked in zip(_SI, wanted or _SI, strict=True):
+    for name, given in wanted.items():
+        asked = given or name
         if asked not in ds.variables:
             raise ValueError(f"lacks the variable {asked}")
         ds = ds if asked == name else ds.rename({asked: name})
@@ -163,20 +177,21 @@ def _from_netcdf(source: Path, wanted: tuple[str, str] | None) -> xr.Dataset:
     return ds.assign_coords({"time": in_si.pop("time")} if "time" in in_si else {}).assign(in_si)
 
 
-def _from_frame(frame: Any, wanted: tuple[str, str] | None) -> xr.Dataset:
+def _from_frame(frame: Any, wanted: Wanted, step: float | None) -> xr.Dataset:
     if not (hasattr(frame, "columns") and hasattr(frame, "reset_index")):
         raise ValueError("must be a file, a DataFrame, a Dataset or a DataArray")
-    if frame.index.name is not None:
-        frame = frame.reset_index()
-    found = find_columns([str(name) for name in frame.columns], wanted)
-    try:
-        columns = [frame.iloc[:, each.place].to_numpy(np.float64, na_value=np.nan) for each in found]
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"must hold numbers ({error})") from None
-    return _dataset(columns, found, ())
+    if frame.index.name is not None or frame.index.dtype.kind == "m":
+        frame = frame.rename_axis(frame.index.name or "time").reset_index()
+    kinds = [dtype.kind for dtype in frame.dtypes]
+    names = [
+        f"{name} [s]" if kind == "m" and not split_unit(str(name))[1] else str(name)
+        for name, kind in zip(frame.columns, kinds, strict=True)
+    ]
+    found = find_columns(names, wanted)
+    return _dataset([frame.iloc[:, each.place] for each in found], found, (), step)
 
 
-def _from_text(source: Path, wanted: tuple[str, str] | None, given: Mapping[str, Any]) -> xr.Dataset:
+def _from_text(source: Path, wanted: Wanted, given: Mapping[str, Any], step: float | None) -> xr.Dataset:
     table = open_table(
         source,
         largest=_LARGEST,
@@ -185,22 +200,31 @@ def _from_text(source: Path, wanted: tuple[str, str] | None, given: Mapping[str,
         decimal=_decimal(given["decimal"]),
         skip=_lines(given["skip"]),
         unit_row=True,
+        places=numbered_places(wanted),
     )
     found = find_columns(table.headings, wanted)
     numbers = table.numbers([each.place for each in found], holes=True)
-    return _dataset(list(numbers.T), found, table.recognised)
+    return _dataset(list(numbers.T), found, table.recognised, step)
 
 
-def _dataset(columns: Sequence[Floats], found: Sequence[Column], said: Sequence[str]) -> xr.Dataset:
+def _dataset(
+    columns: Sequence[Any], found: Sequence[Column], said: Sequence[str], step: float | None
+) -> xr.Dataset:
     """Put columns into SI units; say which they are where their names do not."""
-    time, speed = (
-        to_si(xr.DataArray(values, attrs={"units": each.unit}), unit, each.heading)
-        for values, each, unit in zip(columns, found, _SI.values(), strict=True)
-    )
+    read = {}
+    for values, each in zip(columns, found, strict=True):
+        try:
+            read[each.meaning] = numbers_of(
+                values, "rad/s" if each.meaning == "gear_speed" else "s", each.unit
+            )
+        except ValueError as error:
+            raise ValueError(f"column {each.heading!r}: {error}") from None
+    if step is not None:
+        read["time"] = step * np.arange(len(read["gear_speed"]), dtype=np.float64)
     said = [*said, *(f"{each.heading!r} taken for the {each.meaning}" for each in found if each.recognised)]
     return xr.Dataset(
-        {"gear_speed": ("time", speed, {"units": _SI["gear_speed"]})},
-        coords={"time": ("time", time, {"units": "s"})},
+        {"gear_speed": ("time", read["gear_speed"], {"units": _SI["gear_speed"]})},
+        coords={"time": ("time", read["time"], {"units": "s"})},
         attrs={"reading": ", ".join(said)},
     )
 

@@ -14,6 +14,7 @@ from gearidae.analysis.sensor import check_sensor
 from gearidae.analysis.signal import CALIBRATION, FEWEST_SAMPLES, Signal, signals
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.scene.carried import numbers_of
 
 _NOTHING = Assessment(math.nan, math.nan, math.nan, "no impacts", "no record yet", (), "unknown")
 
@@ -51,7 +52,7 @@ class OnlineAssessment:
         map: xr.Dataset,  # noqa: A002 - as in assess
         *,
         history: str = "auto",
-        anti_alias_filter: float | None = None,
+        anti_alias_filter: float | str | None = None,
         calibration: float | str = CALIBRATION,
         offset: float | str = 0.0,
     ) -> None:
@@ -99,7 +100,7 @@ class OnlineAssessment:
         SceneError
             If the samples are no finite numbers of one shape, or not later than those before.
         """
-        times, speeds = _column("time", time), _column("speed", speed)
+        times, speeds = _column("time", time, "s"), _column("speed", speed, "rad/s")
         if times.shape != speeds.shape:
             raise SceneError("speed", f"({len(speeds)} samples)", f"must be as many as times, {len(times)}")
         if not len(times):
@@ -138,12 +139,12 @@ class OnlineAssessment:
         return signals(array, gear_teeth=self._model.gear_teeth).signals[0]
 
 
-def _column(name: str, values: ArrayLike) -> Floats:
-    """Samples as a vector of finite numbers."""
+def _column(name: str, values: ArrayLike, unit: str) -> Floats:
+    """Samples as a vector of finite numbers [SI]."""
     try:
-        column = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise SceneError(name, type(values).__name__, "must be a list of numbers") from None
+        column = np.atleast_1d(numbers_of(values, unit))
+    except (TypeError, ValueError) as error:
+        raise SceneError(name, type(values).__name__, f"must be a list of numbers: {error}") from None
     if column.ndim != 1 or not np.isfinite(column).all():
         raise SceneError(name, f"(shape {column.shape})", "must be a list of finite numbers")
     return column

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
 from gearidae.scene.text_table import column_of, listed, split_unit
@@ -12,7 +12,14 @@ _NAMES: Final = {"time": ("time", "t"), "gear_speed": ("gear_speed", "speed")}
 _UNITS: Final = {"time": "s", "gear_speed": "rad/s"}
 _TURNS: Final = ("u/min", "upm", "rev/min", "r/min", "tr/min")
 """Revolutions per minute as sensors' programs write them."""
-_EXAMPLE: Final = "name them (columns=..., --columns), or head them such as: time [s], gear_speed [rad/s]"
+_EXAMPLE: Final = (
+    "name them, or their numbers with units (columns=..., --columns '1 [s]' '2 [rad/s]'), or head them such as: "
+    "time [s], gear_speed [rad/s]"
+)
+_UNTIMED: Final = "; without times, give their distance (interval=..., --interval)"
+_LONGEST_NUMBER: Final = 6
+Wanted = Mapping[str, str | None]
+"""Columns that are looked for by their meanings: their headings or numbers, None where they are recognised."""
 
 
 class Column(NamedTuple):
@@ -33,47 +40,72 @@ class Column(NamedTuple):
     recognised: bool = False
 
 
-def has_columns(headings: Sequence[str], wanted: tuple[str, str] | None) -> bool:
-    """Whether texts are headings of a table with a time and a speed."""
-    if wanted is not None:
-        return all(column_of(headings, name) is not None for name in wanted)
-    named = [_named(headings, meaning) for meaning in _NAMES]
-    return all(named) or all(len(_measured(headings, meaning)) == 1 for meaning in _NAMES)
+def has_columns(headings: Sequence[str], wanted: Wanted) -> bool:
+    """Whether texts are headings of a table with the wanted columns."""
+    asked = [name for name in wanted.values() if name is not None]
+    if asked:
+        return all(_place_of(headings, name) is not None for name in asked)
+    named = [_named(headings, meaning) for meaning in wanted]
+    return all(named) or all(len(_measured(headings, meaning)) == 1 for meaning in wanted)
 
 
-def find_columns(headings: Sequence[str], wanted: tuple[str, str] | None) -> tuple[Column, Column]:
-    """Find the columns of time and speed.
+def numbered_places(wanted: Wanted) -> list[int] | None:
+    """Return the places of columns that are all given by their numbers; else None."""
+    numbers = [None if name is None else _number(name) for name in wanted.values()]
+    return None if None in numbers else [number - 1 for number in numbers if number is not None]
+
+
+def find_columns(headings: Sequence[str], wanted: Wanted) -> tuple[Column, ...]:
+    """Find the wanted columns.
 
     Parameters
     ----------
-    wanted : pair of str or None
-        Headings of both, with their units where the headings of the table have none.
+    wanted : mapping of str to str or None
+        ``time`` and ``gear_speed`` or the latter alone; the heading of each, or its number from 1, with the unit where
+        the heading of the table has none. None where it is to be recognised.
 
     Returns
     -------
     tuple of Column
-        Time and speed.
 
     Raises
     ------
     ValueError
         If one of them is not found, is there twice, or states no unit.
     """
-    time, speed = (
-        _given(headings, meaning, name) if name is not None else _recognised(headings, meaning)
-        for meaning, name in zip(_NAMES, wanted or (None, None), strict=True)
+    return tuple(
+        _recognised(headings, meaning) if name is None else _given(headings, meaning, name)
+        for meaning, name in wanted.items()
     )
-    return time, speed
+
+
+def _number(name: str) -> int | None:
+    """Read the number of a column, from 1; None of a heading."""
+    bare = split_unit(name)[0]
+    return int(bare) if bare.isdecimal() and 0 < len(bare) < _LONGEST_NUMBER and int(bare) else None
+
+
+def _place_of(headings: Sequence[str], name: str) -> int | None:
+    """Find a column by its heading, by that without its unit, or by its number."""
+    place, number = column_of(headings, name), _number(name)
+    if place is None:
+        place = column_of([split_unit(heading)[0] for heading in headings], name)
+    if place is None and number is not None and (not headings or number <= len(headings)):
+        return number - 1
+    return place
 
 
 def _given(headings: Sequence[str], meaning: str, name: str) -> Column:
-    place = column_of(headings, name)
+    place = _place_of(headings, name)
     if place is None:
         raise ValueError(f"has no column {name!r}, or more than one, among {listed(headings)}")
-    unit = split_unit(headings[place])[1] or split_unit(name)[1]
-    if not unit:
+    heading, unit = headings[place] if headings else f"column {place + 1}", split_unit(name)[1]
+    own = split_unit(heading)[1]
+    if own and unit and own != unit and _fits(_spelt(own), _UNITS[meaning]):  # that of a voltage is replaced
+        raise ValueError(f"the column {heading!r} is not in {unit}: leave the unit out")
+    if not (unit := unit or own):
         raise ValueError(f"{name!r} states no unit: give it in brackets, as in {name + ' [ms]'!r}")
-    return Column(meaning, headings[place], place, _spelt(unit))
+    return Column(meaning, heading, place, _spelt(unit))
 
 
 def _recognised(headings: Sequence[str], meaning: str) -> Column:
@@ -91,6 +123,7 @@ def _recognised(headings: Sequence[str], meaning: str) -> Column:
         among = f"among {listed(headings)}"
         raise ValueError(
             f"has no column {meaning} {among}, nor one column alone in {_UNITS[meaning]}; {_EXAMPLE}"
+            f"{_UNTIMED if meaning == 'time' else ''}"
         )
     return Column(
         meaning, headings[measured[0]], measured[0], _spelt(split_unit(headings[measured[0]])[1]), True

@@ -8,11 +8,11 @@ from typing import Final
 
 from gearidae.analysis.signal import CALIBRATION
 from gearidae.errors import SceneError
-from gearidae.scene.group import shorten
 from gearidae.scene.quantity import Quantity
 
 _HISTORIES: Final = ("auto", "start", "unknown")
 _CALIBRATION: Final = Quantity(unit="1", at_least=0.0, at_most=0.1)
+_CUTOFF: Final = Quantity(unit="Hz", above=0.0)
 _OFFSET: Final = Quantity(unit="rad/s", at_least=0.0)
 
 
@@ -44,7 +44,7 @@ class Sensor:
 
 def check_sensor(
     history: str = "auto",
-    anti_alias_filter: float | None = None,
+    anti_alias_filter: float | str | None = None,
     calibration: float | str = CALIBRATION,
     offset: float | str = 0.0,
 ) -> Sensor:
@@ -64,26 +64,7 @@ def check_sensor(
         raise SceneError("history", history, f"must be one of {', '.join(_HISTORIES)}")
     return Sensor(
         history,
-        _cutoff(anti_alias_filter),
-        _number("calibration", calibration, _CALIBRATION),
-        _number("offset", offset, _OFFSET),
+        math.inf if anti_alias_filter is None else _CUTOFF.take("anti_alias_filter", anti_alias_filter),
+        _CALIBRATION.take("calibration", calibration),
+        _OFFSET.take("offset", offset),
     )
-
-
-def _cutoff(anti_alias_filter: float | None) -> float:
-    if anti_alias_filter is None:
-        return math.inf
-    try:
-        cutoff = float(anti_alias_filter)
-    except (TypeError, ValueError):
-        cutoff = math.nan
-    if not cutoff > 0.0:
-        raise SceneError("anti_alias_filter", anti_alias_filter, "must be a frequency in Hz, above zero")
-    return cutoff
-
-
-def _number(name: str, value: float | str, allowed: Quantity) -> float:
-    try:
-        return allowed.read(value)
-    except ValueError as error:
-        raise SceneError(name, shorten(value), str(error)) from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import re
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,7 +15,7 @@ from gearidae.archive.variables import SAMPLES
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
-from gearidae.scene.units import from_text
+from gearidae.scene.carried import cf_unit, numbers_of
 
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""
@@ -23,7 +23,13 @@ CALIBRATION = 0.015
 """Relative uncertainty of a speed of whose sensor nothing is known."""
 _UNEVEN = 0.1
 """Largest departure of a sample's time from the uniform grid, in sampling intervals."""
-_EXPONENT = re.compile(r"(?<=[A-Za-z])(-?\d)")
+
+_DIGITS = range(4, 10)
+"""Digits to which times may be rounded."""
+_WHOLE = 1e-3
+"""Departure of a rounded time from a multiple of its step, by the rounding of a double."""
+_MANY = 8
+"""Distances that differ from the usual one by a step, as rounding makes many; missing samples are fewer, or larger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,21 +213,10 @@ def to_si(array: xr.DataArray, units: str, key: str) -> Floats:
     SceneError
         If the values are no numbers or the unit does not fit.
     """
-    given = str(array.attrs.get("units", units))
-    if array.dtype.kind not in "fiu":
-        raise SceneError(key, array.dtype, "must be numbers")
-    values = array.values.astype(np.float64, copy=False)
-    if given == units:
-        return values
     try:
-        return values * from_text(f"1 {_powers(given)}", "rad/s" if units == "rad s-1" else _powers(units))
+        return numbers_of(array, "rad/s" if units == "rad s-1" else cf_unit(units))
     except ValueError as error:
-        raise SceneError(key, f"in {given}", str(error)) from None
-
-
-def _powers(units: str) -> str:
-    """Write the exponents of a CF unit (``s-1``) as scenes do (``s^-1``)."""
-    return _EXPONENT.sub(r"^\1", units)
+        raise SceneError(key, f"in {array.attrs.get('units', array.dtype)}", str(error)) from None
 
 
 def _uniform(time: Floats) -> tuple[float, float]:
@@ -235,12 +230,30 @@ def _uniform(time: Floats) -> tuple[float, float]:
     if not interval > 0.0:
         raise SceneError("time", f"{time[0]:g}..{time[-1]:g} s", "must increase")
     late = np.abs(time - (time[0] + interval * np.arange(len(time))))
-    if late.max() > _UNEVEN * interval:
+    if late.max() > _UNEVEN * interval + _rounding(time):
         worst = int(late.argmax())
         raise SceneError(
-            "time", f"{time[worst]:.9g} s", f"sample {worst} is off the uniform grid of {interval:.6g} s"
+            "time",
+            f"{time[worst]:.9g} s",
+            f"sample {worst} is off the uniform grid of {interval:.6g} s; if only "
+            "the times are wrong, give their interval in place of them (interval=..., --interval)",
         )
     return float(time[0]), float(interval)
+
+
+def _rounding(time: Floats) -> float:
+    """Return the step to which times are rounded [s], if their distances show it by differing by one step; else 0."""
+    largest = float(np.abs(time).max())
+    decade = math.floor(math.log10(largest))
+    last = time[np.abs(time) >= 10.0**decade]  # where a number of digits leaves the largest step
+    for digits in _DIGITS:
+        step = 10.0 ** (decade + 1 - digits)
+        counts = np.rint(last / step)
+        if np.abs(last / step - counts).max() < _WHOLE:
+            distances = np.diff(counts)
+            unusual = np.abs(distances - np.median(distances))
+            return step if (unusual > 0.0).sum() >= _MANY and unusual.max() <= 1.0 else 0.0
+    return 0.0
 
 
 def _until_end(values: Floats, name: str, time: Floats, late: int) -> Floats:

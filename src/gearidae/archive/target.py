@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
 from pathlib import Path
@@ -19,6 +19,25 @@ _USUAL_LONGEST: Final = 255
 
 _CLAIMED: Final[ContextVar[frozenset[Path]]] = ContextVar("claimed", default=frozenset())
 """Archives that the studies under way in this thread will save."""
+
+_INPUTS: Final[ContextVar[frozenset[tuple[int, int]]]] = ContextVar("inputs", default=frozenset())
+"""Files, as the system numbers them, that the command under way reads."""
+
+
+@contextmanager
+def keeps_inputs(paths: Iterable[str]) -> Iterator[None]:
+    """Refuse the files among some paths as targets until the block is left."""
+    found = [Path(path).stat() for path in paths if Path(path).is_file()]
+    token = _INPUTS.set(frozenset((each.st_dev, each.st_ino) for each in found))
+    try:
+        yield
+    finally:
+        _INPUTS.reset(token)
+
+
+def is_input(path: Path) -> bool:
+    """Whether a path is one of the files that the command under way reads."""
+    return path.exists() and (path.stat().st_dev, path.stat().st_ino) in _INPUTS.get()
 
 
 def as_path(path: str | os.PathLike[str], name: str = "archive") -> Path:
@@ -38,8 +57,10 @@ def as_path(path: str | os.PathLike[str], name: str = "archive") -> Path:
     try:
         place = Path(path)
         str(place).encode(sys.getfilesystemencoding())
-    except TypeError as error:
-        raise SceneError(name, path, "must be a file name") from error
+        if "\0" in str(place):
+            raise TypeError
+    except TypeError:
+        raise SceneError(name, path, "must be a file name") from None
     except UnicodeEncodeError:
         shown = ascii(os.fspath(path)).strip("'\"")
         allowed = f"must be a name in this locale's encoding ({sys.getfilesystemencoding()})"
@@ -71,8 +92,8 @@ def check_target(
     Raises
     ------
     SceneError
-        If the file exists and may not be replaced, what is there is no regular file, or its folder is missing or cannot
-        be written to.
+        If the file exists and may not be replaced, or is an input of the command, what is there is no regular file, or
+        its folder is missing or cannot be written to.
     """
     target = as_path(path, name)
     if not target.parent.is_dir():
@@ -81,6 +102,8 @@ def check_target(
         raise SceneError(name, path, "is too long a name: the files beside it have longer ones")
     if target.is_dir():
         raise SceneError(name, path, "is a folder: name a file")
+    if is_input(target):
+        raise SceneError(name, path, "is an input of this command, which it would replace: name another")
     if target.exists() and not target.is_file():
         raise SceneError(name, path, "is no regular file and cannot be replaced: name another")
     if target.exists() and not overwrite:

@@ -17,6 +17,8 @@ import xarray as xr
 from xarray.core.indexing import IndexSelResult
 from xarray.indexes import PandasIndex
 
+from gearidae.scene.carried import numbers_of
+
 LARGEST_IN_MEMORY = 2**20
 """Labels that an index may hold in memory."""
 
@@ -84,7 +86,7 @@ class TimeIndex(xr.Index):
             last = self._times.size if label.stop is None else self._after(float(label.stop))
             return IndexSelResult({self._name: slice(first, last)})
         wanted = label.variable if isinstance(label, xr.DataArray) else label
-        values = np.asarray(getattr(wanted, "values", wanted), dtype=np.float64)
+        values = numbers_of(wanted, "s")
         places = np.array(
             [self._place(float(one), method, tolerance) for one in values.ravel()], dtype=np.int64
         )

@@ -211,9 +211,17 @@ def assess(
         str | None, Parameter(help="Uncertainty of the sensor's zero, such as '0.06 rad/s'. Default: 0.")
     ] = None,
     columns: Annotated[
-        tuple[str, str] | None,
+        list[str] | None,
         Parameter(
-            help="Headings of time and speed, such as 'Zeit [ms]' 'Drehzahl [1/min]'. Default: recognised."
+            help="Headings of time and speed, such as 'Zeit [ms]' 'Drehzahl [1/min]', or their numbers: "
+            "'1 [s]' '2 [rad/s]'. Default: recognised.",
+            consume_multiple=(1, 2),
+        ),
+    ] = None,
+    interval: Annotated[
+        str | None,
+        Parameter(
+            help="Time between samples, such as '10 us': no column of time is needed, and none is read."
         ),
     ] = None,
     skip: Annotated[int | None, Parameter(help="Lines above the headings. Default: recognised.")] = None,
@@ -250,7 +258,8 @@ def assess(
         "history": history, "anti_alias_filter": anti_alias_filter, "calibration": calibration, "offset": offset
     }  # fmt: skip
     reading = {
-        "columns": columns, "skip": skip, "delimiter": delimiter, "decimal": decimal, "bridge": bridge
+        "columns": columns, "skip": skip, "delimiter": delimiter, "decimal": decimal, "bridge": bridge,
+        "interval": interval,
     }  # fmt: skip
     return assess_signal(signal, map, sensor, reading, select=select or [], line=line or [], as_json=as_json)
 

@@ -57,6 +57,8 @@ def assess_signal(
     for name, unit in (("calibration", "1"), ("offset", "rad/s")):
         if name in known:
             known[name] = quantity(f"--{name}", known[name], unit)
+    if reading.get("interval") is not None:
+        reading = {**reading, "interval": quantity("--interval", str(reading["interval"]), "s")}
     mapped = gd.analysis.open_map(chart)
     record = gd.analysis.read_signal(
         signal, **{name: value for name, value in reading.items() if value is not None}

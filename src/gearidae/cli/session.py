@@ -8,12 +8,14 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import CycloptsError, Parameter
 
 import gearidae
+from gearidae.archive.target import is_input, keeps_inputs
 from gearidae.cli import life_commands, study_commands  # noqa: F401, which declare more commands
 from gearidae.cli.app import app
 from gearidae.cli.examples import EXAMPLES
@@ -28,6 +30,9 @@ _WRITERS = (
     "report", "run", "starting-torque", "sweep", "threshold",
 )  # fmt: skip
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
+
+_WRITTEN = ("-o", "--output", "--picture", "--asperities")
+"""Options of files to write."""
 
 log = logging.getLogger("gearidae")
 
@@ -74,8 +79,20 @@ def session(
     if quiet and verbose:
         raise SceneError("--quiet", "--verbose", "choose one of the two")
     level = logging.ERROR if quiet else logging.INFO if verbose else logging.WARNING
-    with _logging(level, log_file), hushed(quiet and bool(tokens) and tokens[0] in _WRITERS):
+    with (
+        keeps_inputs(_read(tokens)),
+        _logging(level, log_file),
+        hushed(quiet and bool(tokens) and tokens[0] in _WRITERS),
+    ):
         return _run(tokens)
+
+
+def _read(tokens: tuple[str, ...]) -> Iterator[str]:
+    """Yield what may be files that a command reads: all that does not follow an option of a file to write."""
+    for before, token in pairwise(("", *tokens)):
+        option, _, value = token.partition("=")
+        if before not in _WRITTEN and option not in _WRITTEN:
+            yield value if option.startswith("--") else token
 
 
 def _run(tokens: tuple[str, ...]) -> object:
@@ -128,6 +145,8 @@ def _logging(level: int, path: Path | None) -> Iterator[None]:
     terminal.setFormatter(_Plain("%(message)s"))
     handlers: list[logging.Handler] = [terminal]
     if path is not None:
+        if is_input(path):
+            raise SceneError("--log", path, "is an input of this command: name another")
         try:
             file = _LogFile(path, encoding="utf-8")
         except OSError as error:

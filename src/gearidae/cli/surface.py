@@ -83,9 +83,10 @@ def analyse_scan(
         raise SceneError("--case", choices.case, "needs -o, the case file to write")
     if choices.asperities is not None and choices.cutoff is None:
         raise SceneError("--cutoff", "(none)", "choose one before writing a list: the summits depend on it")
-    for target in (output, picture, choices.asperities):
-        if target is not None:
-            check_target(target, overwrite=overwrite, name="output")
+    targets = [target for target in (output, picture, choices.asperities) if target is not None]
+    checked = [check_target(target, overwrite=overwrite, name="output") for target in targets]
+    if len(set(checked)) < len(checked):
+        raise SceneError("output", targets[-1], "is named for two products: give each a name of its own")
     heights, own_size = read_lines(scan, choices.unit)
     found = gd.surface_from(
         heights,

@@ -9,7 +9,7 @@ from typing import Any
 
 from gearidae.errors import SceneError
 from gearidae.scene.literal import literal
-from gearidae.scene.units import from_text
+from gearidae.scene.units import from_text, refuse_bare
 
 _LONGEST_RANGE = 100_000
 
@@ -126,9 +126,15 @@ def _listed(key: str, text: str) -> list[Any]:
     if ":" in text:
         return _range(key, text)
     if text.startswith("["):
-        listed = literal(text)
-        return listed if isinstance(listed, list) else [listed]
-    return [literal(part.strip()) for part in text.split(",")]
+        found = literal(text)
+        listed = found if isinstance(found, list) else [found]
+    else:
+        listed = [literal(part.strip()) for part in text.split(",")]
+    try:
+        refuse_bare(listed)
+    except ValueError as error:
+        raise SceneError(key, text, str(error)) from None
+    return listed
 
 
 def _range(key: str, text: str) -> list[float]:

@@ -16,6 +16,7 @@ attraction of the mean planes across the gap, see `gearidae.contact.attraction`.
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 from scipy.optimize import brentq
@@ -47,7 +48,8 @@ def adhesion_energy(surface: Surface, hamaker: float = 0.0, asperity: str = "jkr
     Returns
     -------
     float
-        Energy [J/m^2]; 0 if the planes never pull. Relative error below 1e-10.
+        Energy [J/m^2]; 0 if the planes never pull. Relative error below 1e-10. No more than smooth planes give that
+        touch at the closest spacing of their atoms; a warning says so where the asperities would give more.
 
     Raises
     ------
@@ -61,7 +63,18 @@ def adhesion_energy(surface: Surface, hamaker: float = 0.0, asperity: str = "jkr
     at, stretch = np.array([gap / surface.roughness]), np.array([heights.law.detach])
     unit = surface.asperity_density * heights.unit_load * surface.roughness
     held = -unit * float(heights.integral(_tail, at, stretch, decays_left=False)[0])
-    return held + attraction_work(gap, hamaker)
+    work, smooth = (
+        held + attraction_work(gap, hamaker),
+        2.0 * surface.energy + attraction_work(FLOOR, hamaker),
+    )
+    if work > smooth:
+        warnings.warn(
+            f"at no load the gap is {gap / surface.roughness:.2g} roughnesses: asperities pressed in up to their "
+            f"neighbours dominate, and would take {work:.3g} J/m^2 to part; the answer is {smooth:.3g} J/m^2, that of "
+            "smooth planes",
+            stacklevel=2,
+        )
+    return min(work, smooth)
 
 
 def attraction_work(gap: float, hamaker: float) -> float:

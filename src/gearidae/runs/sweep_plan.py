@@ -9,6 +9,8 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from gearidae.archive.stack import Axis, swept_values, zipped_keys
 from gearidae.errors import SceneError
 from gearidae.scene.keys import scene_value
@@ -115,9 +117,12 @@ def _listed(over: Mapping[str, Iterable[Any]]) -> dict[str, list[Any]]:
             raise SceneError(key, values, "cannot be swept, because all runs share one time axis")
         if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
             raise SceneError(key, values, "must be a list of values to sweep over")
-        # numpy's scalars become plain numbers, which is what scenes are made of
         taken = list(itertools.islice(values, MOST_RUNS + 1))
-        listed[key] = [value.item() if hasattr(value, "item") else value for value in taken]
+        # numpy's texts and flags become plain ones; numbers are read with their units, in the scene
+        listed[key] = [
+            value.item() if isinstance(value, np.generic) and value.dtype.kind != "m" else value
+            for value in taken
+        ]
         if not listed[key]:
             raise SceneError(key, "[]", "must be a list of at least one value")
         if len(taken) > MOST_RUNS:

@@ -20,6 +20,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from gearidae.errors import SceneError
+from gearidae.scene.carried import number_of
 from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
@@ -134,7 +135,7 @@ class AsperityList:
         source = next((key for key in ("file", "data") if key in value), None)
         if source is None:
             return _rows(
-                {str(name): (list(cells), 1.0) for name, cells in value.items() if _is_column(cells, name)}
+                {str(name): (list(cells), "") for name, cells in value.items() if _is_column(cells, name)}
             )
         if len(value) > 1:
             raise ValueError(
@@ -224,19 +225,19 @@ def _is_column(cells: object, name: object) -> bool:
     return True
 
 
-def _headed(heading: str, cells: list[Any]) -> tuple[str, tuple[list[Any], float]]:
-    """Return the bare name of a column, its cells and how many SI units its own is; lengths need one."""
+def _headed(heading: str, cells: list[Any]) -> tuple[str, tuple[list[Any], str]]:
+    """Return the bare name of a column, its cells and its unit; lengths need one."""
     name, unit = split_unit(heading.strip())
     if name in _LENGTHS and not unit:
         raise ValueError(f"column {name!r} needs its unit in the heading, such as '{name} [nm]'")
     try:
-        factor = from_text(f"1 {unit}", "m" if name in _LENGTHS else "1") if unit else 1.0
+        from_text(f"1 {unit}", "m" if name in _LENGTHS else "1")
     except ValueError as error:
         raise ValueError(f"column {heading[:60]!r}: {error}") from None
-    return name, (cells, factor)
+    return name, (cells, unit)
 
 
-def _rows(columns: dict[str, tuple[list[Any], float]]) -> ListedAsperities:
+def _rows(columns: dict[str, tuple[list[Any], str]]) -> ListedAsperities:
     """Check columns, each with its unit, and make rows of them."""
     for name in columns:
         if name not in _COLUMNS:
@@ -262,7 +263,7 @@ def _rows(columns: dict[str, tuple[list[Any], float]]) -> ListedAsperities:
     return ListedAsperities((ListedAsperity(*row) for row in rows), along[0])
 
 
-def _cell(cell: Any, name: str, row: int, unit: float) -> Any:
+def _cell(cell: Any, name: str, row: int, unit: str) -> Any:
     """Read one cell: a number within its limits, the name of a flank, or None where it is empty."""
     where = f"column {name!r}, row {row}"
     if (
@@ -277,9 +278,13 @@ def _cell(cell: Any, name: str, row: int, unit: float) -> Any:
             raise ValueError(f"{where} is {shorten(cell)}; must be drive, coast or empty")
         return word
     try:
-        number = float(cell) * unit
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{where} is {shorten(cell)}, no number") from None
+        number = number_of(
+            float(cell) if isinstance(cell, str) else cell, "m" if name in _LENGTHS else "1", unit
+        )
+    except ValueError:
+        number = None
+    if number is None:
+        raise ValueError(f"{where} is {shorten(cell)}, no number")
     low, high = _NUMBERS[name]
     if not low <= number <= high:
         raise ValueError(f"{where} is {number:g}; must lie in {low:g}..{high:g}")

@@ -12,7 +12,8 @@ from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
 
 import numpy as np
-from pydantic import GetCoreSchemaHandler, PlainSerializer, TypeAdapter, WrapValidator
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, PlainSerializer, TypeAdapter, WrapValidator
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from gearidae.scene.quantity import Quantity
@@ -108,10 +109,23 @@ def _plain_knots(given: object, quantity: Quantity) -> Iterable[tuple[float, flo
     return zip(times.tolist(), values.tolist(), strict=True)
 
 
+class _OrTable:
+    """Says in the JSON Schema that a table may stand for the pairs."""
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Describe what may stand here."""
+        table = {"type": "object", "description": "a table with file or knots, and their interpolation"}
+        return {"anyOf": [handler(core), table]}
+
+
 def _schedule(quantity: Quantity) -> Any:
     """Return the type of a schedule of a quantity."""
     pair = tuple[Time, Annotated[float, quantity]]
-    return Annotated[tuple[pair, ...], pairs, increasing, _reader(quantity), PlainSerializer(plain)]
+    return Annotated[
+        tuple[pair, ...], pairs, increasing, _reader(quantity), PlainSerializer(plain), _OrTable()
+    ]
 
 
 _TIME: Final = Quantity(unit="s", at_least=0, at_most=1e12, least=1e-20)
@@ -161,6 +175,13 @@ class Scheduled(Quantity):
     def allowed(self) -> str:
         """Return what may stand here, in words."""
         return Quantity.allowed(self) + ", or a schedule of it"
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Describe what may stand here."""
+        number = Quantity.__get_pydantic_json_schema__(self, core, handler)
+        return {"anyOf": [*number["anyOf"], *_SPEEDS.json_schema()["anyOf"]]}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Let pydantic call `read`, and write schedules as `plain` does."""

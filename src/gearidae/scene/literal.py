@@ -35,8 +35,9 @@ def literal(text: str) -> Any:
     Returns
     -------
     object
-        A number, a truth value, a list, a table or a text.
+        A number, a truth value (also as spreadsheets write it, ``TRUE``), a list, a table or a text.
     """
+    text = text.lower() if text.strip().lower() in ("true", "false") else text
     try:
         return read_toml(f"value = {text}")["value"] if "\n" not in text else text
     except ValueError:  # also of integers of thousands of digits

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
 from typing import Annotated, Any
 
 import numpy as np
@@ -17,6 +16,9 @@ from pydantic import BeforeValidator, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from gearidae.errors import SceneError
+from gearidae.scene.carried import number_of
+from gearidae.scene.group import shorten
 from gearidae.scene.units import from_text
 
 
@@ -128,7 +130,7 @@ class Quantity(_Bounded):
         ValueError
             Saying what is allowed.
         """
-        number = from_text(value, self.unit) if isinstance(value, str) else _as_float(value)
+        number = from_text(value, self.unit) if isinstance(value, str) else number_of(value, self.unit)
         if number is None:
             raise ValueError(self.allowed())
         if not math.isfinite(number):
@@ -136,6 +138,13 @@ class Quantity(_Bounded):
         if not self.admits(number):
             raise ValueError(f"must {self._wanted()}")
         return number
+
+    def take(self, name: str, value: object) -> float:
+        """Read a setting of this name as `read` does; a `SceneError` says what is wrong with it."""
+        try:
+            return self.read(value)
+        except ValueError as error:
+            raise SceneError(name, shorten(value), str(error)) from None
 
     def allowed(self) -> str:
         """Return what may stand here, in words."""
@@ -171,7 +180,7 @@ class Count(_Bounded):
         ValueError
             Saying what is allowed.
         """
-        number = _as_float(value)
+        number = number_of(value, "1")
         if number is None or not number.is_integer() or not self.admits(number):
             raise ValueError(self.allowed())
         return int(number)
@@ -229,16 +238,6 @@ class Sampling(Count):
     def rate(text: str) -> float:
         """Return the rate [Hz] in a text as `read` makes it."""
         return float(text.removesuffix(" Hz"))
-
-
-def _as_float(value: object) -> float | None:
-    """Convert a number of any kind, None for what is no number; infinite for what no float can hold."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return None
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf
 
 
 Phase = Annotated[float, Quantity(unit="rad", at_least=-1e9, at_most=1e9)]

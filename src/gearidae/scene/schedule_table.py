@@ -20,10 +20,10 @@ from typing import Any, Final
 import numpy as np
 
 from gearidae.arrays import Floats
+from gearidae.scene.carried import numbers_of
 from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
 from gearidae.scene.text_table import column_of, listed, split_unit
-from gearidae.scene.units import from_text
 
 _KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
 _SOURCES: Final = ("file", "data", "knots", "packed")
@@ -141,13 +141,12 @@ def _of_file(table: Mapping[str, Any], units: tuple[str, str]) -> list[Floats]:
     try:
         found = open_table(path, largest=_LARGEST, names=names, unit_row=True)
         wanted = _wanted(table, found.headings)
-        factors = [
-            _factor(name, split_unit(name)[1], unit) for (name, _), unit in zip(wanted, units, strict=True)
+        columns = found.numbers([place for _, place in wanted], most=MOST_KNOTS).T
+        return [
+            _numbers(name, cells, unit) for (name, _), cells, unit in zip(wanted, columns, units, strict=True)
         ]
-        numbers = found.numbers([place for _, place in wanted], most=MOST_KNOTS)
     except ValueError as error:
         raise ValueError(f"the file {path.name}: {error}") from None
-    return list((numbers * factors).T)
 
 
 def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, int]]:
@@ -169,38 +168,16 @@ def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, i
 
 def _numbers(name: str, column: Any, unit: str) -> Floats:
     """Read a column in SI units; whatever is no finite number is named with its row, counted from 1."""
-    own_unit = split_unit(name)[1]
-    if hasattr(column, "magnitude") and hasattr(column, "units"):
-        own_unit, column = f"{column.units:~}" if str(column.units) else "", column.magnitude
-    factor = _factor(name, own_unit, unit)
-    cells = np.asarray(column)
-    if cells.ndim != 1:
-        raise ValueError(f"column {name[:60]!r} must be one-dimensional")
-    if cells.size > MOST_KNOTS:
-        raise ValueError(f"has {cells.size} rows or more; there may be {MOST_KNOTS} knots at most")
-    numbers = np.empty(cells.size)
-    for row, cell in enumerate(cells.tolist()):
-        numbers[row] = _number(cell, name, row + 1)
-    return numbers * factor
-
-
-def _factor(name: str, own_unit: str, unit: str) -> float:
-    """Return how many `unit` the unit of a column of this name is; 1 without one."""
+    where = f"column {name[:60]!r}"
     try:
-        return from_text(f"1 {own_unit}", unit) if own_unit else 1.0
+        numbers = numbers_of(column, unit, split_unit(name)[1])
     except ValueError as error:
-        raise ValueError(f"column {name[:60]!r}: {error}") from None
-
-
-def _number(cell: object, name: str, row: int) -> float:
-    """Read one cell."""
-    where = f"column {name[:60]!r}, row {row}"
-    if cell is None or (isinstance(cell, str) and not cell.strip()):
-        raise ValueError(f"{where} is empty")
-    try:
-        number = float(cell)  # type: ignore[arg-type]
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{where} is {str(cell)[:40]!r}, no number") from None
-    if not np.isfinite(number):
-        raise ValueError(f"{where} is {number}, not a finite number")
-    return number
+        raise ValueError(f"{where}{', ' if str(error).startswith('row') else ': '}{error}") from None
+    if numbers.ndim != 1:
+        raise ValueError(f"{where} must be one-dimensional")
+    if numbers.size > MOST_KNOTS:
+        raise ValueError(f"has {numbers.size} rows or more; there may be {MOST_KNOTS} knots at most")
+    if not np.isfinite(numbers).all():
+        row = int(np.isfinite(numbers).argmin())
+        raise ValueError(f"{where}, row {row + 1} is {numbers[row]}, not a finite number")
+    return numbers

@@ -15,6 +15,9 @@ _LONGEST_LINE: Final = 2**22
 _SAMPLE: Final = 2**16  # bytes from which the encoding is recognised
 _MOST_ABOVE: Final = 100  # lines in which the headings are looked for
 _ROWS_SEEN: Final = 100  # rows from which separator and decimal sign are recognised
+_ROWS_IN_TURN: Final = 5  # with numbers in columns that are given by number
+_NO_CELLS: Final = ("comment", "start", "increment")
+"""Last headings of LabVIEW and Rigol, below which most rows or all have no cell."""
 _MOST_LINES: Final = 100_000  # read above the rows, most of them remarks
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _WHOLE_NUMBER: Final = re.compile(r"[+-]?\d+(?:[eE][+-]?\d+)?")
@@ -38,6 +41,7 @@ def open_table(
     decimal: str | None = None,
     skip: int | None = None,
     unit_row: bool = False,
+    places: Sequence[int] | None = None,
 ) -> TextTable:
     """Read what stands above the first row of a table.
 
@@ -56,6 +60,9 @@ def open_table(
         Lines above that of the headings.
     unit_row : bool, optional
         Whether the line below headings without units may hold these.
+    places : sequence of int, optional
+        Columns of numbers by their places, for a table whose headings are not read: it begins with the first rows that
+        hold numbers in all of them.
 
     Raises
     ------
@@ -76,7 +83,9 @@ def open_table(
     if not plain:
         raise ValueError("is empty: it has no row")
     heading, rows = None, plain
-    if names is not None:
+    if places is not None:
+        rows = _from_first_row(plain, places, delimiter, decimal)
+    elif names is not None:
         heading = _heading(lines, names, delimiter, given=skip is not None)
         rows = [line for line in plain if line.number > heading.number]
     texts = [line.text for line in rows[:_ROWS_SEEN]] or [plain[0].text]
@@ -86,6 +95,8 @@ def open_table(
     if unit_row and rows and _is_of_units(headings, rows[0].text, between):
         headings = _joined(headings, _split(rows[0].text, between))
         rows.pop(0)
+    if rows:
+        headings = _with_cells(headings, _split(rows[0].text, between))
     above = rows[0].number - 1 if rows else lines[-1].number
     return TextTable(
         path=path,
@@ -94,7 +105,7 @@ def open_table(
         remarks=tuple(line.text for line in lines if line.remark and line.number <= above),
         delimiter=between,
         decimal=point,
-        skipped=0 if heading is None else sum(line.number < heading.number for line in plain) + (skip or 0),
+        skipped=sum(line.number < (heading or rows[0]).number for line in plain) + (skip or 0) if rows else 0,
         above=above,
         encoding=encoding,
     )
@@ -165,14 +176,38 @@ def _headings(text: str, delimiter: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in found) if len(found) > 1 else tuple(text.split())
 
 
+def _from_first_row(
+    lines: list[_Line], places: Sequence[int], delimiter: str | None, decimal: str | None
+) -> list[_Line]:
+    """Find the first rows that hold numbers at some places; lines above a table may do so by chance."""
+    for first in range(len(lines)):
+        texts = [line.text for line in lines[first : first + _ROWS_IN_TURN]]
+        between = _delimiter(texts) if delimiter is None else delimiter
+        point = _decimal(texts, between) if decimal is None else decimal
+        rows = [_split(text, between) for text in texts]
+        if all(as_number("".join(row[k : k + 1] or "?"), point) is not None for row in rows for k in places):
+            return lines[first:]
+    raise ValueError(f"has no rows with numbers in column {' and '.join(str(place + 1) for place in places)}")
+
+
+def _with_cells(headings: tuple[str, ...], row: list[str]) -> tuple[str, ...]:
+    """Leave out last headings of remarks and settings, where the first row has no such cells."""
+    while len(headings) > len(row) and split_unit(headings[-1])[0].lower() in _NO_CELLS:
+        headings = headings[:-1]
+    return headings
+
+
 def _is_of_units(headings: tuple[str, ...], text: str, delimiter: str) -> bool:
     """Whether the line below the headings holds units: no number, and the headings have none of their own."""
     cells = _split(text, delimiter)
     if cells and not cells[-1] and len(cells) == len(headings) + 1:
         cells.pop()
     bare = not any(split_unit(name)[1] for name in headings)
+    # behind the units, an oscilloscope writes start and interval
     return (
-        bare and len(cells) == len(headings) and all(as_number(cell, ".") is None for cell in cells if cell)
+        bare
+        and len(cells) == len(headings)
+        and all(as_number(cell, ".") is None for cell in cells[:2] if cell)
     )
 
 
@@ -184,7 +219,8 @@ def _joined(headings: tuple[str, ...], units: list[str]) -> tuple[str, ...]:
 def _delimiter(texts: list[str]) -> str:
     """Recognise what separates the cells of rows."""
     for sure in ";\t":
-        if sure in texts[0].strip():
+        # a first cell may be empty
+        if sure in texts[0].strip() or (texts[0].startswith(sure) and len(texts[0].split()) == 1):
             return sure
     if "," not in texts[0]:
         return ""

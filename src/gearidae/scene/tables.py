@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator
 
 from gearidae.scene.group import Group, shorten
+from gearidae.scene.units import refuse_bare
 
 MOST_TABLES: Final = 1_000
 """Harmonics of one torque, or of the static error: all of them are summed in every evaluation of the residual."""
@@ -47,6 +48,8 @@ def _as_pairs(value: object) -> object:
     for i, pair in enumerate(value):
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
             raise ValueError(f"entry {i} is {shorten(pair)}, but must be a [time, value] pair")
+    for column in zip(*value, strict=True):
+        refuse_bare(column)
     return tuple(tuple(pair) for pair in value)
 
 

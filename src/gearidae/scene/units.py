@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from decimal import Decimal, DecimalException
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
@@ -36,6 +37,8 @@ _PLAIN = str.maketrans(
 )
 _DIGITS = {"\u00b9": "1", "\u00b2": "2", "\u00b3": "3", "\u2074": "4"}
 _DEGREES = re.compile("\u00b0\\s*([CF])(?!\\w)")
+_OWN_ZERO = re.compile("\u00b0 *[CF]|deg[CF]|celsius|fahrenheit|\u2103|\u2109", re.IGNORECASE)
+"""Units of temperature whose zero is not that of the kelvin."""
 _LONGEST = 100
 
 # pint holds angles to be pure numbers, so that 1 rpm would be 0.105 Hz, 1 Hz and 1/min would be 1 rad/s and 1/60 of it.
@@ -84,6 +87,30 @@ def from_text(text: str, unit: str, *, difference: bool = False) -> float:
         return float(value + offset if offset else value)  # a sum with 0 would take the sign from -0
     except DecimalException:
         raise ValueError("must be a finite number") from None
+
+
+def refuse_bare(texts: Iterable[object]) -> None:
+    """Refuse numbers without a unit beside others with one: a reader takes them for that unit, SI would be another.
+
+    Zero is the same in all units that are no temperature.
+
+    Raises
+    ------
+    ValueError
+        Naming the first of both.
+    """
+    bare: list[str] = []
+    dressed: list[str] = []
+    for text in texts:
+        match = _NUMBER_AND_UNIT.fullmatch(_plain(str(text)))
+        if match is not None:
+            (dressed if match[2] else bare).append(str(text).strip())
+    if not any(map(_OWN_ZERO.search, dressed)):
+        bare = [text for text in bare if float(text) != 0.0]
+    if bare and dressed:
+        raise ValueError(
+            f"{bare[0]} has no unit beside {dressed[0]}: give each its unit, or none for SI units"
+        )
 
 
 def to_si(text: str) -> float:
@@ -170,6 +197,8 @@ def _same_turns(own: dict[str, Any], wanted: dict[str, Any], unit: str) -> bool:
     if unit in ("1", "Hz"):
         return not angles
     radians = wanted.get("radian", 0)
+    if radians and any(_registry().Unit(name).dimensionless for name in own if name not in angles):
+        return False  # counts, parts and bits are no angles
     if sum(angles.values()) == radians:
         return True
     # A radian may be left out. The second goes without one; minutes, hertz and becquerels count cycles.

@@ -22,6 +22,7 @@ from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.scene import describe_key
+from gearidae.scene.carried import numbers_of
 from gearidae.scene.keys import scene_value
 from gearidae.studies.products import open_map
 from gearidae.studies.requirements import require_gears
@@ -161,7 +162,7 @@ def _plans(
 def _fractions(given: ArrayLike | None) -> list[float]:
     """Fractions as a list; sweep checks their values."""
     try:
-        fractions = np.atleast_1d(np.asarray(FRACTIONS if given is None else given, dtype=np.float64))
+        fractions = np.atleast_1d(numbers_of(FRACTIONS if given is None else given, "1"))
     except (TypeError, ValueError):
         raise SceneError("sam_fraction", given, "must be a list of numbers") from None
     if fractions.ndim != 1:

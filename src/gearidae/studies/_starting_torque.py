@@ -25,6 +25,7 @@ from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.rubbing import flank_coefficient, hub_radii
 from gearidae.runs.running import prepare, solve_to_end, unfinished, unsolved
+from gearidae.scene.carried import numbers_of
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.products import open_product
 from gearidae.studies.release import holding_forces
@@ -217,7 +218,7 @@ def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[S
         if given != "own":
             raise SceneError("sam_fraction", given, "must be a list of numbers, or 'own'")
         return [float(np.mean(base.coating.fractions))], [base]
-    fractions = np.atleast_1d(np.asarray(_FRACTIONS if given is None else given, dtype=np.float64)).tolist()
+    fractions = np.atleast_1d(numbers_of(_FRACTIONS if given is None else given, "1")).tolist()
     return fractions, [base.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
 
 

@@ -25,6 +25,7 @@ from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import Flank
 from gearidae.scene import Scene
+from gearidae.scene.carried import numbers_of
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at, met_teeth
 from gearidae.studies.equilibrium import MaterialLaw, material_laws
@@ -102,7 +103,7 @@ def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     """
     run = _one_run(ds)
     scene, limits = run_scene(run), _limits(run_scene(run))
-    wanted = _nearest(run, np.atleast_1d(np.asarray(times, dtype=np.float64)))
+    wanted = _nearest(run, np.atleast_1d(numbers_of(times, "s")))
     order = np.argsort(wanted, kind="stable")
     states: dict[int, MeshState] = {}
     real = JoinedAsperities(run, scene) if scene.contact.model == "population" else None

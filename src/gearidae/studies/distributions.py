@@ -12,9 +12,10 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.scene.carried import carried_unit, numbers_of
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.keys import find_key
-from gearidae.scene.units import from_text
+from gearidae.scene.units import from_text, refuse_bare
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -122,7 +123,7 @@ class Distribution:
             If they are no finite numbers.
         """
         inside = np.clip(probability, _EDGE, 1.0 - _EDGE)
-        values = np.asarray(self.frozen.ppf(inside), dtype=np.float64)
+        values = numbers_of(self.frozen.ppf(inside), self.unit)
         if values.shape != probability.shape or not np.isfinite(values).all():
             raise SceneError(self.key, self.text, "must be a distribution of finite numbers, one at a time")
         return values
@@ -191,6 +192,11 @@ def read_distribution(key: str, given: Any, unit: str) -> Distribution:
     if not callable(getattr(given, "ppf", None)):
         allowed = f"must be a frozen distribution of scipy.stats, or a text: {_known()}"
         raise SceneError(key, shorten(given), allowed)
+    arguments = (*getattr(given, "args", ()), *getattr(given, "kwds", {}).values())
+    if any(carried_unit(each)[0] for each in arguments):
+        raise SceneError(
+            key, shorten(given), "carries units, which scipy.stats loses: give numbers in SI units"
+        )
     return Distribution(key, _described(given), given, unit)
 
 
@@ -217,6 +223,10 @@ def _of_text(key: str, text: str, unit: str) -> Any:
             numbers.append(_number(part, own, difference=place in kind.spread))
         except ValueError as error:
             raise SceneError(key, shorten(text), f"{kind.arguments[place]} {error}") from None
+    try:
+        refuse_bare(part for place, part in enumerate(parts) if place not in kind.pure)
+    except ValueError as error:
+        raise SceneError(key, shorten(text), str(error)) from None
     if not all(map(math.isfinite, numbers)) or not kind.sound(*numbers):
         raise SceneError(key, shorten(text), f"must be {form} with {kind.rule}")
     return kind.frozen(*numbers)

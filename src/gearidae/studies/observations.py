@@ -12,7 +12,8 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
-from gearidae.scene.units import from_text
+from gearidae.scene.quantity import Quantity
+from gearidae.scene.units import refuse_bare
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -22,6 +23,7 @@ Model = Callable[["Scene"], float]
 STICKS: Final = "sticks"
 RING: Final = "ring_frequency"
 _MISJUDGED: Final = 0.02
+_SHARE: Final = Quantity(unit="1", above=0.0, at_most=0.5)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,8 +41,9 @@ class Observation:
         Standard uncertainty of what was measured, that of the model included. Not of ``sticks``.
     conditions : mapping of str to object, optional
         Keys of the scene under which it was made.
-    misjudged : float, optional
-        Of ``sticks``: how probable it is that a gear does other than the model says, above 0 and up to 0.5.
+    misjudged : float or str, optional
+        Of ``sticks``: how probable it is that a gear does other than the model says, above 0 and up to 0.5, or
+        ``"5 %"``.
 
     Raises
     ------
@@ -52,7 +55,7 @@ class Observation:
     value: bool | float | str
     uncertainty: float | str | None = None
     conditions: Mapping[str, Any] = field(default_factory=dict)
-    misjudged: float = _MISJUDGED
+    misjudged: float | str = _MISJUDGED
 
     def __post_init__(self) -> None:
         if not isinstance(self.conditions, Mapping):
@@ -64,28 +67,17 @@ class Observation:
                 raise SceneError(
                     "value", shorten(self.value), "must be True or False: whether the gear stuck"
                 )
-            if not 0.0 < self.misjudged <= 0.5:
-                raise SceneError("misjudged", self.misjudged, "must be above 0 and at most 0.5")
+            object.__setattr__(self, "misjudged", _SHARE.take("misjudged", self.misjudged))
             return
-        object.__setattr__(self, "value", self._number("value", self.value))
-        object.__setattr__(self, "uncertainty", self._number("uncertainty", self.uncertainty))
+        try:
+            refuse_bare((self.value, self.uncertainty))
+        except ValueError as error:
+            raise SceneError("uncertainty", shorten(self.uncertainty), str(error)) from None
+        for name in ("value", "uncertainty"):
+            kind = Quantity(unit="Hz" if self.of == RING else "1")
+            object.__setattr__(self, name, kind.take(name, getattr(self, name)))
         if not self.spread > 0.0:
             raise SceneError("uncertainty", self.spread, "must be above 0")
-
-    def _number(self, name: str, given: Any) -> float:
-        """Read a number in SI; of a frequency also one with a unit."""
-        if isinstance(given, str) and self.of == RING:
-            try:
-                return from_text(given, "Hz")
-            except ValueError as error:
-                raise SceneError(name, shorten(given), str(error)) from None
-        if (
-            isinstance(given, bool)
-            or not isinstance(given, int | float | np.number)
-            or not math.isfinite(given)
-        ):
-            raise SceneError(name, shorten(given), "must be a finite number in SI units")
-        return float(given)
 
     @property
     def spread(self) -> float:
@@ -124,7 +116,7 @@ class Observation:
             distribution about the prediction; -inf without a prediction, such as of a contact that does not ring.
         """
         if self.of == STICKS:
-            share = np.where(predicted == float(self.value), 1.0 - self.misjudged, self.misjudged)
+            share = np.where(predicted == float(self.value), 1.0 - float(self.misjudged), self.misjudged)
             return np.asarray(np.log(np.where(np.isnan(predicted), 0.5, share)))
         with np.errstate(over="ignore"):  # impossible, which it may be
             squares = ((predicted - float(self.value)) / self.spread) ** 2

@@ -6,6 +6,7 @@ import math
 import os
 import re
 import warnings
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,14 +16,25 @@ from numpy.typing import NDArray
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
-from gearidae.scene.text_table import check_regular
+from gearidae.scene.text_table import TextTable, as_number, check_regular
 from gearidae.scene.units import from_text
 
 _TEXTS = (".csv", ".txt", ".dat")
 _LARGEST = 2**32  # bytes
 _MOST_POINTS = 100_000_000
-_SAID = re.compile(r"\s*(width|height|value units?)\s*[:=]\s*(.*?)\s*", re.IGNORECASE)
-"""What Gwyddion writes above the numbers."""
+_SAID = re.compile(
+    r"\s*(?:(?P<width>width|breite|largeur|larghezza|anchura|šířka)"
+    r"|(?P<height>height|höhe|hauteur|altezza|altura|výška)"
+    r"|(?P<unit>value units?|einheiten|unités|unità valore|unidades de valor|jednotky hodnot))"
+    r"\s*[:=]\s*(?P<said>.*?)\s*",
+    re.IGNORECASE,
+)
+"""What Gwyddion writes above the numbers, in some of its languages."""
+_BETWEEN = re.compile(r"[\s,;]+")
+_FEWEST_LABELS = 8
+"""Rows and columns below which labels are not recognised; such a map is too small for an analysis."""
+_APART = 5.0
+"""Labels differ from the next line by so many times what that differs from the one behind it."""
 _HEIGHTS = re.compile(r"\s*(?:heights?|z)\s*[\[(]\s*([^\])]+?)\s*[\])]", re.IGNORECASE)
 """A heading with the unit of the heights."""
 
@@ -65,19 +77,7 @@ def read_scan(path: str | os.PathLike[str], unit: str | None = None) -> Scan:
     SceneError
         If the file cannot be read, its unit is not a length, or is another than the one given.
     """
-    path = Path(path)
-    ending = path.suffix.lower()
-    try:
-        check_regular(path, _LARGEST)
-        if ending == ".npy":
-            return Scan(_array(path) * _factor(unit or "m"), None)
-        if ending in _TEXTS:
-            return _text(path, unit)
-    except SceneError:
-        raise
-    except (ValueError, TypeError, EOFError, OSError) as error:
-        raise SceneError("surface scan", path, f"is no table of heights: {error}") from None
-    return _by_surface_topography(path, unit)
+    return _read(Path(path), unit)[0]
 
 
 def read_lines(path: Path, unit: str | None = None) -> Scan:
@@ -88,10 +88,52 @@ def read_lines(path: Path, unit: str | None = None) -> Scan:
     path, unit
         As for `read_scan`.
     """
-    scan = read_scan(path, unit)
-    if path.suffix.lower() in (".npy", *_TEXTS):
+    scan, by_library = _read(path, unit)
+    if not by_library:
         return scan
     return Scan(scan.heights.T, None if scan.size is None else scan.size[::-1])
+
+
+def _read(path: Path, unit: str | None) -> tuple[Scan, bool]:
+    """Read a height map; say whether SurfaceTopography has done it."""
+    ending = path.suffix.lower()
+    try:
+        check_regular(path, _LARGEST)
+        if ending == ".npy":
+            return Scan(_array(path) * _factor(unit or "m"), None), False
+        if ending in _TEXTS:
+            return _text(path, unit), False
+    except SceneError:
+        raise
+    except (ValueError, TypeError, EOFError, OSError) as error:
+        refusal = SceneError("surface scan", path, f"is no table of heights: {error}")
+        if ending not in _TEXTS or not _is_of_another_program(path):
+            raise refusal from None
+        try:
+            return _by_surface_topography(path, unit), True
+        except SceneError as other:
+            if other.key == "unit":  # it is read, and lacks the unit
+                raise
+            reason = f"{refusal.allowed}; a file of another program {other.allowed}"
+            raise SceneError("surface scan", path, reason) from None
+    return _by_surface_topography(path, unit), True
+
+
+def _is_of_another_program(path: Path) -> bool:
+    """Whether a file is no text, or has lines of its own kind above rows of numbers, all with as many of them."""
+    try:
+        with path.open(encoding="utf-8") as file:
+            widths = [_row_width(line) for line in file if line.partition("#")[0].strip()]
+    except (OSError, UnicodeDecodeError):
+        return True
+    first = next((k for k, width in enumerate(widths) if width), 0)
+    return first > 0 and len(set(widths[first:])) == 1
+
+
+def _row_width(line: str) -> int:
+    """Count the numbers in a line; 0 if it holds anything else."""
+    cells = _BETWEEN.split(line.strip().lower())
+    return len(cells) * all(cell == "bad" or as_number(cell, ".") is not None for cell in cells)
 
 
 def _factor(unit: str) -> float:
@@ -112,22 +154,56 @@ def _array(path: Path) -> NDArray[np.float64]:
 def _text(path: Path, unit: str | None) -> Scan:
     """Read numbers in lines, with what remarks above them say of the unit of the heights and the extent."""
     table = open_table(path, largest=_LARGEST)
-    said = {match[1].lower(): match[2] for text in table.remarks if (match := _SAID.fullmatch(text))}
-    own = (
-        said.get("value units")
-        or said.get("value unit")
-        or next((match[1] for text in table.remarks if (match := _HEIGHTS.match(text))), None)
+    found = [match for text in table.remarks if (match := _SAID.fullmatch(text))]
+    said = {name: match["said"] for match in found for name in ("width", "height", "unit") if match[name]}
+    own = said.get("unit") or next(
+        (match[1] for text in table.remarks if (match := _HEIGHTS.match(text))), None
     )
     factor = _factor(unit or own or "m")
     if unit is not None and own is not None and not math.isclose(factor, _factor(own)):
         raise SceneError("unit", unit, f"the heights are in {own}, as {path.name} says: leave the unit out")
     extent = [_length(path, said[name]) for name in ("height", "width") if name in said]
-    return Scan(table.numbers(holes=True) * factor, (extent[0], extent[-1]) if len(extent) == 2 else None)
+    heights = _without_labels(table, table.numbers(holes=True))
+    return Scan(heights * factor, (extent[0], extent[-1]) if len(extent) == 2 else None)
+
+
+def _without_labels(table: TextTable, heights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Leave out a heading and an index, as pandas writes them: numbers that count the columns and the rows.
+
+    They are whole numbers from 0 or 1, or coordinates at even distances that meet in an empty cell.
+    """
+    first = [cells for _, _, cells in islice(table.rows(), 3)]
+    if min(heights.shape) < _FEWEST_LABELS:
+        return heights
+    if not first[0][0] and _evenly(heights[0, 1:]) and _evenly(heights[1:, 0]):
+        left_out, kept = "first row and the first column are", heights[1:, 1:]
+    elif all(map(str.isdigit, first[0])) and _counts(heights, first[1]):
+        left_out, kept = "first row is", heights[1:]
+    elif all(cells[0].isdigit() for cells in first) and _counts(heights.T, [cells[1] for cells in first]):
+        left_out, kept = "first column is", heights[:, 1:]
+    else:
+        return heights
+    warnings.warn(f"{table.path.name}: the {left_out} left out, labels that count the others", stacklevel=4)
+    return kept
+
+
+def _counts(lines: NDArray[np.float64], cells: list[str]) -> bool:
+    """Whether the first line counts from 0 or 1; beside heights in whole numbers, also whether it stands apart."""
+    counts = lines[0, 0] in (0.0, 1.0) and bool((np.diff(lines[0]) == 1.0).all())
+    if not counts or not all(cell.lstrip("+-").isdigit() for cell in cells):
+        return counts
+    steps = np.nanmedian(np.abs(np.diff(lines[:3], axis=0)), axis=1)
+    return bool(steps[0] > _APART * steps[1])
+
+
+def _evenly(numbers: NDArray[np.float64]) -> bool:
+    steps = np.diff(numbers)
+    return bool(steps[0]) and bool(np.allclose(steps, steps[0], rtol=1e-3, atol=0.0))
 
 
 def _length(path: Path, text: str) -> float:
     try:
-        return from_text(text, "m")
+        return from_text(text.replace(",", "."), "m")
     except ValueError as error:
         reason = f"has the length {shorten(text)} in its header: {error}"
         raise SceneError("surface scan", path, reason) from None
@@ -160,7 +236,9 @@ def _by_surface_topography(path: Path, unit: str | None) -> Scan:
             sizes = scan.physical_sizes
     except Exception as error:  # each of its forty readers fails in its own way
         raise SceneError(
-            "surface scan", path, f"SurfaceTopography cannot read it: {shorten(str(error))}"
+            "surface scan",
+            path,
+            f"cannot be read by SurfaceTopography: {shorten(' '.join(str(error).split()))}",
         ) from error
     if np.ndim(heights) != 2:
         raise SceneError("surface scan", path, "holds a line scan; a map is needed")

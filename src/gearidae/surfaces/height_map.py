@@ -12,7 +12,8 @@ from scipy.sparse import linalg
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.surfaces.lines import aligned_rows, line_noise
+from gearidae.scene.carried import numbers_of
+from gearidae.surfaces.lines import aligned_rows, line_noise, repeated_lines, streaks
 
 Flags = NDArray[np.bool_]
 
@@ -39,6 +40,10 @@ class HeightMap:
         Largest curvature, in magnitude, of the paraboloid that was taken out [1/m].
     rows_aligned : bool
         Whether rows have been shifted against each other.
+    repeated : tuple of int
+        Rows, and columns, that equal another one or have one height throughout.
+    streaks : int
+        Rows with a scar.
     """
 
     heights: Floats
@@ -47,6 +52,8 @@ class HeightMap:
     tilt: float
     curvature: float
     rows_aligned: bool = False
+    repeated: tuple[int, int] = (0, 0)
+    streaks: int = 0
 
     @property
     def spacing(self) -> float:
@@ -107,6 +114,7 @@ def height_map(heights: Any, size: tuple[float, float], *, align_rows: bool = Fa
             f"({100 * holes.mean():.3g} % missing)",
             f"at most {100 * _MOST_HOLES:g} % of the points may be missing",
         )
+    repeated = repeated_lines(measured), repeated_lines(measured.T)
     measured = aligned_rows(measured) if align_rows else measured
     shape, coefficients = _paraboloid(measured, holes)
     levelled = measured - shape
@@ -123,17 +131,16 @@ def height_map(heights: Any, size: tuple[float, float], *, align_rows: bool = Fa
         ]
     )
     largest = float(np.abs(np.linalg.eigvalsh(second)).max())
-    return HeightMap(_filled(levelled, holes), holes, size, float(np.hypot(*slopes)), largest, align_rows)
+    filled, scars = _filled(levelled, holes), streaks(measured)
+    return HeightMap(filled, holes, size, float(np.hypot(*slopes)), largest, align_rows, repeated, scars)
 
 
 def _read(heights: Any) -> Floats:
     """Make an array of numbers, NaN where there is none."""
     try:
-        if isinstance(heights, np.ma.MaskedArray):
-            heights = np.ma.filled(heights.astype(np.float64), np.nan)
-        measured = np.array(heights, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise SceneError("surface scan", "(heights)", "must be an array of numbers") from None
+        measured = numbers_of(heights, "m")
+    except (TypeError, ValueError) as error:
+        raise SceneError("surface scan", "(heights)", f"must be an array of numbers: {error}") from None
     if measured.ndim != 2 or min(measured.shape) < FEWEST_POINTS:
         raise SceneError(
             "surface scan",

@@ -7,6 +7,7 @@ summits that the surface has not.
 from __future__ import annotations
 
 import numpy as np
+from scipy import ndimage
 
 from gearidae.arrays import Floats
 
@@ -15,6 +16,11 @@ _STRONGER = 2.5
 _WHITE = 1.8
 """Independent offsets have differences whose own differences have 3 times their variance, a random walk's 2, those of
 waves that the map resolves less than 1."""
+
+_OUTSTANDING = 3.0
+"""A scar differs from both neighbouring rows by so many times the median difference of neighbours."""
+_STRETCH = 16
+"""Points in a row that do so: of random surfaces none."""
 
 
 def aligned_rows(heights: Floats) -> Floats:
@@ -62,6 +68,22 @@ def line_noise(heights: Floats, size: tuple[float, float]) -> tuple[float, float
         noisy = white and variance[axis] > _STRONGER * expected
         found.append(float(np.sqrt(0.5 * (variance[axis] - expected))) if noisy else 0.0)
     return found[0], found[1]
+
+
+def repeated_lines(heights: Floats) -> int:
+    """Count rows [m] that equal another one, or have one height throughout, as where a scan stops; NaN is a hole."""
+    rows = heights[~np.isnan(heights).all(axis=1)]
+    relief = rows[np.nanmin(rows, axis=1) < np.nanmax(rows, axis=1)]
+    return len(rows) - len({row.tobytes() for row in relief})
+
+
+def streaks(heights: Floats) -> int:
+    """Count rows [m] with a stretch that stands above, or below, both neighbouring rows: scars of a scan."""
+    steps = np.diff(heights, axis=0)
+    least = _OUTSTANDING * float(np.nanmedian(np.abs(steps)))
+    above, below = (np.minimum(sign * steps[:-1], -sign * steps[1:]) > least for sign in (1.0, -1.0))
+    long = [ndimage.binary_erosion(out, np.ones((1, _STRETCH))).any(axis=1) for out in (above, below)]
+    return int((long[0] | long[1]).sum())
 
 
 def _medians(heights: Floats) -> Floats:

@@ -11,7 +11,7 @@ from gearidae.errors import SceneError
 from gearidae.scene.dump import dump_keys
 from gearidae.scene.group import shorten
 from gearidae.scene.prefixes import with_prefix
-from gearidae.scene.units import from_text
+from gearidae.scene.quantity import Quantity
 from gearidae.surfaces.height_map import height_map
 from gearidae.surfaces.remarks import remarks
 from gearidae.surfaces.statistics import METHODS, asperities, statistics, usual_cutoffs
@@ -19,6 +19,7 @@ from gearidae.surfaces.statistics import METHODS, asperities, statistics, usual_
 if TYPE_CHECKING:
     import xarray as xr
 
+_LENGTH = Quantity(unit="m", at_least=1e-12, at_most=1.0)
 _DIGITS = 4
 """Significant digits of the numbers that go into a scene: sampling leaves two or three."""
 _STEEPEST = 10.0
@@ -244,7 +245,7 @@ def surface_from(
             f"(rms slope {surface.steepness:.3g})",
             f"slopes above {_STEEPEST:g} come from a wrong unit: heights must be in metres; give their unit",
         )
-    chosen = None if cutoff is None else _length("cutoff", cutoff)
+    chosen = None if cutoff is None else _LENGTH.take("cutoff", cutoff)
     asked = usual_cutoffs(surface)
     if chosen is not None:
         asked = np.unique(np.append(asked[~np.isclose(asked, chosen, rtol=1e-6, atol=0.0)], chosen))
@@ -266,20 +267,6 @@ def _extent(size: Any, shape: tuple[int, ...]) -> tuple[float, float]:
     if isinstance(size, (tuple, list, np.ndarray)):
         if len(size) != 2:
             raise SceneError("size", shorten(size), "must be one length or two")
-        return _length("size", size[0]), _length("size", size[1])
-    width = _length("size", size)
+        return _LENGTH.take("size", size[0]), _LENGTH.take("size", size[1])
+    width = _LENGTH.take("size", size)
     return (width * shape[0] / shape[1], width) if len(shape) == 2 and shape[1] else (width, width)
-
-
-def _length(name: str, value: Any) -> float:
-    """Read a length [m] from a number or a text with a unit."""
-    try:
-        number = from_text(value, "m") if isinstance(value, str) else float(value)
-    except ValueError as error:
-        wrong = str(error) if isinstance(value, str) else "must be a length"
-        raise SceneError(name, shorten(value), wrong) from None
-    except TypeError:
-        raise SceneError(name, shorten(value), "must be a length [m], or a text with a unit") from None
-    if not 1e-12 <= number <= 1.0:
-        raise SceneError(name, shorten(value), "must be a length in 1e-12..1 m")
-    return number

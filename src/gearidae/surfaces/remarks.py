@@ -46,6 +46,18 @@ def remarks(ds: xr.Dataset, cutoff: float | None) -> tuple[str, ...]:
         share = 100.0 * ds.attrs["hole_share"]
         many = "1 hole" if holes == 1 else f"{holes} holes"
         said.append(f"{many} ({share:.2g} % of the points) filled by interpolation and not counted.")
+    counted = zip(("rows", "columns"), ds.attrs["repeated_lines"], ds.attrs["points"], strict=True)
+    said += [
+        f"{count} of {points} {lines} equal another one, or have one height throughout, as where a scan has stopped: "
+        "density and radius are wrong; leave them out."
+        for lines, count, points in counted
+        if count
+    ]
+    if streaks := ds.attrs["streaks"]:
+        said.append(
+            f"{streaks} of {ds.attrs['points'][0]} rows have a streak that differs from the rows on both sides, as "
+            "scars of a scan do: the tips are too sharp; repair or leave them out."
+        )
     for lines, noise in zip(("rows", "columns"), ds.attrs["line_noise"], strict=True):
         if noise:
             remedy = (

@@ -112,6 +112,8 @@ def statistics(surface: HeightMap, cutoffs: NDArray[np.float64]) -> xr.Dataset:
             "curvature_removed": surface.curvature,
             "rows_aligned": int(surface.rows_aligned),
             "line_noise": list(surface.line_noise),
+            "repeated_lines": list(surface.repeated),
+            "streaks": surface.streaks,
         },
     )
 

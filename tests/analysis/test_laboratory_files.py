@@ -1,0 +1,138 @@
+"""Records as laboratories' programs and oscilloscopes write them: LabVIEW, Rigol, Tektronix, numbers alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearidae as gd
+from gearidae.analysis import read_signal
+from gearidae.analysis.sensor import check_sensor
+from gearidae.analysis.signal import signals
+
+COUNT = 200
+TIME = np.arange(COUNT) * 1e-5
+SPEED = np.round(1.5 + 0.01 * np.sin(7e3 * TIME), 6)
+ENDS = ("", ",")
+
+
+def comma(number):
+    return f"{number:.6f}".replace(".", ",")
+
+
+def labview(columns="No"):
+    """A file of version 2 with decimal commas; below its last heading no row has a cell."""
+    rows = "".join(
+        f"{'' if columns == 'No' else comma(t)}\t{comma(w)}\n" for t, w in zip(TIME, SPEED, strict=True)
+    )
+    return (
+        "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\nDecimal_Separator\t,\n"
+        f"Multi_Headings\tNo\nX_Columns\t{columns}\nTime_Pref\tRelative\nDate\t2026/11/26\nTime\t17:18:18,938945\n"
+        "***End_of_Header***\t\n\t\nChannels\t1\t\nSamples\t200\t\nDate\t2026/11/26\t\nY_Unit_Label\tVolts\t\n"
+        "X_Dimension\tTime\t\nX0\t0,0000000000000000E+0\t\nDelta_X\t0,000010\t\n***End_of_Header***\t\t\n"
+        f"X_Value\tUntitled\tComment\n{rows}"
+    )
+
+
+def rigol(end):
+    rows = "".join(f"{k},{w:.6f}{end}\n" for k, w in enumerate(SPEED))
+    return f"X,CH1,Start,Increment{end}\nSequence,Volt,-1.000000e-05,1.000000e-05{end}\n{rows}"
+
+
+def tektronix():
+    """What stands above the numbers in other files stands beside them here."""
+    head = ["Record Length,200", "Sample Interval,1e-5", "Trigger Point,0", ",", "Source,CH1"]
+    head += [","] * (COUNT - len(head))
+    return "".join(f"{a},,{t:.6f},{w:.6f},\n" for a, t, w in zip(head, TIME, SPEED, strict=True))
+
+
+BY_STEP = {"interval": "10 us"}
+FILES = [
+    (labview(), {"columns": "Untitled [rad/s]", **BY_STEP}),
+    (labview(), {"columns": ("2 [rad/s]",), **BY_STEP}),
+    (labview(), {"columns": ("1 [s]", "2 [rad/s]"), **BY_STEP}),
+    (labview("One"), {"columns": ("X_Value [s]", "Untitled [rad/s]")}),
+    (labview("One"), {"columns": ("1 [s]", "2 [rad/s]")}),
+    *((rigol(end), {"columns": name, **BY_STEP}) for end in ENDS for name in ("CH1 [rad/s]", "2 [rad/s]")),
+    (tektronix(), {"columns": ("4 [s]", "5 [rad/s]")}),
+    ("".join(f"{w:.6f}\n" for w in SPEED), {"columns": "1 [rad/s]", **BY_STEP}),
+    ("".join(f"{t:.6f} {w:.6f}\n" for t, w in zip(TIME, SPEED, strict=True)), {"columns": ("1 [s]", "2 [rad/s]")}),
+]  # fmt: skip
+
+
+@pytest.fixture
+def file(tmp_path):
+    def write(text):
+        path = tmp_path / "record.lvm"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize(("text", "how"), FILES)
+def test_they_are_read(text, how, file):
+    found = read_signal(file(text), **how)
+    np.testing.assert_allclose(found.time, TIME, rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(found.gear_speed, SPEED, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("text", "how"), FILES)
+def test_a_row_short_in_the_middle_stays_refused(text, how, file):
+    lines = text.splitlines()
+    lines[-50] = "0" if "\t" in lines[-50] or "," in lines[-50] or " " in lines[-50] else "x"
+    with pytest.raises(gd.SceneError, match=f"line {len(lines) - 49}"):
+        read_signal(file("\n".join(lines)), **how)
+
+
+@pytest.mark.parametrize(
+    ("how", "message"),
+    [
+        ({"columns": ("1 [s]", "7 [rad/s]")}, "has no rows with numbers in column 1 and 7"),
+        ({"columns": ("1", "2 [rad/s]")}, "states no unit"),
+        ({"columns": "2 [rad/s]"}, "must be two headings"),
+        ({"columns": ("a", "b", "c"), "interval": 1e-5}, "that of the speed alone"),
+        ({}, "interval=..., --interval"),
+        ({"interval": "0 s"}, "interval = 0 s: must be above 0 s"),
+        ({"interval": "1 m"}, "interval = 1 m"),
+        ({"interval": True}, "interval = True"),
+    ],
+)
+def test_what_is_missing_is_named(how, message, file):
+    with pytest.raises(gd.SceneError, match=message):
+        read_signal(file(labview("One")), **how)
+
+
+def test_a_heading_in_another_unit_of_the_kind_is_not_overruled(file):
+    rows = "".join(f"{1e3 * t:.6f},{w:.6f}\n" for t, w in zip(TIME, SPEED, strict=True))
+    with pytest.raises(gd.SceneError, match="is not in s: leave the unit out"):
+        read_signal(file(f"zeit [ms],n [rad/s]\n{rows}"), columns=("zeit [s]", "n [rad/s]"))
+
+
+def six_digits(rate, count):
+    return np.array([float(f"{time:.6g}") for time in 0.5 + np.arange(count) / rate])
+
+
+@pytest.mark.parametrize(("rate", "count"), [(40e3, 100_000), (44.1e3, 200_000)])
+def test_times_rounded_to_six_digits_are_even(rate, count):
+    times = six_digits(rate, count)
+    array = xr.DataArray(np.ones(count), dims="time", coords={"time": times})
+    assert signals(array).signals[0].rate == pytest.approx(rate, rel=1e-5, abs=0)
+    missed = array.isel(time=np.delete(np.arange(count), count - 1000))
+    with pytest.raises(gd.SceneError, match=r"off the uniform grid.*--interval"):
+        signals(missed)
+
+
+def test_exact_times_with_a_sample_missing_are_no_rounded_ones():
+    array = xr.DataArray(np.ones(COUNT), dims="time", coords={"time": TIME})
+    with pytest.raises(gd.SceneError, match="off the uniform grid"):
+        signals(array.isel(time=np.delete(np.arange(COUNT), 77)))
+
+
+def test_a_filter_may_be_given_with_its_unit():
+    assert check_sensor(anti_alias_filter="4 kHz").cutoff == 4e3
+    assert check_sensor(anti_alias_filter=4e3).cutoff == 4e3
+    for wrong in ("4 rad/s", -1.0, "4"):
+        with pytest.raises(gd.SceneError, match="anti_alias_filter"):
+            check_sensor(anti_alias_filter=wrong)
