@@ -14,6 +14,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -147,7 +148,7 @@ def _damaged_archives(folder: Path, seeds: range) -> dict[str, int]:
         path = folder / f"{seed}.nc"
         path.write_bytes(damage(content, seed))
         shutil.copytree(folder / "sound.nc.runs", folder / f"{seed}.nc.runs")
-        word = in_a_process(lambda path=path: outcome(path, whole))
+        word = in_a_process(partial(outcome, path, whole))
         found[word] += 1
         if not word.replace(",", "").replace(" ", "").isalpha() or "SILENT" in word:
             say(seed, word)

@@ -37,7 +37,7 @@ def test_steps_of_worn_teeth_and_other_tolerances_within_a_factor_of_three(fract
 
 def test_a_run_ten_times_as_long_takes_ten_times_as_long():
     short, long = run_time(LOW), run_time(LOW.replace({"run.duration": 3.0}))
-    assert long.seconds == pytest.approx(10.0 * short.seconds, rel=1e-9, abs=0)
+    assert long.steps == pytest.approx(10.0 * short.steps, rel=1e-9, abs=0)
 
 
 def test_rough_as_a_tooth_takes_days():

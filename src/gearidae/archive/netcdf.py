@@ -173,7 +173,7 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
         raise SceneError("archive", path, "is damaged: its scene is not readable")
     expected = _expected(ds, scene)
     missing = [name for name in expected if name not in ds.variables]
-    if not {*expected, "status"} - {*missing}:  # a study's, with coordinates of its own
+    if "keep" not in ds.attrs and {*expected} - {*missing} <= {"time"}:  # nothing of a run
         what = f'is no archive of runs but "{ds.attrs.get("title", "of a study")}"'
         raise SceneError("archive", path, f"{what}: gearidae.studies.open_product opens it")
     wrong = f"it lacks {', '.join(missing)}" if missing else wrong_attribute(ds)
