@@ -35,9 +35,9 @@ _GAP_ERROR: Final = 0.02
 """Error of the gap at rest, in roughnesses: 5 % of the frequency."""
 _ORDER: Final = 0.125
 """Steps grow as the tolerance to the power of minus this."""
-_RIGID_STEP, _ELASTIC_STEP, _POPULATION_STEP = 1e-6, 10e-6, 3e-6
+_RIGID_STEP, _ELASTIC_STEP, _POPULATION_STEP = 1e-6, 10e-6, 2e-6
 """Wall time of a step without and with elastic bodies, and with real asperities [s]."""
-_SETUP: Final = 0.1
+_SETUP: Final = 0.04
 """Wall time of a run beside its steps: tables of the force law, the verdict [s]."""
 
 
