@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 done, 2 bad input, 3 solver failure, 130 interrupted.
+        0 done, 2 bad input, 3 solver failure, 130 interrupted, 143 terminated, 129 left by its terminal.
     """
     mend_streams()
     try:
