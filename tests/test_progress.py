@@ -169,3 +169,24 @@ def test_a_run_without_progress_announces_it_too(monkeypatch, caplog):
         for number in range(3):
             report(1e-4 * number, 0)
     assert [record.getMessage() for record in caplog.records] == ["at this rate the run takes another 5.6 h"]
+
+
+def test_a_program_without_standard_error_sees_no_bar(monkeypatch):
+    """As pythonw and services have none."""
+    monkeypatch.setattr(sys, "stderr", None)
+    with progress.run_progress(True, 0.3) as report:
+        report(0.3, 7)
+
+
+@pytest.mark.parametrize("columns", [1, 100_000_000])
+def test_a_bar_on_a_terminal_of_an_impossible_width(columns, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", str(columns))
+    with progress.run_progress(True, 0.3) as report:
+        report(0.3, 7)
+    assert 0 < len(sys.stderr.getvalue()) < 10_000

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import signal
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     import xarray as xr
+
+STOPS: Final = tuple(
+    signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGHUP") if name in signal.Signals.__members__
+)
+"""Signals that end a program, which its command line turns into a `KeyboardInterrupt`."""
 
 
 class GearidaeError(Exception):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import logging
+import shutil
 import sys
 import threading
 from collections.abc import Callable, Iterator
@@ -135,7 +136,7 @@ def _bar(title: str, total: float) -> Iterator[Advance | None]:
     if (display := _notebook()) is not None:
         with _notebook_bar(display, title, total) as advance:
             yield advance
-    elif sys.stderr.isatty():
+    elif sys.stderr is not None and sys.stderr.isatty():  # a program without a console has none
         with _terminal_bar(title, total) as advance:
             yield advance
     else:
@@ -158,7 +159,8 @@ def _terminal_bar(title: str, total: float) -> Iterator[Advance]:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
     from rich.table import Column
 
-    console = Console(stderr=True)
+    # COLUMNS says anything, and a bar of a hundred million columns takes as long
+    console = Console(stderr=True, width=min(max(shutil.get_terminal_size().columns, 40), 1000))
     # where room is scarce, words are cut off, and never the time that remains
     bar_width = min(max(console.width - 80, 8), 40)
     room = max(console.width - len(title) - bar_width - 2 * len("0:00:00") - 4, 8)

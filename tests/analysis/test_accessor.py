@@ -96,6 +96,17 @@ def test_an_archive_tells_the_same(ds, tmp_path):
         ({}, "leaves several runs"),
     ],
 )
+def test_chunked_data_tell_the_same(ds):
+    """As of a sweep that is opened from zarr."""
+    pytest.importorskip("dask")
+    chunked = ds.chunk()
+    pd.testing.assert_frame_equal(chunked.gearidae.verdicts(), ds.gearidae.verdicts())
+    assert chunked.gearidae.scenes == ds.gearidae.scenes
+    assert plain(chunked.gearidae.run(sam_fraction=0.5, torque=5e-18).compute()).identical(
+        plain(ds.gearidae.run(sam_fraction=0.5, torque=5e-18))
+    )
+
+
 def test_labels_that_name_no_run(ds, labels, said):
     with pytest.raises(gd.SceneError, match=said):
         ds.gearidae.run(**labels)

@@ -1,10 +1,15 @@
 """An interrupt that Python drops is raised again."""
 
+import os
+import signal
 import sys
 import time
+import warnings
+from types import SimpleNamespace
 
 import pytest
 
+from gearidae.cli import command_line, main
 from gearidae.cli.interrupts import interrupts_kept
 
 
@@ -37,3 +42,51 @@ def test_other_errors_go_where_they_went(monkeypatch):
         one = Dropped(ValueError())
         del one
     assert seen == [ValueError]
+
+
+@pytest.mark.parametrize(
+    ("number", "word", "code"),
+    [(signal.SIGTERM, "terminated", 143), (signal.SIGHUP, "the terminal has gone", 129)],
+)
+def test_a_signal_to_end_is_named_and_what_is_done_is_kept(number, word, code, monkeypatch, capsys):
+    def stopped(*_, **__):
+        os.kill(os.getpid(), number)
+        time.sleep(1.0)
+
+    monkeypatch.setattr(command_line, "app", SimpleNamespace(meta=stopped))
+    usual = signal.getsignal(number)
+    assert main(["keys"]) == code
+    assert capsys.readouterr().err == f"gearidae: {word}\n"
+    assert signal.getsignal(number) is usual
+
+
+@pytest.mark.parametrize("columns", ["1", "10", "100000000"])
+def test_an_impossible_width_of_the_terminal_is_bounded(columns, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", columns)
+    assert main(["--version"]) == 0
+    assert 40 <= int(os.environ["COLUMNS"]) <= 1000
+
+
+@pytest.mark.parametrize(
+    "error", [MemoryError(), ImportError("_libs.so: failed to map segment from shared object")]
+)
+def test_too_little_memory_is_a_line(error, monkeypatch, capsys):
+    def starved(*_, **__):
+        raise error
+
+    monkeypatch.setattr(command_line, "app", SimpleNamespace(meta=starved))
+    assert main(["keys"]) == 3
+    assert capsys.readouterr().err == "gearidae: there is not enough memory for this (ulimit -v limits it)\n"
+
+
+def test_a_warning_with_a_traceback_is_a_line(monkeypatch, capsys):
+    """As numba warns of NUMBA_NUM_THREADS=abc."""
+
+    def warns(*_, **__):
+        warnings.warn(
+            "could not be parsed with exception:\nTraceback (most recent call last):\n  File", stacklevel=1
+        )
+
+    monkeypatch.setattr(command_line, "app", SimpleNamespace(meta=warns))
+    assert main(["keys"]) == 0
+    assert capsys.readouterr().err == "gearidae: could not be parsed with exception\n"

@@ -58,10 +58,17 @@ def kept(folder, ending):
     return [path for path in (folder / "cache").rglob(f"*{ending}") if "program" in path.name]
 
 
+def _flipped(content):
+    """Change a bit in the middle, which numba would load as code."""
+    middle = len(content) // 2
+    return content[:middle] + bytes([content[middle] ^ 8]) + content[middle + 1 :]
+
+
 DAMAGES = {
     "of no bytes": lambda path: path.write_bytes(b""),
     "cut off": lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]),
     "zeros": lambda path: path.write_bytes(bytes(path.stat().st_size)),
+    "a bit of another value": lambda path: path.write_bytes(_flipped(path.read_bytes())),
     "gone": lambda path: path.unlink(),
     "a folder": lambda path: (path.unlink(), path.mkdir()),
 }

@@ -37,13 +37,33 @@ def test_steps_of_worn_teeth_and_other_tolerances_within_a_factor_of_three(fract
 
 def test_a_run_ten_times_as_long_takes_ten_times_as_long():
     short, long = run_time(LOW), run_time(LOW.replace({"run.duration": 3.0}))
-    assert long.seconds == pytest.approx(10.0 * short.seconds, rel=1e-9, abs=0)
+    assert long.steps == pytest.approx(10.0 * short.steps, rel=1e-9, abs=0)
 
 
 def test_rough_as_a_tooth_takes_days():
     """20 s of computing brought this scene to 1.84e-5 s of its 0.3 s: some 90 h in all."""
     hours = run_time(LOW.replace({"surface.roughness": 10e-6, "initial.gap": 36e-9})).seconds / 3600.0
     assert 30.0 < hours < 270.0
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("fraction", [0.3, 0.8])
+def test_steps_on_real_asperities_within_a_factor_of_three(seed, fraction):
+    scene = gd.preset("teodorescu2009").replace(
+        {
+            "contact.model": "population",
+            "contact.seed": seed,
+            "coating.sam_fraction": fraction,
+            "run.duration": 5e-5,
+            "run.samples": 11,
+        }
+    )
+    assert 1.0 / 3.0 < run_time(scene).steps / int(gd.simulate(scene).steps) < 3.0
+
+
+def test_real_asperities_that_fill_the_backlash_are_refused():
+    with pytest.raises(gd.SceneError, match=r"surface\.roughness = 7\.5e-07: must be at most mesh\.backlash"):
+        LOW.replace({"contact.model": "population", "surface.roughness": 0.75e-6})
 
 
 @pytest.mark.parametrize("changes", [{"drive.torque": 0.0}, {"drive.torque": 1.0}, {"drive.torque": 1e-39}])

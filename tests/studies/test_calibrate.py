@@ -51,6 +51,22 @@ def test_a_normal_prior_and_normal_errors_make_a_normal_posterior(seen):
     assert float(found.weight.sum()) == pytest.approx(1.0, rel=1e-12)
 
 
+def test_a_posterior_finer_than_its_grid_has_the_spread_of_a_cell(caplog):
+    look = Observation(of=torque, value=5.01, uncertainty=1e-6)
+    found = gd.studies.calibrate(LOW, {TORQUE: stats.uniform(4e-18, 2e-18)}, [look], points=41)
+    cell = float(np.diff(found.torque[:2])[0])
+    assert float(found.standard_deviation[0]) == pytest.approx(cell / np.sqrt(12.0), rel=1e-6, abs=0)
+    assert "narrower than a cell" in caplog.text
+    assert "no run comes near" not in caplog.text
+
+
+def test_an_observation_beyond_every_run_is_named(caplog):
+    look = Observation(of=torque, value=50.0, uncertainty=0.1)
+    gd.studies.calibrate(LOW, {TORQUE: stats.uniform(4e-18, 2e-18)}, [look], points=41)
+    assert "no run comes near torque = 50: theirs are 4.0" in caplog.text
+    assert f"the most likely {TORQUE} is at the edge of its prior" in caplog.text
+
+
 def test_two_keys_that_only_their_difference_is_seen_of_are_correlated():
     """Prior unit normals, one look at x - y: covariance (I + a a^T / u^2)^-1 with a = (1, -1)."""
     priors = {TORQUE: stats.norm(5e-18, 1e-18), "initial.gear_speed": stats.norm(6.0, 1.0)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from concurrent.futures import ThreadPoolExecutor
 
@@ -15,7 +16,8 @@ from gearidae.cli import main
 from gearidae.engine import solve
 from gearidae.errors import Interrupted
 from gearidae.populations.first_touch import first_touch
-from gearidae.studies import starting_ramp
+from gearidae.runs.execution import Execution
+from gearidae.studies import _starting_seeds, starting_ramp
 from gearidae.studies._starting_seeds import _quantiles
 from reference.population import Contact, Tip
 from sweeps import without_times
@@ -113,6 +115,25 @@ def test_quantiles_count_gears_that_did_not_start():
     np.testing.assert_allclose(_quantiles(np.arange(11.0)), [1.0, 5.0, 9.0], rtol=1e-15)
     found = _quantiles(np.array([4.0, math.inf, 1.0, 2.0, math.inf]))
     assert found.tolist() == [pytest.approx(1.4), 4.0, math.inf]
+
+
+def test_a_gear_that_cannot_be_followed_is_left_out_and_named(monkeypatch, caplog):
+    """One of three fails in each run: the others' torques are 2 and 4, and 1 of 2 starts."""
+    words = itertools.cycle(["2.0", "fails: the steps became too small", "4.0"])
+    monkeypatch.setattr(
+        _starting_seeds,
+        "solutions",
+        lambda kept, executor, run, scenes, backend: [(None, next(words)) for _ in scenes],
+    )
+    runs = _starting_seeds._Runs(Execution(), None, None, lambda done, total: None, 3)
+    torques = runs.torques([GEARS] * 3)
+    np.testing.assert_array_equal(torques, [2.0, math.nan, 4.0])
+    assert "one gear is left out: the steps became too small" in caplog.text
+    assert _quantiles(torques)[1] == 3.0
+    design = _starting_seeds._Design(GEARS, [], 1.0, 0, torques, 0.0, np.array([1.0, math.nan, 0.0]))
+    columns = _starting_seeds._columns([design])
+    assert columns["failed"].tolist() == [[False, True, False]]
+    assert (columns["chance"], columns["not_started"].tolist()) == ([0.5], [0.0])
 
 
 @pytest.fixture(scope="module")

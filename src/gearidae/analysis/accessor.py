@@ -113,7 +113,7 @@ class Results:
         judged = outcomes(ds)
         columns: dict[str, Any] = run_labels(ds, dims)
         if "sam_fraction" in ds.coords and not ds["sam_fraction"].dims:
-            columns.setdefault("sam_fraction", ds["sam_fraction"].item())
+            columns.setdefault("sam_fraction", ds["sam_fraction"].values.item())
         for name in ("verdict", "words", "status"):
             columns[name] = [getattr(each, name) for each in judged]
         for name in EXTREMES:

@@ -298,7 +298,7 @@ def _exits_of(
         run = array.isel(dict(zip(dims, place, strict=True)))
         own = leaving.copy()
         for key, label in labels.items():
-            own &= label == run[key].item()
+            own &= label == run[key].values.item()
         return np.asarray(time[own], dtype=np.float64)
 
     return exits

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
+from gearidae.archive.commits import Commit
 from gearidae.archive.store import Store
 from gearidae.records import Extremes, Statistics, Words
 
-COUNTERS: Final = tuple(field.name for field in fields(Statistics) if field.type == "int")
-_EXTREMES: Final = tuple(field.name for field in fields(Extremes) if field.name != "exposures")
+COUNTERS: Final = tuple(one.name for one in fields(Statistics) if one.type == "int")
+_EXTREMES: Final = tuple(one.name for one in fields(Extremes) if one.name != "exposures")
 _PREFIX: Final = "checkpoint_"
 
 
@@ -35,6 +37,8 @@ class Checkpoint:
         What the engine needs, kept to the last bit and never looked into.
     extremes : Extremes, optional
         Of the run until then, without exposures.
+    checksums : mapping of str to int
+        Of the samples and events until then, see `gearidae.archive.commits.Commit`.
     """
 
     samples: int
@@ -44,6 +48,12 @@ class Checkpoint:
     statistics: Statistics
     state: Words
     extremes: Extremes | None = None
+    checksums: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def commit(self) -> Commit:
+        """State of the archive at the checkpoint."""
+        return Commit(self.samples, self.events, self.checksums)
 
     def keep(self, archive: Path, run: str) -> None:
         """Write it beside the archive of a run, in the place of the one before, once it is on the disk.
@@ -63,6 +73,7 @@ class Checkpoint:
             "events": self.events,
             "time": self.time,
             "wall_time": self.wall_time,
+            "checksums": self.checksums,
             "statistics": {name: getattr(self.statistics, name) for name in COUNTERS},
             "extremes": self.extremes and {name: getattr(self.extremes, name) for name in _EXTREMES},
         }

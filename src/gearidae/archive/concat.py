@@ -240,7 +240,7 @@ def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_
     dims, shape = ds["status"].dims, ds["status"].shape
     for name, variable in {**EXTREMES, **VERDICT}.items():
         if all(name in each.picked and not each.picked[name].dims for each in found):
-            values = np.array([each.picked[name].item() for each in found], dtype=variable.dtype)
+            values = np.array([each.picked[name].values.item() for each in found], dtype=variable.dtype)
             ds[name] = (dims, values.reshape(shape), variable.attributes)
     balances = [balance_of(each.single) or {} for each in found]
     for name in ENERGY_BALANCE:

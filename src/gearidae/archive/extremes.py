@@ -71,7 +71,7 @@ def extremes_of(run: xr.Dataset) -> Extremes | None:
             continue
         counts = EXTREMES[field.name].dtype is np.int64
         if field.name in run.variables:
-            numbers[field.name] = run[field.name].item()
+            numbers[field.name] = run[field.name].values.item()
         else:
             numbers[field.name] = 0 if counts else math.nan
     return Extremes(**numbers)

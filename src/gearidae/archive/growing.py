@@ -2,17 +2,20 @@
 
 The file is in netCDF's classic format and made once, with room for every sample and for many events, and filled with
 what stands for nothing; where events run out of room, a larger file takes its place. Each block of output is written to
-its place, then the numbers of committed samples and events. So there is no instant at which the file could not be read,
-no lock lies on it, and the memory needed does not depend on the run's length. The state to go on from is kept beside it
-(`gearidae.archive.checkpoint`). When the run has ended, `finish` rewrites the file as any other archive.
+its place, then a record of what is committed, with checksums (`gearidae.archive.commits`). So there is no instant at
+which the file could not be read, no lock lies on it, and the memory needed does not depend on the run's length. The
+state to go on from is kept beside it (`gearidae.archive.checkpoint`). When the run has ended, `finish` rewrites the
+file as any other archive.
 """
 
 from __future__ import annotations
 
 import json
+import logging
 import secrets
 import time
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, Self
 
@@ -23,6 +26,7 @@ from numpy.typing import NDArray
 
 from gearidae.archive.asperity_events import teeth_in, tooth_of
 from gearidae.archive.checkpoint import COUNTERS, Checkpoint, drop_checkpoints
+from gearidae.archive.commits import COPIED, COUNTS, LENGTH, RECORDS, Commit, check_bytes
 from gearidae.archive.definition import define
 from gearidae.archive.disk import disk_errors, sync
 from gearidae.archive.end_state import packed_state
@@ -32,16 +36,16 @@ from gearidae.archive.variables import EVENTS
 from gearidae.records import Block, EventColumn, Statistics, sample_times
 from gearidae.scene import Scene
 
-COPIED = 2**20
-"""Rows copied at a time."""
 EVENT_ROOM = 65_536
 """Events to make room for, twice as many whenever they run out: along a dimension without limit each takes longer."""
 CHECKPOINT_SECONDS = 1.0
 """Least wall time between checkpoints [s]: each waits for the disk."""
 _EVENT_COLUMNS = ("event_time", "event_kind", "event_pair", "event_flank", "event_gap_rate")
-_COUNTS: Final = ("committed_samples", "committed_events")
 _RUN: Final = "run"
 """Attribute by which a run's checkpoint is found."""
+
+
+log = logging.getLogger(__name__)
 
 
 class GrowingArchive:
@@ -77,6 +81,7 @@ class GrowingArchive:
         self._teeth = teeth_in(template.attrs)
         self._checkpointed = time.monotonic()
         self.samples = self.events = 0
+        self._commits = Commit()
         with disk_errors():
             self._open()
 
@@ -105,6 +110,8 @@ class GrowingArchive:
             try:
                 _lay_out(part, template, secrets.token_hex(16), samples, EVENT_ROOM)
                 _write_times(part, samples, float(template.attrs.get("start_time", 0.0)), duration)
+                with opened(part, "a") as file:
+                    Commit.first(file, part).write(file)
                 drop_checkpoints(path)
                 part.replace(path)
             finally:
@@ -126,10 +133,23 @@ class GrowingArchive:
                 close(file, written=True)
 
     def go_back(self) -> Checkpoint | None:
-        """Take back what came after the newest checkpoint, or after the start of the run if there is none."""
+        """Take back what came after the newest checkpoint, or after the start of the run if there is none.
+
+        Raises
+        ------
+        DiskError
+            If what came before the checkpoint is not in the file as it was written.
+        """
         point = Checkpoint.newest(self.path, self._run)
-        self.samples, self.events = (0, 0) if point is None else (point.samples, point.events)
+        commit = Commit() if point is None else point.commit
         with disk_errors():
+            with LIBRARY:
+                if not commit.holds(self._file):
+                    raise OSError("it is damaged before the checkpoint: begin anew with --overwrite")
+            if point is None and self._commits.samples:
+                log.warning("%s has no whole checkpoint: the run begins anew", self.path)
+            self.samples, self.events = commit.samples, commit.events
+            self._commits = replace(self._commits, checksums=commit.checksums)
             self._commit()
         return point
 
@@ -159,7 +179,13 @@ class GrowingArchive:
                 sync(self.path)
                 counts = (self.samples, self.events)
                 point = Checkpoint(
-                    *counts, block.time, wall_time, statistics, block.checkpoint, block.extremes
+                    *counts,
+                    block.time,
+                    wall_time,
+                    statistics,
+                    block.checkpoint,
+                    block.extremes,
+                    self._commits.checksums,
                 )
                 point.keep(self.path, self._run)
                 self._checkpointed = time.monotonic()
@@ -206,8 +232,12 @@ class GrowingArchive:
             self._file = netCDF4.Dataset(self.path, "r+", keepweakref=True)
             self._file.set_auto_maskandscale(False)
             self._run = str(getattr(self._file, _RUN, ""))
-            if missing := {*self._columns, *_EVENT_COLUMNS, *_COUNTS} - set(self._file.variables):
+            if missing := {*self._columns, *_EVENT_COLUMNS, *COUNTS, RECORDS} - set(self._file.variables):
                 raise OSError(f"{self.path.name} has no variable {min(missing)}")
+        try:
+            self._commits = check_bytes(self.path)[0]
+        except ValueError as error:
+            raise OSError(str(error)) from error
 
     def _append(self, block: Block) -> None:
         if self.events + len(block.events) > len(self._file.dimensions["event"]):
@@ -230,13 +260,22 @@ class GrowingArchive:
     def _write(self, name: str, first: int, values: NDArray[Any]) -> None:
         if values.size:
             with LIBRARY:
-                self._file[name][first : first + values.size] = values
+                variable = self._file[name]
+                values = values.astype(variable.dtype, copy=False)
+                variable[first : first + values.size] = values
+            sums = {**self._commits.checksums, name: self._commits.checksum(name, values)}
+            self._commits = replace(self._commits, checksums=sums)
 
     def _commit(self) -> None:
         """Say what is there; done after it is."""
+        counts = (self.samples, self.events)
+        self._commits = replace(
+            self._commits, number=self._commits.number + 1, samples=counts[0], events=counts[1]
+        )
         with LIBRARY:
             self._file.sync()
-            for name, count in zip(_COUNTS, (self.samples, self.events), strict=True):
+            self._commits.write(self._file)
+            for name, count in zip(COUNTS, counts, strict=True):
                 self._file[name][...] = count
             self._file.sync()
 
@@ -250,12 +289,14 @@ class GrowingArchive:
             _lay_out(part, self._template, self._run, times, room)
             with opened(part, "a") as file:
                 for name, variable in file.variables.items():
-                    if variable.dimensions:
+                    if {*variable.dimensions} & {*committed}:
                         self._copy(
                             name, variable, times if name == "time" else committed[variable.dimensions[0]]
                         )
-                    elif name in _COUNTS:
+                    elif name in COUNTS:
                         variable[...] = self._file[name][...]
+                file.sync()
+                replace(self._commits, structure=Commit.first(file, part).structure).write(file)
             sync(part)
             self.close()  # Windows replaces no file that is open
             try:
@@ -288,10 +329,10 @@ class GrowingArchive:
 
 def is_growing(ds: xr.Dataset) -> bool:
     """Whether a dataset has been read from the archive of a run that is not at its end."""
-    return all(name in ds.variables for name in _COUNTS)
+    return all(name in ds.variables for name in COUNTS)
 
 
-def trimmed(ds: xr.Dataset, path: Path, *, running: bool) -> xr.Dataset:
+def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool) -> xr.Dataset:
     """Cut a growing archive down to what has been committed, and say how the run stands.
 
     Parameters
@@ -300,11 +341,15 @@ def trimmed(ds: xr.Dataset, path: Path, *, running: bool) -> xr.Dataset:
         As read from the file.
     path : Path
         The file.
+    commit : Commit, optional
+        The state to show; None of an archive of version 0.2.0.
     running : bool
         Whether a process was writing it.
     """
-    samples, events = (max(int(ds[name].item()), 0) for name in _COUNTS)
-    cut = ds.isel(time=slice(samples), event=slice(events)).drop_vars(_COUNTS)
+    samples, events = (max(int(ds[name].values.item()), 0) for name in COUNTS)
+    if commit is not None:
+        samples, events = commit.samples, commit.events
+    cut = ds.isel(time=slice(samples), event=slice(events)).drop_vars([*COUNTS, RECORDS], errors="ignore")
     point = Checkpoint.newest(path, str(cut.attrs.pop(_RUN, "")))
     cut.attrs |= {"status": "running" if running else "interrupted", "message": "not at its end yet"}
     if point is not None:
@@ -322,7 +367,8 @@ def trimmed(ds: xr.Dataset, path: Path, *, running: bool) -> xr.Dataset:
 def _lay_out(path: Path, template: xr.Dataset, run: str, samples: int, room: int) -> None:
     """Write the file's structure, filled with what stands for nothing."""
     path.unlink(missing_ok=True)
-    grown = template.assign({name: ((), np.int64(0), {"units": "1"}) for name in _COUNTS})
+    grown = template.assign({name: ((), np.int64(0), {"units": "1"}) for name in COUNTS})
+    grown[RECORDS] = ("record_byte", np.full(2 * LENGTH, ord(" "), np.uint8))
     # a length of 0 is one without limit to netCDF
     define(grown.assign_attrs({_RUN: run}), path, {"time": max(samples, 1), "event": room}, in_place=True)
 

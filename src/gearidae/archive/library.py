@@ -17,6 +17,9 @@ from typing import Any, Final, Literal, TypeAlias
 import netCDF4
 import xarray as xr
 
+from gearidae.archive.commits import check_bytes
+from gearidae.errors import STOPS
+
 _PATIENCE: Final = 5.0
 """Time [s] for which a file's lock is waited for."""
 
@@ -38,25 +41,25 @@ _ALWAYS_READ: Final = 128 * 2**20
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Hold `LIBRARY`, and put a `KeyboardInterrupt` off until the block is left, or the function that this decorates.
+    """Hold `LIBRARY`, and put what a signal raises off until the block is left, or the function that this decorates.
 
     xarray takes its locks of HDF5 in Python code: an interrupt between taking one and entering what it guards leaves it
     taken, and the next call that closes the file waits for ever. Other threads than the main one are never interrupted.
     """
-    usual = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(usual):
-        with LIBRARY:
-            yield
-        return
-    came: list[FrameType | None] = []
-    signal.signal(signal.SIGINT, lambda _, frame: came.append(frame))
+    handlers = {number: usual for number in STOPS if callable(usual := signal.getsignal(number))}
+    if threading.current_thread() is not threading.main_thread():
+        handlers = {}
+    came: list[tuple[int, FrameType | None]] = []
+    for number in handlers:
+        signal.signal(number, lambda *signalled: came.append(signalled))
     try:
         with LIBRARY:
             yield
     finally:
-        signal.signal(signal.SIGINT, usual)
+        for number, usual in handlers.items():
+            signal.signal(number, usual)
         if came:
-            usual(signal.SIGINT, came[0])
+            handlers[signal.Signals(came[0][0])](*came[0])
 
 
 @contextmanager
@@ -100,6 +103,7 @@ def close(file: netCDF4.Dataset, *, written: bool) -> None:
 def loaded(path: Path) -> xr.Dataset:
     """Read any netCDF file into memory; a damaged one may make the netCDF stack raise any exception."""
     with uninterrupted():
+        check_bytes(path)
         await_lock(path)
         with netCDF4.Dataset(path) as declared:
             check_size(declared, path)

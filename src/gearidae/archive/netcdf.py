@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.attributes import readable_scene, wrong_attribute
+from gearidae.archive.commits import RECORDS, Commit, check_bytes, intact
 from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import disk_errors
 from gearidae.archive.growing import is_growing, trimmed
@@ -100,7 +101,8 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, "is not a netCDF4 file")
     running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
-        ds = _opened(source)
+        commits = check_bytes(source)
+        ds, commit = _opened(source, commits)
     except SceneError:
         raise
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
@@ -109,7 +111,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         ds.attrs.pop("checksums", None)  # of version 0.1.0
         _check_layout(ds, path)
         if is_growing(ds):
-            ds = trimmed(ds, source, running=running)
+            ds = trimmed(ds, source, commit, running=running)
         if ds.nbytes <= _LAZY_ABOVE:
             ds = in_memory(ds)
     except SceneError:
@@ -123,27 +125,34 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     return ds
 
 
-def _opened(source: Path) -> xr.Dataset:
-    """Open a file without reading more than it takes to describe it."""
+def _opened(source: Path, commits: list[Commit]) -> tuple[xr.Dataset, Commit | None]:
+    """Open a file; but for the checksums of an unfinished one, no more is read than it takes to describe it."""
     await_lock(source)
     store = CheckedStore.open(str(source))  # type: ignore[no-untyped-call]
     try:
         check_size(store.ds, source)
-        variables = store.ds.variables
-        if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= _LAZY_ABOVE:
-            return xr.open_dataset(store, decode_times=False)
-        for variable in variables.values():
-            if isinstance(variable.chunking(), list):
-                # two chunks are enough to go through in order; the library's own 64 MB count for each variable
-                variable.set_var_chunk_cache(size=2 * CHUNK)
-        times = variables.get("time")
-        if times is None or times.size <= LARGEST_IN_MEMORY:
-            return xr.open_dataset(store, decode_times=False, cache=False)
-        ds = xr.open_dataset(store, decode_times=False, cache=False, drop_variables="time")
-        return with_times(ds, store.open_store_variable("time", times))
+        unfinished = bool(commits) and RECORDS in store.ds.variables  # it may have ended since
+        commit = intact(store.ds, commits, source) if unfinished else None
+        return _described(store, source), commit
     except BaseException:
         store.close()
         raise
+
+
+def _described(store: CheckedStore, source: Path) -> xr.Dataset:
+    """Make the dataset of an open file."""
+    variables = store.ds.variables
+    if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= _LAZY_ABOVE:
+        return xr.open_dataset(store, decode_times=False)
+    for variable in variables.values():
+        if isinstance(variable.chunking(), list):
+            # two chunks are enough to go through in order; the library's own 64 MB count for each variable
+            variable.set_var_chunk_cache(size=2 * CHUNK)
+    times = variables.get("time")
+    if times is None or times.size <= LARGEST_IN_MEMORY:
+        return xr.open_dataset(store, decode_times=False, cache=False)
+    ds = xr.open_dataset(store, decode_times=False, cache=False, drop_variables="time")
+    return with_times(ds, store.open_store_variable("time", times))
 
 
 def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
@@ -162,7 +171,11 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     scene = readable_scene(ds.attrs["scene"])
     if scene is None:
         raise SceneError("archive", path, "is damaged: its scene is not readable")
-    missing = [name for name in _expected(ds, scene) if name not in ds.variables]
+    expected = _expected(ds, scene)
+    missing = [name for name in expected if name not in ds.variables]
+    if "keep" not in ds.attrs and {*expected} - {*missing} <= {"time"}:  # nothing of a run
+        what = f'is no archive of runs but "{ds.attrs.get("title", "of a study")}"'
+        raise SceneError("archive", path, f"{what}: gearidae.studies.open_product opens it")
     wrong = f"it lacks {', '.join(missing)}" if missing else wrong_attribute(ds)
     if wrong:
         raise SceneError("archive", path, f"is damaged: {wrong}")
@@ -172,14 +185,15 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     """Variables that an archive of any version has at least."""
     later = {one.name for one in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if one.since}
     sampled = tuple(name for name in columns(is_roller="roller" in scene) if name not in later)
+    events = tuple(EVENTS) if "event" in ds.dims else ()  # a user may drop them
     if "keep" not in ds.attrs:
-        return ("time", *sampled, *EVENTS)
+        return ("time", *sampled, *events)
     try:
         keep = kept_in(ds.attrs, Scene.from_dict(scene))
     except SceneError as error:
         raise SceneError("archive", ds.encoding.get("source", ""), f"is damaged: {error}") from None
     some = tuple(name for name in sampled if keep.holds(name))
-    return (*(("time",) if some else ()), *some, *(EVENTS if keep.events else ()), "status", *_JUDGED)
+    return (*(("time",) if some else ()), *some, *(events if keep.events else ()), "status", *_JUDGED)
 
 
 def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:

@@ -38,7 +38,7 @@ def scene_of(ds: xr.Dataset) -> dict[str, Any]:
     """
     try:
         own = "scene" in ds.variables and not ds["scene"].dims
-        scene = json.loads(ds["scene"].item() if own else ds.attrs["scene"])
+        scene = json.loads(ds["scene"].values.item() if own else ds.attrs["scene"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise SceneError(
             "dataset", type(ds).__name__, "must come from simulate, sweep or open_archive"
@@ -82,12 +82,12 @@ def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
     for number, place in enumerate(np.ndindex(*(ds.sizes[dim] for dim in dims))):
         run = ds.isel(dict(zip(dims, place, strict=True)))
         run = own_events(run) if events is None else run.isel(event=events[number])
-        yield {dim: run[dim].item() for dim in dims}, run
+        yield {dim: run[dim].values.item() for dim in dims}, run
 
 
 def run_value(run: xr.Dataset, name: str) -> Any:
     """Status or solver statistic of one run: a variable if it comes from a sweep, an attribute otherwise."""
-    return run[name].item() if name in run.variables else run.attrs[name]
+    return run[name].values.item() if name in run.variables else run.attrs[name]
 
 
 def run_scene(run: xr.Dataset) -> Scene:
@@ -114,7 +114,7 @@ def run_scene(run: xr.Dataset) -> Scene:
     for key, dim in dimension_names(swept).items():
         if dim not in run.coords:
             raise SceneError("dataset", f"without {dim}", "must be a run of a sweep: its scene is not known")
-        value = run[dim].item()
+        value = run[dim].values.item()
         if run[dim].attrs.get("comment"):  # values that are neither numbers nor words are numbered
             if not (isinstance(value, int) and 0 <= value < len(swept[key])):
                 raise SceneError("dataset", f"{dim} {value}", f"must number one of {len(swept[key])} values")

@@ -36,7 +36,7 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
         return ds
     scene = run_scene(ds)
     ds = own_events(ds.squeeze(swept_dims(ds)))
-    found: dict[str, Any] = {name: ds[name].item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
+    found: dict[str, Any] = {name: ds[name].values.item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
     reached = found.pop("reached", scene.run.duration)
     energies = {name: float(ds[name]) for name in ENERGY_BALANCE if name in ds}
     swept = [str(name) for name in ds.coords if name not in ("time", "event", "sam_fraction", *PLACES)]

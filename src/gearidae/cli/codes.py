@@ -9,3 +9,7 @@ UNFINISHED = 3
 """The solver failed; the results up to then are kept."""
 INTERRUPTED = 130
 """Ctrl-C; the results up to then are kept."""
+TERMINATED = 143
+"""SIGTERM, as from a batch system whose time is over; the results up to then are kept."""
+HUNG_UP = 129
+"""SIGHUP, from a terminal that closes; the results up to then are kept."""

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from cyclopts import CycloptsError
 
 from gearidae.cli.codes import BAD_INPUT, DONE, INTERRUPTED, UNFINISHED
-from gearidae.cli.interrupts import interrupts_kept
+from gearidae.cli.interrupts import ENDINGS, interrupts_kept, stopped_by
 from gearidae.cli.output import complain
 from gearidae.cli.session import app
 from gearidae.cli.streams import stop_output
@@ -41,7 +41,8 @@ def _run(tokens: Sequence[str]) -> int:
     except GearidaeError as error:
         return _complain(str(error), UNFINISHED)
     except KeyboardInterrupt as interrupt:
-        return _complain(f"interrupted{''.join(f'; {note}' for note in interrupt.args)}", INTERRUPTED)
+        word, code = ENDINGS.get(stopped_by(), ("interrupted", INTERRUPTED))
+        return _complain(f"{word}{''.join(f'; {note}' for note in interrupt.args)}", code)
     except BrokenPipeError:
         stop_output()
         return DONE
@@ -83,5 +84,8 @@ def spread(arguments: Sequence[str]) -> list[str]:
 def _warnings_as_lines() -> Iterator[None]:
     """Print a warning, such as of a damaged run, as a message to the user: without a line of code."""
     with warnings.catch_warnings(action="always", category=UserWarning):
-        warnings.showwarning = lambda message, *_: complain(str(message))
+        # numba adds a traceback to its own
+        warnings.showwarning = lambda message, *_: complain(
+            str(message).partition("Traceback (most recent")[0].strip(" :\n")
+        )
         yield

@@ -31,6 +31,7 @@ PLAIN: Final = "GEARIDAE_PLAIN_NUMBA"
 """Environment variable that makes gearidae do without numba's undocumented options."""
 
 _ROOT: Final = Path(__file__).parents[1]
+_CHECKSUM: Final = hashlib.sha256().digest_size
 _OF_NO_EFFECT: Final = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS", "NUMBA_DEBUG_CACHE")  # on what is compiled
 
 
@@ -159,7 +160,10 @@ if HAS_LOCATOR_HOOK:
 
 
 class CacheFile(getattr(caching, "IndexDataCacheFile", object)):  # type: ignore[misc]
-    """Files of one function's compiled code. Where they are damaged or the disk is full, the function is compiled."""
+    """Files of one function's compiled code. Where they are damaged or the disk is full, the function is compiled.
+
+    Each ends with a checksum, which numba does not read: it would run damaged code.
+    """
 
     def load(self, key: Any) -> Any:
         """Return the code of a signature; None if there is none that can be read."""
@@ -179,6 +183,29 @@ class CacheFile(getattr(caching, "IndexDataCacheFile", object)):  # type: ignore
             super().save(key, data)
         except OSError as error:
             _say_once("compiled code cannot be kept in %s (%s)", error.strerror or str(error))
+
+    def _load_index(self) -> Any:
+        if Path(self._index_path).exists():
+            _verify(self._index_path)
+        return super()._load_index()
+
+    def _load_data(self, name: str) -> Any:
+        _verify(self._data_path(name))
+        return super()._load_data(name)
+
+    @contextmanager
+    def _open_for_write(self, path: str) -> Iterator[Any]:
+        with super()._open_for_write(path) as file:
+            yield file
+            file.flush()
+            file.write(hashlib.sha256(Path(file.name).read_bytes()).digest())
+
+
+def _verify(path: str) -> None:
+    """Raise a ValueError if a file is not as it was written."""
+    content = Path(path).read_bytes()
+    if hashlib.sha256(content[:-_CHECKSUM]).digest() != content[-_CHECKSUM:]:
+        raise ValueError("a checksum is wrong")
 
 
 @cache

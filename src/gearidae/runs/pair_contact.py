@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 
 from gearidae.arrays import Floats
 from gearidae.asperities import law_of
-from gearidae.asperities.tip import asperity_of
+from gearidae.asperities.tip import asperity_of, contact_modulus
+from gearidae.contact.asperity_statistics import zero_load_radius
 from gearidae.contact.attraction import attraction_force
 from gearidae.contact.line import line_area, line_force
 from gearidae.errors import SceneError
@@ -219,3 +220,14 @@ def _inwards(sigma: float, finest: float, *, beyond: bool) -> Iterator[Floats]:
         gaps: Floats = np.asarray((at - step * np.arange(_CHUNK + 1)) * sigma, dtype=np.float64)
         yield gaps
         at -= step * _CHUNK
+
+
+def asperity_stiffness(scene: Scene) -> float:
+    """Stiffness of one asperity [N/m]: of the stiffest of the scene's materials where adhesion holds it without load.
+
+    For JKR ``1.2 E* a0``; of one pressed by a roughness where nothing adheres.
+    """
+    surface = scene.surface
+    radius = max(zero_load_radius(one.surface) for one in scene.materials() if one.share > 0.0)
+    modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
+    return 1.2 * modulus * radius or 2.0 * modulus * math.sqrt(surface.asperity_radius * surface.roughness)

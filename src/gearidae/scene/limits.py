@@ -130,16 +130,23 @@ def check_reach(scene: Scene, cutoff: float = 0.0) -> None:
 
 
 def check_gaps(scene: Scene) -> None:
-    """Refuse gaps that a double cannot hold beside the backlash.
+    """Refuse gaps that a double cannot hold beside the backlash, and real asperities that fill the backlash.
 
     Raises
     ------
     SceneError
-        Naming ``mesh.backlash`` or ``initial.gap``.
+        Naming ``mesh.backlash``, ``initial.gap`` or ``surface.roughness``.
     """
     mesh, initial, sigma = scene.mesh, scene.initial, scene.surface.roughness
     assert mesh is not None
     assert initial is not None
+    if scene.contact.model == "population" and sigma > mesh.backlash:
+        raise SceneError(
+            "surface.roughness",
+            sigma,
+            f'must be at most mesh.backlash, {mesh.backlash:g} m, with contact.model = "population":'
+            " both flanks would be pressed onto thousands of asperities, and no step would end",
+        )
     if mesh.backlash > WIDEST_BACKLASH * sigma:
         raise SceneError(
             "mesh.backlash",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
@@ -21,7 +22,7 @@ from gearidae.runs.running import prepare
 from gearidae.scene import describe_key
 from gearidae.studies._ensemble import figure_names
 from gearidae.studies.distributions import read_distributions
-from gearidae.studies.observations import Observation
+from gearidae.studies.observations import STICKS, Observation
 from gearidae.studies.posterior import grid_posterior, sampled_posterior
 from gearidae.studies.predicting import Predictor
 from gearidae.studies.products import open_posterior
@@ -31,6 +32,12 @@ if TYPE_CHECKING:
     from gearidae.runs.kept_runs import KeptRuns
     from gearidae.scene import Scene
 
+log = logging.getLogger(__name__)
+
+_ONE_CELL: Final = 0.9
+"""Share of a posterior in one cell of its grid above which the cell is wider than the posterior."""
+_FAR: Final = 4.0
+"""Uncertainties beyond all runs from which an observation is far from them."""
 METHODS: Final = ("auto", "grid", "emcee")
 
 
@@ -111,6 +118,9 @@ def calibrate(
 
     def likelihood(values: Floats, shown: bool | SweepProgress = False) -> Floats:
         figures = predictor.figures(values, shown)
+        if chosen == "grid":  # a sampler comes to places that it leaves again
+            for place, each in enumerate(seen):
+                _doubt_observation(each, figures[:, place])
         parts = [each.log_likelihood(figures[:, place]) for place, each in enumerate(seen)]
         return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
 
@@ -120,6 +130,7 @@ def calibrate(
         predictor.kept = kept
         if chosen == "grid":
             ds = grid_posterior(distributions, names, points, lambda values: likelihood(values, progress))
+            _doubt(ds["weight"], dict(zip(names, keys, strict=True)))
         else:
             with sweep_progress(progress, steps) as report:
                 allowed = _where_allowed(base, keys, likelihood)
@@ -131,6 +142,30 @@ def calibrate(
 
     depends = {name: about[name] for name in ("scene", "source", "calibration")}
     return run_kept(how, predictor.store, work, depends, read=open_posterior)
+
+
+def _doubt(weight: xr.DataArray, keys: Mapping[Any, str]) -> None:
+    """Say where a posterior is finer than its grid, or goes on beyond the prior."""
+    for name, key in keys.items():
+        share = weight.sum([dim for dim in weight.dims if dim != name]).values
+        if share.max() > _ONE_CELL:
+            log.warning(
+                "the posterior of %s is narrower than a cell of the grid, and its spread is that of the cell: take "
+                "more points, or a narrower prior",
+                key,
+            )
+        if share.argmax() in (0, share.size - 1):
+            log.warning("the most likely %s is at the edge of its prior", key)
+
+
+def _doubt_observation(seen: Observation, predicted: Floats) -> None:
+    """Say that no run comes near what was measured."""
+    known = predicted[np.isfinite(predicted)]
+    if seen.of == STICKS or not known.size:
+        return
+    low, high, value = known.min(), known.max(), float(seen.value)
+    if not low - _FAR * seen.spread <= value <= high + _FAR * seen.spread:
+        log.warning("no run comes near %s = %g: theirs are %g to %g", seen.figure, value, low, high)
 
 
 def _where_allowed(scene: Scene, keys: tuple[str, ...], likelihood: Any) -> Any:

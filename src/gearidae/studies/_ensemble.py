@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 from collections.abc import Mapping
 from concurrent.futures import Executor
@@ -21,13 +22,15 @@ from gearidae.runs.sweeping import run_study
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.studies.design import Design, check_design, pick_freeze_design, plain_design
 from gearidae.studies.distributions import read_distributions
-from gearidae.studies.indices import Indices, indices_of
+from gearidae.studies.indices import FEWEST, Indices, indices_of
 from gearidae.studies.members import along_members, member_plan, names_of
 from gearidae.studies.seeds import NO_INDEX, SEEDS, seed_numbers, without_seeds
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
+
+log = logging.getLogger(__name__)
 
 
 def ensemble(
@@ -152,7 +155,13 @@ def _with_design(
     """Say where in the design each member stands, and what the indices are."""
     if of is None:
         return ds
-    found = indices_of(ds[of].values.astype(np.float64), len(keys), seed=seed)
+    figures = ds[of].values.astype(np.float64)
+    found = indices_of(figures, len(keys), seed=seed)
+    if none := int(np.isnan(figures).sum()):
+        log.warning(
+            "%d of %d members have no %s: the indices rest on %d rows in which all members have one%s",
+            none, figures.size, of, found.rows, f", of {FEWEST} that they need" if found.rows < FEWEST else "",
+        )  # fmt: skip
     ds = ds.assign_coords(
         matrix=("member", drawn.matrix, {"long_name": "matrix of the design", "units": "1"}),
         row=("member", drawn.row, {"long_name": "row of the matrix", "units": "1"}),

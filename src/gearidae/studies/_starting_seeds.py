@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
@@ -15,13 +16,14 @@ import xarray as xr
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
-from gearidae.errors import SceneError
+from gearidae.errors import SceneError, SolverError
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.studies.gear_answers import SLOW_ENOUGH
 from gearidae.studies.products import open_product
 from gearidae.studies.starting_ramp import (
+    FAILS,
     RESTS,
     constant,
     laid,
@@ -37,6 +39,8 @@ from gearidae.studies.starting_ramp import (
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
+
+log = logging.getLogger(__name__)
 
 KIND: Final = "starting_torques"
 SEEDS: Final = 20
@@ -59,6 +63,11 @@ _VARIABLES: Final[dict[str, tuple[tuple[str, ...], str, str]]] = {
         (*_ALONG, "seed"),
         "1",
         "whether the drive's own torque turns the gear from rest by one pitch",
+    ),
+    "failed": (
+        (*_ALONG, "seed"),
+        "1",
+        "whether the run of the gear could not be finished: shares are those of the others",
     ),
     "place": (("seed",), "1", "place of the start, in pitches"),
     "quantiles": (
@@ -139,12 +148,17 @@ class _Runs:
     ) -> None:
         self._how, self._kept, self._executor = how, kept, executor
         self._report, self._usual, self._done = report, usual, 0
+        self.failures: list[str] = []
 
     def torques(self, scenes: Sequence[Scene]) -> Floats:
-        """Torques of runs from rest [N m]; infinite where the gear has not turned."""
+        """Torques of runs from rest [N m]; infinite where the gear has not turned, NaN where its run has failed."""
         found = []
         for _, word in solutions(self._kept, self._executor, run_from_rest, scenes, self._how.backend):
-            found.append(math.inf if word == RESTS else float(word))
+            failed = word.startswith(FAILS)
+            if failed:
+                self.failures.append(word.removeprefix(FAILS))
+                log.warning("one gear is left out: %s", self.failures[-1])
+            found.append(math.nan if failed else math.inf if word == RESTS else float(word))
             self._done += 1
             self._report(float(min(self._done, self._usual)), self._usual)
         return np.array(found)
@@ -197,6 +211,14 @@ def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
     for one, torques in _in_parts(designs, pilots):
         dry = pitch_of(one.scene).dry
         started = torques[np.isfinite(torques)] - dry
+        if np.isnan(torques).all():
+            raise SolverError(
+                f"no gear could be followed; the last one: {runs.failures[-1]}",
+                time=0.0,
+                state={},
+                last_event="none",
+                advice="tighten run.rtol, or reduce the torque",
+            )
         if not started.size:
             raise SceneError("scene", one.scene.name, "has no gear that any torque starts")
         one.scale = float(np.median(started))
@@ -213,7 +235,7 @@ def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
         one.starts = np.full(len(one.laid), 0.0 if torque > 0.0 else math.nan)
         if torque > dry:
             found = runs.torques([constant(at, one.scale, torque) for at in one.laid])
-            one.starts = np.isfinite(found).astype(np.float64)
+            one.starts = np.where(np.isnan(found), np.nan, np.isfinite(found))
 
 
 def _in_parts(designs: Sequence[_Design], values: Floats) -> list[tuple[_Design, Floats]]:
@@ -221,13 +243,17 @@ def _in_parts(designs: Sequence[_Design], values: Floats) -> list[tuple[_Design,
 
 
 def _quantiles(torques: Floats) -> Floats:
-    """Quantiles of torques, interpolated between the ordered ones; infinite from the first that is."""
-    ordered = np.sort(torques)
+    """Quantiles of torques that are known, interpolated between the ordered ones; infinite from the first that is."""
+    ordered = np.sort(torques[~np.isnan(torques)])
     place = np.array(QUANTILES) * (ordered.size - 1)
     low, high = ordered[np.floor(place).astype(int)], ordered[np.ceil(place).astype(int)]
     with np.errstate(invalid="ignore"):
         between = low + (place % 1.0) * (high - low)
     return np.where(np.isfinite(high), between, np.inf)
+
+
+def _mean(values: Floats) -> float:
+    return float(values.mean()) if values.size else math.nan
 
 
 def _dataset(
@@ -270,8 +296,9 @@ def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
         "starting_torque": finite,
         "starts": starts,
         "quantiles": np.where(np.isfinite(quantiles), quantiles, np.nan),
-        "not_started": np.isnan(finite).mean(axis=1),
-        "chance": starts.mean(axis=1),
+        "failed": np.isnan(torques),
+        "not_started": np.isinf(torques).sum(axis=1) / (~np.isnan(torques)).sum(axis=1),
+        "chance": [_mean(each[~np.isnan(each)]) for each in starts],
         "rate": [
             ramp_rate(pitch, one.scale, one.halvings) for pitch, one in zip(pitches, designs, strict=True)
         ],

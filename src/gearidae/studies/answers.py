@@ -158,7 +158,8 @@ def _in_words(value: float, unit: str) -> str:
 
 
 def _uncertain(one: xr.Dataset, name: str) -> str:
-    return f"{float(one[name]):.3f} +- {float(one[f'{name}_uncertainty']):.3f}"
+    value = float(one[name])
+    return "none" if math.isnan(value) else f"{value:.3f} +- {float(one[f'{name}_uncertainty']):.3f}"
 
 
 def _counts(words: xr.DataArray) -> Rows:

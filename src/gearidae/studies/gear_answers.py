@@ -75,7 +75,7 @@ def _with_error(mean: float, error: float, unit: str) -> str:
 def starts_sentence(ds: xr.Dataset) -> str:
     """Say what the gears of the worst coverage need, and how many of them the drive starts."""
     worst = ds.isel(sam_fraction=int(np.argmin(ds["sam_fraction"].values)))
-    count, coated = ds.sizes["seed"], f"SAM {100.0 * float(worst['sam_fraction']):.4g} %"
+    count, coated = _followed(worst), f"SAM {100.0 * float(worst['sam_fraction']):.4g} %"
     middle = _torque(worst["quantiles"].sel(quantile=0.5), worst)
     sentence = f"{coated}: half of {count} gears of this design start at {middle} on the pinion"
     drive = float(ds.attrs.get("drive_torque", math.nan))
@@ -87,13 +87,16 @@ def starts_sentence(ds: xr.Dataset) -> str:
 
 def starts_rows(ds: xr.Dataset) -> Rows:
     """Quantiles, gears that did not start, chance at the drive's own torque, and rate, at each coverage."""
-    count, drive = ds.sizes["seed"], float(ds.attrs.get("drive_torque", math.nan))
+    drive = float(ds.attrs.get("drive_torque", math.nan))
     for number in range(ds.sizes["sam_fraction"]):
         one = ds.isel(sam_fraction=number)
+        count = _followed(one)
         yield f"Starting torque of {count} gears, SAM {100.0 * float(one['sam_fraction']):.4g} %", "", ""
         for share in one["quantile"].values.tolist():
             below = f"{100.0 * share:.0f} % of the gears start below"
             yield below, _torque(one["quantiles"].sel(quantile=share), one), ""
+        if failed := one.sizes["seed"] - count:
+            yield "left out", f"{failed} of {one.sizes['seed']}", "their runs could not be finished"
         rests = round(float(one["not_started"]) * count)
         yield "not started", f"{rests} of {count}", f"when the ramp ended at {_torque(one['ramp_end'], one)}"
         if drive > 0.0:
@@ -109,6 +112,11 @@ def starts_rows(ds: xr.Dataset) -> Rows:
             f"{float(one['damping']):.3g} N s/m",
             "at least 3 % of critical in this study",
         )
+
+
+def _followed(one: xr.Dataset) -> int:
+    """Gears whose runs could be finished."""
+    return one.sizes["seed"] - (int(one["failed"].sum()) if "failed" in one else 0)
 
 
 def _torque(value: xr.DataArray, one: xr.Dataset) -> str:

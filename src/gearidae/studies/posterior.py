@@ -175,7 +175,9 @@ def summary(
         Along ``parameter``, and ``level`` (`LEVELS`).
     """
     mean = weight @ nodes
-    deviation = np.sqrt(weight @ (nodes - mean) ** 2)
+    # a grid says nothing finer than the spread within a cell
+    within = 0.0 if widths is None else np.asarray(widths) / np.sqrt(12.0)
+    deviation = np.maximum(np.sqrt(weight @ (nodes - mean) ** 2), within)
     quantiles = np.empty((len(keys), len(LEVELS)))
     for number in range(len(keys)):
         values, place = np.unique(nodes[:, number], return_inverse=True)

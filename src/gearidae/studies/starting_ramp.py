@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from gearidae.archive.dataset import reached
-from gearidae.asperities.tip import asperity_of, contact_modulus
-from gearidae.contact.asperity_statistics import zero_load_radius
+from gearidae.asperities.tip import asperity_of
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
+from gearidae.runs.pair_contact import asperity_stiffness
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 
 if TYPE_CHECKING:
@@ -51,6 +51,8 @@ _TIGHTEST: Final = 1e-12
 
 RESTS = "rests"
 """Word of a run in which the gear has not turned a pitch."""
+FAILS = "fails: "
+"""What the word of a run that could not be finished begins with; the message follows."""
 Knots = list[tuple[float, float]]
 
 
@@ -92,17 +94,11 @@ def pitch_of(scene: Scene) -> Pitch:
 def least_damping(scene: Scene) -> float:
     """Mesh damping of the runs: the scene's own, or `DAMPING` of the critical one if that is more [N s/m].
 
-    The stiffness is that of the stiffest asperity of the scene's materials where adhesion holds it without load, for
-    JKR ``1.2 E* a0``, or of one pressed by a roughness where nothing adheres.
+    The stiffness is `asperity_stiffness`.
     """
-    surface = scene.surface
     assert scene.mesh is not None
-    radius = max(zero_load_radius(one.surface) for one in scene.materials() if one.share > 0.0)
-    modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
-    stiffness = 1.2 * modulus * radius or 2.0 * modulus * math.sqrt(
-        surface.asperity_radius * surface.roughness
-    )
-    return max(scene.mesh.damping, DAMPING * 2.0 * math.sqrt(stiffness * effective_mass(scene)))
+    critical = 2.0 * math.sqrt(asperity_stiffness(scene) * effective_mass(scene))
+    return max(scene.mesh.damping, DAMPING * critical)
 
 
 def laid(scene: Scene, seed: int) -> Scene:
@@ -183,7 +179,8 @@ def run_from_rest(at: Scene, backend: str) -> tuple[Solution, str]:
     -------
     Solution, str
         Without samples, and the torque [N m] at the last moment of rest before the gear had turned one pitch, as text;
-        without many samples, the torque at which it had. `RESTS` if it has not turned.
+        without many samples, the torque at which it had. `RESTS` if it has not turned, `FAILS` and a message if the
+        run could not be finished: one gear does not end a study of many.
     """
     assert at.drive is not None
     for factor in _TIGHTER:
@@ -191,7 +188,7 @@ def run_from_rest(at: Scene, backend: str) -> tuple[Solution, str]:
         if solution.status == "finished":
             break
     if solution.status != "finished":
-        raise unfinished(solution, f"the run of seed {at.contact.seed}")
+        return solution, f"{FAILS}{unfinished(solution, f'the run of seed {at.contact.seed}')}"
     times, torques = np.array(list(at.drive.schedule)).T
     speed, angle, end = solution.samples["gear_speed"], solution.samples["gear_angle"], reached(solution)
     word = RESTS

@@ -18,6 +18,7 @@ from gearidae.archive.energy import doubt, imbalance, imbalance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of, swept_dims
+from gearidae.errors import SceneError
 from gearidae.records import RUN_PARTS, EventKind
 
 START_UP = RUN_PARTS[0]
@@ -67,7 +68,7 @@ class GearOutcome(Shown):
     verdict: str
     min_speed: float
     max_speed: float
-    impacts: int
+    impacts: float
     wall_time: float
     stick_time: float
     mesh_exits: int
@@ -199,7 +200,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcom
         verdict=gear_verdict(found, status, scheduled=scheduled),
         min_speed=found.min_gear_speed if found else math.nan,
         max_speed=found.max_gear_speed if found else math.nan,
-        impacts=count(run["event_kind"], EventKind.ONSET),
+        impacts=_impacts(run),
         wall_time=float(run_value(run, "wall_time")),
         stick_time=found.stick_time if found else math.nan,
         mesh_exits=found.stick_exits if found else 0,
@@ -211,6 +212,8 @@ def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcom
 def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
     found = extremes_of(run)
     status = str(run_value(run, "status"))
+    if "event_kind" not in run:
+        raise SceneError("dataset", "without events", "must have them: a roller is judged by its events")
     impacts = count(run["event_kind"], EventKind.ONSET)
     kinds = (values for _, values in pieces(run["event_kind"]))
     verdict, restitution = roller_verdict(found, status, impacts, in_touch(kinds)), math.nan
@@ -228,6 +231,11 @@ def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
         wall_time=float(run_value(run, "wall_time")),
         imbalance=imbalance_of(run),
     )
+
+
+def _impacts(run: xr.Dataset) -> float:
+    """Impacts of a run; NaN of one whose events have been dropped."""
+    return count(run["event_kind"], EventKind.ONSET) if "event_kind" in run else math.nan
 
 
 def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:

@@ -1,0 +1,195 @@
+"""What a growing archive says of itself in its last bytes: how much of it is committed, and checksums of that.
+
+A damaged structure can end the process in which netCDF's library reads it. So the structure is checked first, from the
+bytes of the file; values are checked when they are there. Two records take turns: a kill can spoil the newer one only.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import mmap
+import subprocess
+import sys
+import zlib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+log = logging.getLogger(__name__)
+
+RECORDS: Final = "commit_records"
+"""The last variable of a growing archive: two records, each a checksum and JSON, filled up with blanks."""
+LENGTH: Final = 4096
+"""Bytes of a record."""
+COPIED: Final = 2**20
+"""Rows read at a time."""
+COUNTS: Final = ("committed_samples", "committed_events")
+"""Variables that say to readers of other programs how much is committed."""
+_READ_ALL: Final = "import sys, netCDF4; [v[...] for v in netCDF4.Dataset(sys.argv[1]).variables.values()]"
+
+
+@dataclass(frozen=True, slots=True)
+class Commit:
+    """A state of a growing archive.
+
+    Attributes
+    ----------
+    samples, events : int
+        How many are committed.
+    checksums : mapping of str to int
+        CRC-32 of the committed values of each variable that grows.
+    number : int
+        Which commit it is, counted from 0.
+    structure : tuple of int
+        Bytes before the data of the first variable, and their CRC-32.
+    constants : int
+        CRC-32 of the values of all other variables.
+    """
+
+    samples: int = 0
+    events: int = 0
+    checksums: Mapping[str, int] = field(default_factory=dict)
+    number: int = 0
+    structure: tuple[int, int] = (0, 0)
+    constants: int = 0
+
+    @classmethod
+    def first(cls, file: Any, path: Path) -> Commit:
+        """Describe an archive that has been laid out, and written to the disk."""
+        data = sum(
+            -(-variable.size * variable.dtype.itemsize // 4) * 4 for variable in file.variables.values()
+        )
+        with path.open("rb") as bytes_of:
+            begin = path.stat().st_size - data
+            structure = (begin, zlib.crc32(bytes_of.read(begin)))
+        return cls(structure=structure, constants=_constants(file))
+
+    def write(self, file: Any) -> None:
+        """Write the record in the place of the one before the last."""
+        text = json.dumps(asdict(self)).encode()
+        text = f"{zlib.crc32(text):08x}".encode() + text
+        if len(text) > LENGTH:
+            raise OSError("it has too many variables for its records")
+        place = LENGTH * (self.number % 2)
+        file[RECORDS][place : place + LENGTH] = np.frombuffer(text.ljust(LENGTH), np.uint8)
+
+    def checksum(self, name: str, values: NDArray[Any]) -> int:
+        """Checksum of a variable after more values."""
+        return _checksum(values, self.checksums.get(name, 0))
+
+    def holds(self, file: Any) -> bool:
+        """Whether the committed values are in an open file, as they were written."""
+        return all(
+            checksum_of(file[name], self.samples if "time" in file[name].dimensions else self.events) == was
+            for name, was in self.checksums.items()
+        )
+
+
+def check_bytes(path: Path) -> list[Commit]:
+    """Make sure that netCDF's library survives a file, and return the records of a growing archive, the newest first.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    list of Commit
+        Empty of another file. One in the classic format, such as an unfinished run of version 0.2.0, has been read in a
+        process of its own.
+
+    Raises
+    ------
+    ValueError
+        If the file is cut or altered.
+    """
+    with path.open("rb") as file:
+        if not file.read(4).startswith(b"CDF"):
+            return []
+        file.seek(-min(2 * LENGTH, path.stat().st_size), 2)
+        tail = file.read()
+        commits = [one for text in (tail[:LENGTH], tail[LENGTH:]) if (one := _read(text)) is not None]
+        if commits:
+            file.seek(0)
+            length, was = commits[0].structure
+            if zlib.crc32(file.read(length)) != was:
+                raise ValueError("its structure has been altered")
+            return sorted(commits, key=lambda one: -one.number)
+        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+            if content.find(RECORDS.encode()) >= 0:
+                raise ValueError("its end is missing or altered")
+    if subprocess.run([sys.executable, "-c", _READ_ALL, path], capture_output=True, check=False).returncode:
+        raise ValueError("netCDF's library cannot read it")
+    return []
+
+
+def intact(file: Any, commits: list[Commit], path: Path) -> Commit:
+    """Return the newest state whose values are in an open file as they were written; an older one is warned of.
+
+    Parameters
+    ----------
+    commits : list of Commit
+        From `check_bytes`, not empty.
+    path : Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    from gearidae.archive.checkpoint import Checkpoint  # which keeps commits
+
+    newest = commits[0]
+    if _constants(file) != newest.constants:
+        raise ValueError("its values have been altered")
+    if newest.holds(file):
+        return newest
+    point = Checkpoint.newest(path, str(getattr(file, "run", "")))
+    for commit in (*commits[1:], *([] if point is None else [point.commit])):
+        if commit.samples and commit.holds(file):
+            log.warning(
+                "%s is damaged after %d of its %d samples: the rest is left out",
+                path,
+                commit.samples,
+                newest.samples,
+            )
+            return commit
+    raise ValueError("its values have been altered")
+
+
+def checksum_of(variable: Any, length: int) -> int:
+    """Checksum of the first values of a variable in an open file."""
+    found = 0
+    for start in range(0, length, COPIED):
+        found = _checksum(variable[start : min(start + COPIED, length)], found)
+    return found
+
+
+def _checksum(values: NDArray[Any], before: int) -> int:
+    values = np.ascontiguousarray(values)
+    return zlib.crc32(values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes(), before)
+
+
+def _constants(file: Any) -> int:
+    """Checksum of all values that are there from the first."""
+    found = 0
+    for name, variable in file.variables.items():
+        if not {"time", "event"} & set(variable.dimensions) and name not in (RECORDS, *COUNTS):
+            found = _checksum(variable[...], found)
+    return _checksum(file["time"][...], found) if "time" in file.variables else found
+
+
+def _read(text: bytes) -> Commit | None:
+    try:
+        if int(text[:8], 16) != zlib.crc32(text[8:].rstrip()):
+            return None
+        fields = json.loads(text[8:])
+        return Commit(**{**fields, "structure": tuple(fields["structure"])})
+    except (ValueError, TypeError, KeyError):
+        return None
