@@ -197,17 +197,24 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
     return True
 
 
+@compiled
+def follow_creeping(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
+    """Bring gears to rest that creep towards it; as `follow_sliding`."""
+    _note_directions(m)
+    stopped = stop_creeping(m, t, y)
+    return _record_changes(m, t, events, count) if stopped else count, stopped
+
+
 @compiled_once(FRICTION)
 def stop_creeping(m: Model, t: float, y: Floats) -> bool:
     """Bring gears to rest that creep towards it, by less than a tolerance, and whom friction then holds.
 
-    Without a vibration no sliding turns round, so that no guard falls. For `record_sliding` to record.
+    Without a vibration no sliding turns round, so that no guard falls.
     """
     slow = max(AT_ONCE, 1.0 / m.rows[m.scene.error_weights_at + V])
     fastest = max(abs(pinion_speed(m, y)[0]), abs(y[W]))
     if m.state.hold == AT_REST or fastest > slow or not _rests(m, t, y):
         return False
-    m.work.rubbing.happened = 0
     _decide_at_rest(m, t, y)
     return True
 

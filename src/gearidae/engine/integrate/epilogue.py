@@ -12,7 +12,7 @@ from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
-from gearidae.engine.events.sliding import follow_sliding, record_sliding, stop_creeping
+from gearidae.engine.events.sliding import follow_creeping, follow_sliding
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
 from gearidae.engine.integrate.resting import begin_rest, comes_to_rest
@@ -80,9 +80,9 @@ def finish_step(
             afresh = True
         else:
             driver.done = 1
-    if m.scene.friction.on != 0 and m.state.hold != FREE and stop_creeping(m, t, y):
-        driver.events = record_sliding(m, t, events, driver.events)
-        afresh = True
+    if m.scene.friction.on != 0 and m.state.hold != FREE:
+        driver.events, stopped = follow_creeping(m, t, y, events, driver.events)
+        afresh |= stopped
     if driver.done != 0 or driver.error != 0:
         followers.finish(m, t, y, yp)
     return afresh
