@@ -193,8 +193,8 @@ def test_stops_on_the_way_change_nothing(kind, shaft):
 # -- what a rest costs -----------------------------------------------------------------------------------------------
 
 LONG = 1e4
-STEPS = 20_000  # of the landing of the pinion and of its vibration, which dies out
-LOOKS = 30_000
+STEPS = 50_000  # of the landing of the pinion and of its vibration, which dies out
+LOOKS = 100_000
 LANDED = 0.1
 """Until the pinion has landed [s], whose impact may push the gear on."""
 
@@ -214,39 +214,36 @@ def test_ten_thousand_seconds_of_rest_under_a_load_of_twenty_kilohertz(backend, 
 
 
 def test_ten_thousand_seconds_in_which_bounds_say_nothing():
-    """Drive and load rise and fall together: only together do they hold, which one common period shows."""
-    changes = {
-        "contact.friction": 0.1,
-        "drive.torque": 4e-18,
-        "drive.harmonic": {"amplitude": 1e-18, "frequency": 2e4},
-        "load.torque": 1.3e-17,
-        "load.harmonic": {"amplitude": 3e-18, "frequency": 2e4},
-        "run.duration": LONG,
-    }
+    """Two harmonics whose amplitudes together exceed what the load has above the push, and whose sum never does.
+
+    ``cos x + cos 2 x`` is -9/8 at least: one common period shows it.
+    """
+    waves = [{"amplitude": 4e-18, "frequency": f} for f in (2e4, 4e4)]
+    changes = {"load.torque": 1.8e-17, "load.harmonic": waves, "run.duration": LONG}
     run = solve(PAIR.replace(changes))
     assert run.status == "finished"
     assert run.statistics.steps < STEPS
     assert run.statistics.guard_evaluations < LOOKS
+    assert (slip_times(run) < LANDED).all()
 
 
 def test_a_ramp_of_the_load_ends_a_long_rest_in_the_right_period():
-    """A load of 20 kHz that falls to its last period's push in 1,000 s: periods are passed by bisection."""
+    """A load of 20 kHz that falls to the push in 800 s: 16 million periods are passed by bisection."""
     push, amplitude, frequency = 3 * 4e-18, 2e-18, 2e4
+    # the least of a period passes below the push when the middle is an amplitude above it; the push is known to 1e-4
+    due, known = 1000.0 * (3e-17 - push - amplitude) / 2e-17, 1e-4 * push / 2e-20
     changes = {
         "load.torque": 0.0,
         "load.schedule": [[0.0, 3e-17], [1000.0, 1e-17]],
         "load.harmonic": {"amplitude": amplitude, "frequency": frequency},
-        "run.duration": 900.5,
+        "run.duration": due + known,
         "run.samples": 2,
     }
-    run = solve(PAIR.replace({**changes, "run.stop": "turns 0.001"}))
-    # the least of a period passes below the push when the middle is an amplitude above it; the push is known to 1e-4
-    mean = 1000.0 * (3e-17 - push - amplitude) / 2e-17
+    run = solve(PAIR.replace(changes))
     times = slip_times(run)
     first = times[times > LANDED][0]
-    assert first == pytest.approx(mean, abs=1e-4 * push / 2e-20)
-    assert (first * frequency) % 1.0 == pytest.approx(0.5, abs=0.01)
-    assert run.statistics.guard_evaluations < 10 * LOOKS
+    assert first == pytest.approx(due, abs=known)
+    assert (first * frequency) % 1.0 == pytest.approx(0.5, abs=0.02)
 
 
 # -- the search alone ------------------------------------------------------------------------------------------------
