@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Hashable, Sequence
 from dataclasses import fields
@@ -10,8 +11,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.variables import EXTREMES, extreme_names
+from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST, extreme_names
 from gearidae.records import Extremes
+from gearidae.records.standing import COLUMNS
 from gearidae.scene import Scene
 
 
@@ -47,7 +49,23 @@ def extreme_variables(
         field = "smallest_separation" if name == "min_separation" else name
         values = [getattr(extremes, field, nothing) for extremes in runs]
         made[name] = (dims, np.array(values, dtype=variable.dtype).reshape(shape), variable.attributes)
+    if scene.roller is None:
+        lists = np.empty(len(runs), dtype=object)
+        lists[:] = [standstills_as_text(extremes) for extremes in runs]
+        made[STANDSTILL_LIST.name] = (dims, lists.reshape(shape), STANDSTILL_LIST.attributes)
     return made
+
+
+def standstills_as_text(extremes: Extremes | None) -> str:
+    """Write the standstills of a run as JSON, which has no NaN: the end of one that lasts is null."""
+    numbers = [] if extremes is None else list(extremes.standstill_list)
+    plain = [None if math.isnan(number) else number for number in numbers]
+    return json.dumps([plain[k : k + len(COLUMNS)] for k in range(0, len(plain), len(COLUMNS))])
+
+
+def standstills_from_text(text: str) -> list[list[float]]:
+    """Read what `standstills_as_text` has written."""
+    return [[math.nan if number is None else float(number) for number in row] for row in json.loads(text)]
 
 
 def extremes_of(run: xr.Dataset) -> Extremes | None:
@@ -67,7 +85,7 @@ def extremes_of(run: xr.Dataset) -> Extremes | None:
         return None
     numbers: dict[str, Any] = {}
     for field in fields(Extremes):
-        if field.name == "exposures":  # variables of their own
+        if field.name in ("exposures", "standstill_list"):  # variables of their own
             continue
         counts = EXTREMES[field.name].dtype is np.int64
         if field.name in run.variables:

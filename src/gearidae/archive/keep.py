@@ -15,6 +15,7 @@ from gearidae.archive.variables import (
     EXPOSURES,
     OF_SWEPT_RUN,
     RUN,
+    STANDSTILL_LIST,
     VERDICT,
     columns,
     extreme_names,
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 GROUPS = ("verdict", "extremes", "statistics", "energy_balance", "scene", "exposures", "samples", "events")
 """Names that stand for several variables, or for one, from the smallest to the largest."""
 _ALWAYS = ("status", "message", "wall_time", *VERDICT)
-_IN_WORDS = ("stick_time", "stick_exits")
+_IN_WORDS = ("stick_time", "stick_exits", "free_advance", "holding", "turned_back", "back_time", "followed_time")
 """What the words of a gear's verdict say besides."""
 
 
@@ -106,7 +107,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     extremes = list(extreme_names(scene.roller is not None, scene.contact.model))
     members: dict[str, tuple[str, ...]] = {
         "verdict": tuple(VERDICT),
-        "extremes": tuple(extremes),
+        "extremes": (*extremes, *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
         "statistics": tuple(RUN),
         "energy_balance": tuple(ENERGY_BALANCE),
         "scene": ("scene",),

@@ -24,6 +24,7 @@ from gearidae.records import (
     Flank,
     sampled_columns,
 )
+from gearidae.records.standing import Holding
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +181,7 @@ _ASPERITY_COUNTS = (
     Variable("asperity_onsets", (), "1", "asperities that have joined", np.int64),
     Variable("asperity_detachments", (), "1", "asperities that have detached", np.int64),
 )
+_HOLDING = "sum of " + ", ".join(f"{part.value} for {part.words}" for part in Holding)
 _GEAR_EXTREMES = (
     Variable("min_gear_speed", (), "rad s-1", "smallest speed of the gear"),
     Variable("max_gear_speed", (), "rad s-1", "largest speed of the gear"),
@@ -200,10 +202,29 @@ _GEAR_EXTREMES = (
         (),
         "s",
         "when the gear came to stand",
-        comment="first fall of its speed to zero where it still is, to half a pitch; NaN if it turns",
+        comment="first zero of its speed from which it stands; NaN if it does not stand at the end",
     ),
-    Variable("stick_exits", (), "1", "mesh exits on the drive flank until then", np.int64),
-    Variable("turned_back", (), "1", "pitches by which the gear has been turned back since it came to stand"),
+    Variable("stick_exits", (), "1", "mesh exits on the drive flank until it stood or went back", np.int64),
+    Variable("advance", (), "1", "pitches that the gear has been away from where it came to stand"),
+    Variable("free_advance", (), "1", "pitches that free gears would have been away from there"),
+    Variable("driven_time", (), "s", "time since then for which the drive exceeded the dry load"),
+    Variable("held_torque", (), "N m", "largest torque of the drive at the gear beyond the dry load since then"),
+    Variable("holding", (), "1", "what holds the gear at the end", np.int64, comment=_HOLDING),
+    Variable("turned_back", (), "1", "pitches by which the gear has gone back at the end"),
+    Variable("free_turned_back", (), "1", "pitches by which free gears would have gone back"),
+    Variable("back_time", (), "s", "zero of the speed from which the gear has gone back"),
+    Variable("standstills", (), "1", "number of standstills", np.int64),
+    Variable("standing_time", (), "s", "time of all standstills"),
+    Variable("standing_rest_time", (), "s", "time for which dry friction held all of the gear in them"),
+    Variable(
+        "start_time",
+        (),
+        "s",
+        "end of the last standstill that has ended",
+        comment="0 without one; NaN if the gear has never left half a pitch",
+    ),
+    Variable("breakaway_torque", (), "N m", "torque of the drive on the pinion then"),
+    Variable("followed_time", (), "s", "time since the start of the chain of runs to which this holds"),
     Variable("turn_backs", (), "1", "how often adhesion has turned the gear back where it stands", np.int64),
     Variable("time_adhering", (), "s", "time held by adhesion, from one turning back to the next"),
     Variable("mesh_exits", (), "1", "mesh exits on the drive flank", np.int64),
@@ -265,6 +286,9 @@ ROLLER_EXTREMES: Mapping[str, Variable] = {
 EXTREMES: Mapping[str, Variable] = {
     variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES, *_ASPERITY_COUNTS)
 }
+STANDSTILL_LIST = Variable(
+    "standstill_list", (), "1", "standstills of the run as JSON, see ds.gearidae.standstills()", np.object_
+)
 ASPERITY_COUNTS = tuple(variable.name for variable in _ASPERITY_COUNTS)
 """Those that only populations have."""
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
@@ -298,6 +322,7 @@ def by_name() -> dict[str, Variable]:
         **VERDICT,
         **ENERGY_BALANCE,
         **EXTREMES,
+        STANDSTILL_LIST.name: STANDSTILL_LIST,
         **EXPOSURES,
         **PLACES,
     }

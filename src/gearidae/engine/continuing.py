@@ -33,6 +33,7 @@ from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import begin_sliding, settle_start
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS, exposure_table, exposures_of
+from gearidae.engine.followers.standing.follow import settle_standing_at
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
@@ -112,6 +113,8 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     assert start.scene is not None
     assert start.words is not None
     old, old_y = _restored(start.scene, start.words, start.began)
+    if old.model.scene.kind == GEARS:
+        settle_standing_at(old.located.place, float(old.model.state.time))
     new = problem_from(scene, start)
     new.prepare(scene.run.rtol, scene.run.sample_count)
     new = _same_contact(old, new)
@@ -317,7 +320,6 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     if m.scene.kind != GEARS:
         return
     if m.scene.friction.on != 0:
-        s.stop_armed = 0
         if source.scene.friction.on != 0:
             settle_start(m, time, y, False)
         else:
@@ -328,6 +330,5 @@ def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
         s.slip, s.slipping = 1.0, 0
     elif source.scene.dry == 0 or source.scene.friction.on != 0:
         s.slip, s.slipping = float(np.sign(y[W])), int(abs(y[W]) > m.scene.rest_speed)
-    s.stop_armed = 0
     if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:
         stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)

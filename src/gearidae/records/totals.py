@@ -173,12 +173,36 @@ class Extremes:
     reversals : int
         Number of falls of the gear's speed to zero.
     stick_time : float
-        First time at which the speed fell to zero within half a pitch of the final position [s]; 0 if it never rose
-        above zero.
+        First zero of the speed from which the gear stands until the end [s], see `gearidae.records.standing`; 0 of a
+        gear that has never left half a pitch from a start at rest. NaN if it does not stand.
     stick_exits : int
-        Mesh exits until the stick time; all of them if the gear has not stuck.
-    turned_back : float
-        Pitches by which the gear has turned back since the stick time.
+        Mesh exits until the gear came to stand, or went back; all of them if it did neither.
+    advance, free_advance : float
+        Farthest distances of the gear and of free gears from there [pitches]; of a gear that does not stand, from the
+        first zero within half a pitch of all that came later. NaN without one.
+    driven_time : float
+        Time since then for which the drive exceeded the dry load [s].
+    held_torque : float
+        Largest torque of the drive at the gear beyond the dry load since then [N m].
+    holding : int
+        What holds a gear that stands, see `gearidae.records.standing.Holding`.
+    turned_back, free_turned_back : float
+        Pitches by which the gear, and free gears, have turned back, if its last movement of more than half a pitch was
+        back, and this throughout the last period of the slowest harmonic.
+    back_time : float
+        Zero of the speed from which the gear has gone back [s]; NaN if it has not.
+    standstills : int
+        Number of standstills, with that at the end.
+    standing_time, standing_rest_time : float
+        Time of all standstills, and that for which dry friction held all of the gear there [s].
+    start_time : float
+        End of the last standstill that has ended [s]; 0 without one, NaN if the gear has never left half a pitch.
+    breakaway_torque : float
+        Torque of the drive on the pinion then [N m].
+    followed_time : float
+        Time since the start of the chain of runs up to which all this holds [s].
+    standstill_list : array of float
+        Standstills in the order of time, `gearidae.records.standing.COLUMNS` of each; of more than 64 the longest.
     turn_backs : int
         Number of times that adhesion of the drive flank has turned the gear back there, since dry resistance last held
         it; 0 unless it has stuck.
@@ -216,7 +240,20 @@ class Extremes:
     reversals: int = 0
     stick_time: float = math.nan
     stick_exits: int = 0
+    advance: float = math.nan
+    free_advance: float = math.nan
+    driven_time: float = math.nan
+    held_torque: float = math.nan
+    holding: int = 0
     turned_back: float = math.nan
+    free_turned_back: float = math.nan
+    back_time: float = math.nan
+    standstills: int = 0
+    standing_time: float = math.nan
+    standing_rest_time: float = math.nan
+    start_time: float = math.nan
+    breakaway_torque: float = math.nan
+    followed_time: float = math.nan
     turn_backs: int = 0
     time_adhering: float = math.nan
     mesh_exits: int = 0
@@ -229,3 +266,4 @@ class Extremes:
     asperity_onsets: int = 0
     asperity_detachments: int = 0
     exposures: array[float] = field(default_factory=lambda: array("d"))
+    standstill_list: array[float] = field(default_factory=lambda: array("d"))

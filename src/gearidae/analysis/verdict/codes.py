@@ -24,6 +24,7 @@ class VerdictCode(IntEnum):
     STOPS = 7
     REBOUNDS = 8
     FLIES = 9
+    TURNS_BACK = 10
 
     @property
     def word(self) -> str:

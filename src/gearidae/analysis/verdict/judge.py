@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.records import EventKind, Extremes, Solution
+from gearidae.records.standing import is_driven
 from gearidae.scene import Scene
 
 IRREGULAR_ABOVE = 0.25
@@ -44,6 +45,8 @@ def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int, int]:
 def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str:
     """Judge the run of a gear pair.
 
+    Where it stands is judged alike for every torque, by the motion beside that of free gears.
+
     Parameters
     ----------
     found : Extremes or None
@@ -51,18 +54,24 @@ def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str
     status : str
         How the run ended.
     scheduled : bool
-        Whether speeds change because they are asked to, see `is_scheduled`.
+        Whether speeds change because they are asked to, see `is_scheduled`; how a gear turns is then not judged.
     """
     if found is None or (scheduled and status != "finished"):
         return "unfinished"
-    if scheduled and found.last_min_gear_speed > 0.0:
-        return "runs"
     if not math.isnan(found.stick_time):
-        held = "stops" if scheduled else "sticks"
-        return "runs back" if found.turned_back > BACK_FROM else held
-    if scheduled:  # its speed fell to zero at last, and it has turned on
-        return "irregular"
-    return _turning(found) if status == "finished" else "unfinished"
+        return standing_verdict(found.free_advance, found.driven_time, found.followed_time)
+    if found.turned_back > BACK_FROM:
+        return "turns back" if found.free_turned_back >= 0.5 * found.turned_back else "runs back"
+    if status != "finished":
+        return "unfinished"
+    if scheduled:
+        return "runs" if found.last_min_gear_speed > 0.0 else "irregular"
+    return _turning(found)
+
+
+def standing_verdict(free_advance: float, driven_time: float, until: float) -> str:
+    """Say what a gear does that stands: it sticks if it is driven; see `gearidae.records.standing`."""
+    return "sticks" if is_driven(free_advance, driven_time, until) else "stops"
 
 
 def roller_verdict(found: Extremes | None, status: str, impacts: int, touching: bool) -> str:

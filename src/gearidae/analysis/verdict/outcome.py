@@ -6,12 +6,13 @@ The words are defined in ``docs/verdicts.md``.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
 import xarray as xr
 
+from gearidae.analysis.verdict.earlier import OLD, earlier_verdict, is_earlier
 from gearidae.analysis.verdict.judge import gear_verdict, in_touch, is_scheduled, roller_verdict
 from gearidae.analysis.verdict.table import Outcomes, Shown
 from gearidae.archive.energy import doubt, imbalance, imbalance_of
@@ -19,7 +20,8 @@ from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, run_value, runs, scene_of, swept_dims
 from gearidae.errors import SceneError
-from gearidae.records import RUN_PARTS, EventKind
+from gearidae.records import RUN_PARTS, EventKind, Extremes
+from gearidae.records.standing import Holding
 
 START_UP = RUN_PARTS[0]
 """Share of the run in which the teeth may still bounce from how they were set down."""
@@ -36,16 +38,17 @@ class GearOutcome(Shown):
     status : str
         ``finished``, or why the solver ended early.
     verdict : str
-        - ``sticks``: the gear's speed has fallen to zero and it has not turned on by half a pitch since; or it never
-          rose above zero.
-        - ``runs back``: it has been turned back by more than half a pitch since.
+        - ``sticks``: the gear stands where free gears would have turned on (`gearidae.records.standing`).
+        - ``stops``: it stands, and is not driven, or by too little to say more.
+        - ``turns back``: it has been turned back by more than half a pitch, as free gears have by half as much.
+        - ``runs back``: it has been turned back where free gears have not.
         - ``turns smoothly``: after the `START_UP` its speeds spread over no more than `IRREGULAR_ABOVE` of their mean,
           or they only rose or fell before the second half of the run, in which they do.
         - ``irregular``: after the `START_UP` its speed fell below what it had been, and rose above what it had fallen
           to, by more than `IRREGULAR_ABOVE` of its mean.
         - ``running up`` or ``running down``: it did only one of both, and goes on to.
-        - ``runs`` or ``stops``: where a torque or the held speed follows a schedule, changing speed and coming to rest
-          are the input; the verdict is then only whether the gear turns during the last twentieth of the run.
+        - ``runs``: where a torque or the held speed follows a schedule, a changing speed is the input; the gear has
+          turned forward during the last twentieth of the run.
         - ``unfinished``: the solver ended early and the gear had not come to stand until then.
     min_speed, max_speed : float
         Extremes of the gear's speed [rad/s].
@@ -54,13 +57,23 @@ class GearOutcome(Shown):
     wall_time : float
         Wall time in the solver [s].
     stick_time : float
-        When the gear came to stand [s]; NaN if it has not.
+        When the gear came to stand, or went back [s]; NaN if it did neither.
     mesh_exits : int
         Mesh exits on the drive flank, until then if it has.
     window : float
         Simulated time of the run [s].
     imbalance : float
         Residual of the energy balance over its bound [1]: above 1 the run is not to be relied on; NaN if unknown.
+    free_advance : float
+        Pitches that free gears would have moved from where the gear stands; NaN if unknown.
+    holding : Holding
+        What holds a gear that stands.
+    turned_back : float
+        Pitches by which the gear has gone back.
+    scheduled : bool
+        Whether a torque or the held speed follows a schedule.
+    old : bool
+        Whether the verdict is that of an archive of version 0.2 by the rule of that version.
     """
 
     label: dict[str, Any]
@@ -74,6 +87,11 @@ class GearOutcome(Shown):
     mesh_exits: int
     window: float
     imbalance: float = math.nan
+    free_advance: float = math.nan
+    holding: Holding = Holding(0)
+    turned_back: float = math.nan
+    scheduled: bool = False
+    old: bool = False
 
     def resolved_min_speed(self, rtol: float) -> float:
         """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
@@ -82,21 +100,36 @@ class GearOutcome(Shown):
     @property
     def words(self) -> str:
         """The verdict in words, with its window, and a doubt where the energy balance does not close."""
-        return self._verdict_in_words + doubt(self.imbalance)
+        return self._verdict_in_words + (OLD if self.old else "") + doubt(self.imbalance)
 
     @property
     def _verdict_in_words(self) -> str:
         exits = "1 mesh exit" if self.mesh_exits == 1 else f"{self.mesh_exits} mesh exits"
         if self.verdict == "unfinished":
             return f"not followed to its end ({self.status})"
+        if self.verdict in ("sticks", "stops"):
+            return self._standing_in_words(exits)
+        if self.verdict == "turns back":
+            return f"turned back by {self.turned_back:.3g} pitches, as driven"
         words = _IN_WORDS[self.verdict]
-        if self.verdict not in _STOOD or math.isnan(self.stick_time):
+        if self.verdict != "runs back" or math.isnan(self.stick_time):
             return f"{words} through {exits} in {_seconds(self.window)}"
         if self.stick_time > 0.0:
             return f"{words} at {_seconds(self.stick_time)} ({exits})"
-        if self.verdict == "runs back":
-            return f"runs back from the start ({exits})"
-        return f"does not start in {_seconds(self.window)}"
+        return f"runs back from the start ({exits})"
+
+    def _standing_in_words(self, exits: str) -> str:
+        """Say since when the gear stands and what free gears would have done, or what holds it."""
+        free = f"free gears would have turned on by {self.free_advance:.3g} pitches"
+        held = f", held by {self.holding.words}" if self.holding else ""
+        since = f"{_seconds(self.stick_time)} ({exits})" if self.stick_time > 0.0 else ""
+        if self.verdict == "sticks":
+            words = f"sticks at {since}" if since else f"does not start in {_seconds(self.window)}"
+            return f"{words}: {free}" if self.scheduled and since and self.free_advance > 0.0 else words
+        if self.free_advance > 0.0:
+            words = f"came to rest at {since}" if since else f"does not start in {_seconds(self.window)}"
+            return f"{words}: {free}{held}"
+        return (f"came to rest at {since}" if since else f"not driven in {_seconds(self.window)}") + held
 
 
 _IN_WORDS = {
@@ -105,11 +138,8 @@ _IN_WORDS = {
     "running up": "was still running up",
     "running down": "was still running down",
     "runs": "turned to the end",
-    "stops": "came to rest",
-    "sticks": "sticks",
     "runs back": "runs back",
 }
-_STOOD = ("stops", "sticks", "runs back")
 
 
 def _seconds(time: float) -> str:
@@ -187,25 +217,36 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
         return _kept(ds)
     if is_roller(ds):
         return Outcomes(_roller(label, run) for label, run in runs(ds))
-    scheduled = is_scheduled(scene_of(ds))
-    return Outcomes(_gear(label, run, scheduled) for label, run in runs(ds))
+    return Outcomes(_gear(label, run) for label, run in runs(ds))
 
 
-def _gear(label: dict[str, Any], run: xr.Dataset, scheduled: bool) -> GearOutcome:
-    status = str(run_value(run, "status"))
-    found = extremes_of(run)
+def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
+    status, scene = str(run_value(run, "status")), scene_of(run)
+    found, scheduled = extremes_of(run), is_scheduled(scene)
+    verdict, old = None, False
+    if found is not None and is_earlier(found):
+        verdict, old = earlier_verdict(found, status, scene, scheduled=scheduled)
+        if verdict is None:
+            found = replace(found, turned_back=0.0)
+    verdict = verdict or gear_verdict(found, status, scheduled=scheduled)
+    kept = found or Extremes()
     return GearOutcome(
         label=label,
         status=status,
-        verdict=gear_verdict(found, status, scheduled=scheduled),
-        min_speed=found.min_gear_speed if found else math.nan,
-        max_speed=found.max_gear_speed if found else math.nan,
+        verdict=verdict,
+        min_speed=kept.min_gear_speed,
+        max_speed=kept.max_gear_speed,
         impacts=_impacts(run),
         wall_time=float(run_value(run, "wall_time")),
-        stick_time=found.stick_time if found else math.nan,
-        mesh_exits=found.stick_exits if found else 0,
+        stick_time=kept.back_time if math.isnan(kept.stick_time) else kept.stick_time,
+        mesh_exits=kept.stick_exits,
         window=float(label.get("duration", run.attrs["t_end"])),
         imbalance=imbalance_of(run),
+        free_advance=kept.free_advance,
+        holding=Holding(kept.holding),
+        turned_back=kept.turned_back,
+        scheduled=scheduled,
+        old=old,
     )
 
 
@@ -243,6 +284,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     dims = swept_dims(ds)
     labels = product(*(ds[dim].values.tolist() for dim in dims))
     columns = {name: ds[name].values.ravel().tolist() for name in _KEPT if name in ds}
+    scheduled = is_scheduled(scene_of(ds))
     roller, found = is_roller(ds), list[GearOutcome | RollerOutcome]()
     for number, label in enumerate(labels):
         row = _KEPT | {name: values[number] for name, values in columns.items()}
@@ -255,7 +297,11 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
             found.append(RollerOutcome(**both, peak_force=peak, pull_off_force=pull, restitution=math.nan))
         else:
             numbers = {"min_speed": row["min_gear_speed"], "max_speed": row["max_gear_speed"]}
-            numbers |= {"stick_time": row["stick_time"], "mesh_exits": row["stick_exits"]}
+            stood = row["back_time"] if math.isnan(row["stick_time"]) else row["stick_time"]
+            numbers |= {"stick_time": stood, "mesh_exits": row["stick_exits"]}
+            numbers |= {name: row[name] for name in ("free_advance", "turned_back")}
+            numbers |= {"holding": Holding(row["holding"]), "scheduled": scheduled}
+            numbers["old"] = scheduled and "followed_time" not in columns
             found.append(GearOutcome(**both, **numbers, window=float(ds.attrs["t_end"])))
     return found
 
@@ -265,7 +311,9 @@ _KEPT: dict[str, Any] = {
     "verdict": "",
     "impacts": 0,
     "stick_exits": 0,
+    "holding": 0,
     **dict.fromkeys(("wall_time", "min_gear_speed", "max_gear_speed", "stick_time"), math.nan),
+    **dict.fromkeys(("free_advance", "turned_back", "back_time", "followed_time"), math.nan),
     **dict.fromkeys(("largest_mesh_force", "smallest_mesh_force", "residual", "residual_bound"), math.nan),
 }
 """Variables of a sweep made with ``keep``, with what stands for one that has not been kept."""

@@ -52,7 +52,7 @@ def guard(m: Model, t: float, y: Floats) -> float:
     if m.scene.kind == GEARS:
         least = mark_guard(m, y)
         if m.scene.stop != 0:
-            least = min(least, stop_guard(m, y))
+            least = min(least, stop_guard(m, t, y))
         if m.scene.friction.on != 0:
             least = min(least, sliding_guard(m, t, y))
         elif m.scene.dry != 0:

@@ -11,7 +11,6 @@ from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.dry_resistance import dry_guard, note_slip, stick_or_slip
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
-from gearidae.engine.events.run_stop import arm_stop
 from gearidae.engine.events.sliding import begin_sliding
 from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
@@ -30,8 +29,6 @@ def accept(m: Model, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     m.state.time = t
     note_slip(m, y)
-    if m.scene.stop != 0:
-        arm_stop(m, y)
     for coast in range(1 if m.scene.kind == ROLLER else 2):
         if nearest_gap(m, coast, y) < m.scene.cutoff:
             m.state.near[coast] = 1

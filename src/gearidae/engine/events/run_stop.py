@@ -1,4 +1,4 @@
-"""The end of a run before its time (``run.stop``): the gear comes to stand, or has made its turns.
+"""The end of a run before its time (``run.stop``): the gear sticks, or has made its turns.
 
 Both are roots of a guard, so that the run ends where the condition is met, whatever its steps, blocks and samples are.
 """
@@ -9,21 +9,14 @@ import math
 from typing import Final
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import PHASE, STOPS, Floats, Model, W
+from gearidae.engine.model.state import PHASE, STOPS, Floats, Model
 
 _STICKS: Final = STOPS.index("sticks")
 
 
 @compiled
-def stop_guard(m: Model, y: Floats) -> float:
-    """Gear's speed once it has moved forward, or the pitches that its turns still lack."""
+def stop_guard(m: Model, t: float, y: Floats) -> float:
+    """Time until a gear that stays within half a pitch has stuck, or the pitches that its turns still lack."""
     if m.scene.stop == _STICKS:
-        return y[W] if m.state.stop_armed != 0 else math.inf
+        return m.work.track.stop_time - t if m.work.track.stop_time > 0.0 else math.inf
     return m.scene.stop_pitches - abs(y[PHASE] + m.state.turns - m.scene.stop_from)
-
-
-@compiled
-def arm_stop(m: Model, y: Floats) -> None:
-    """Note at an accepted time that the gear moves forward."""
-    if y[W] > 0.0:
-        m.state.stop_armed = 1

@@ -64,7 +64,7 @@ def finish_step(
     afresh |= change_wanted(m, y, yp) or comes_to_rest(m, t, y)
     if flag == ROOT:
         afresh |= handle(m, t, y, yp, events)
-        if m.scene.stop != 0 and stop_guard(m, y) <= 0.0:
+        if m.scene.stop != 0 and stop_guard(m, t, y) <= 0.0:
             driver.done = 1
         if m.state.light != 0 and driver.done == 0 and driver.error == 0:
             driver.error = LIGHT

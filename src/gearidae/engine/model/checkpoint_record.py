@@ -98,6 +98,69 @@ EXTREMES: Final = record_type(  # of a run so far, at accepted times and located
     ("separation", REAL),  # least distance of the flanks, deflection included [sigma]
 )
 
+MOST_ZEROS: Final = 12
+"""Zeros of the gear's speed that are kept as beginnings of a standstill."""
+HIGH: Final = MOST_ZEROS
+SPARE: Final = MOST_ZEROS + 1
+"""Places among the zeros: of the zero farthest forward, and of a copy to look ahead with."""
+MOST_SLOW: Final = 32
+MOST_STANDSTILLS: Final = 64
+
+ZERO: Final = record_type(  # of the gear's speed; free gears start there at rest. Units stay with a change of torques
+    ("time", REAL),  # [s]
+    ("position", REAL),  # how far the gear had turned by then [pb]
+    ("lead", REAL),  # of the pinion's base circle over the gear's, from the start of a chain [sigma]
+    ("exits", INT),  # mesh exits until then
+    ("lowest", REAL),  # position of the gear since then, at zeros of its speed [pb]
+    ("highest", REAL),  # [pb]
+    ("start", INT),  # 1 for a start at rest
+    ("spent", INT),  # 1 if a standstill that has ended lies behind it
+    ("rest_time", REAL),  # time at rest until then [s]
+    ("free_time", REAL),  # up to which free gears are followed [s]
+    ("free_travel", REAL),  # of free gears [pb]
+    ("free_speed", REAL),  # of free gears [pb/s]
+    ("free_farthest", REAL),  # largest size of `free_travel` [pb]
+    ("free_before", REAL),  # that at the end of the run before [pb]
+    ("excess", REAL),  # largest torque of the drive at the gear beyond the dry load [N m]
+    ("driven_time", REAL),  # for which there was any [s]
+)
+
+SLOW: Final = record_type(  # an accepted time after which the gear has been faster
+    ("time", REAL),  # [s]
+    ("speed", REAL),  # [pb/s]
+    ("position", REAL),  # [pb]
+)
+
+STANDSTILL: Final = record_type(  # that has ended
+    ("begin", REAL),  # [s]
+    ("end", REAL),  # [s]
+    ("advance", REAL),  # of the gear [pb]
+    ("free_advance", REAL),  # of free gears [pb]
+    ("excess", REAL),  # as of a zero [N m]
+    ("driven_time", REAL),  # as of a zero [s]
+    ("rest_time", REAL),  # at rest [s]
+)
+
+STANDING: Final = record_type(
+    ("zero_count", INT),  # zeros in use, from which on the gear has stayed within half a pitch
+    ("zero", ZERO, (MOST_ZEROS + 2,)),  # in the order of time, then `HIGH` and `SPARE`
+    ("slow_count", INT),  # entries in use
+    ("slow", SLOW, (MOST_SLOW,)),  # in the order of time, each faster than the one before
+    ("direction", INT),  # of the last movement of more than half a pitch; 0 before the first
+    ("turn_time", REAL),  # when that became so [s]
+    ("high_known", INT),  # 1 if `HIGH` is the zero farthest forward since the gear last went forward
+    ("low", REAL),  # position farthest back since it last went back [pb]
+    ("left", INT),  # 1 once the gear has left half a pitch from the start of a chain
+    ("rest_time", REAL),  # for which all that is dry has held the gear [s]
+    ("stand_count", INT),  # standstills that are kept
+    ("standstill", STANDSTILL, (MOST_STANDSTILLS,)),  # in the order of time; of more the longest are kept
+    ("standstills", INT),  # that have ended
+    ("standing_time", REAL),  # of all of these [s]
+    ("standing_rest", REAL),  # at rest in all of these [s]
+    ("last_end", REAL),  # end of the last of them [s]
+    ("breakaway", REAL),  # drive torque then, or at the start [N m]
+)
+
 STATE: Final = record_type(
     ("time", REAL),  # last accepted time [tau]
     ("turns", REAL),  # whole pitches taken out of the phase [pb]
@@ -115,7 +178,6 @@ STATE: Final = record_type(
     ("bound_exceeded", INT),  # 1 once a pair has been below the lowest gap
     ("deep_exits", INT),  # mesh exits when elastic contacts were last too deep for rigid ones, -1 before
     ("light", INT),  # 1 once that has been long ago
-    ("stop_armed", INT),  # 1 once the gear has moved forward, where the run ends as its speed falls to zero
     ("last_root", REAL),  # time of the last root [tau]
     ("roots", INT),  # how many have come in close succession
     ("next_knot", INT),  # index of the coming knot among all knots
@@ -123,6 +185,7 @@ STATE: Final = record_type(
     ("energy", ENERGY),  # energy balance
     ("progress", PROGRESS),  # counters of the driver
     ("extremes", EXTREMES),  # extremes of the run
+    ("standing", STANDING),  # where the gear stands, and what free gears would do
     ("history", HISTORY, (2 * SLOTS_HIGH,)),  # of the tooth pairs
     ("asperity_onsets", INT),  # asperities of a population that have joined so far [1]
     ("asperity_detachments", INT),  # those that have detached [1]

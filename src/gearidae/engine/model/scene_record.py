@@ -207,6 +207,7 @@ SCENE: Final = record_type(
     ),  # longest time between two looks at the torques of what is held; infinite for any [tau]
     ("rest_bend", REAL),  # bound of the second derivative of their harmonics [F/tau^2]
     ("common_period", REAL),  # of all harmonics; 0 if they have none [tau]
+    ("free_step", REAL),  # longest step of free gears, whatever the tolerance; 0 for any [tau]
     ("angle_omega", REAL),  # highest angular frequency of the torques of an angle [rad/pb]
     ("mesh_omega", REAL),  # highest angular frequency along the mesh [rad/pb]
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]

@@ -121,6 +121,8 @@ TRACK: Final = record_type(  # of the extremes
     ("last", INT),  # index of the last accepted time among them
     ("smooth", INT),  # how many of them the force has passed since its last corner, that included
     ("next_part", REAL),  # time at which the coming part of the run begins [tau]
+    ("planned", REAL),  # time of the zero for which the end of a run that is to stop is planned, plus 1 [s]
+    ("stop_time", REAL),  # when that end is; 0 for none [tau]
 )
 
 EXPOSED: Final = record_type(  # a pair where its exposures have last been added up

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearidae.engine.model.checkpoint_record import MOST_SLOW, MOST_STANDSTILLS, MOST_ZEROS
 from gearidae.engine.model.record_types import AT_REST, FREE, STUCK
 from gearidae.engine.model.state import EMPTY, GEARS, PHASE, STATE, Floats, Model, Record
 from gearidae.errors import SceneError
@@ -21,7 +22,8 @@ _LARGEST: Final = 1e200  # squares of what is really there are still finite
 _HEIGHT_HIGH: Final = 1e6
 """Roughnesses: a step may have gone far below the tables before that was noticed."""
 _FLAGS: Final = (
-    *("slipping", "near", "bound_exceeded", "light", "stop_armed", "begun", "is_stuck"),
+    *("slipping", "near", "bound_exceeded", "light", "begun", "is_stuck"),
+    *("start", "spent", "high_known", "left"),
     *("in_contact", "fully_stretched", "loaded", "stretched"),
 )
 _PITCHES: Final = ("turns", "mark_low", "mark_high")
@@ -80,6 +82,10 @@ def _bounds(m: Model) -> dict[str, tuple[int, int]]:
         "deep_exits": (-1, _COUNT_HIGH),
         "last_flank": (-1, 1),
         "slide": (-1, STUCK),
+        "direction": (-1, 1),
+        "zero_count": (0, MOST_ZEROS),
+        "slow_count": (0, MOST_SLOW),
+        "stand_count": (0, MOST_STANDSTILLS),
         "hold": (FREE, AT_REST),
         "held_pair": (0, int(m.scene.histories) - 1),
     }

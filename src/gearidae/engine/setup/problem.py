@@ -38,6 +38,11 @@ from gearidae.records import EnergyBalance, Extremes, first_sample
 
 ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
 PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
+PARTS_OF_PERIOD = 24
+"""Steps of free gears in a period of the fastest harmonic at least,"""
+PARTS_OF_LAW = 4096
+"""and in a run whose torques follow a law that nothing is known of."""
+PERIODS = 1e6
 FELT = 0.1  # of the tolerance of a speed
 FOLLOWED = (
     1.25  # radians of the fastest harmonic in a step at most; Adams' formulas have about one of their own
@@ -132,7 +137,23 @@ class Problem:
             if m.work.torque_law.any():
                 fastest = max(fastest, LAW_STEPS / float(s.end - s.start))
             s.longest_step = 1.0 / fastest if fastest > 0.0 else 0.0
+            s.free_step = self._longest_free_step()
         return m
+
+    def _longest_free_step(self) -> float:
+        """Longest step of free gears: a part of a period of the fastest harmonic; 0 where it need not be bounded.
+
+        Harmonics of more than `PERIODS` periods in a run are not followed one by one.
+        """
+        s, longest = self.model.scene, math.inf
+        span = float(s.end - s.start)
+        for shaft in (DRIVE, LOAD):
+            omega = self._fastest(shaft, 0.0)
+            if omega > 0.0:
+                longest = min(longest, max(2.0 * math.pi / omega, span / PERIODS) / PARTS_OF_PERIOD)
+            if self.model.work.torque_law[shaft] != 0:
+                longest = min(longest, span / PARTS_OF_LAW)
+        return longest if longest < math.inf else 0.0
 
     def _fastest(self, shaft: int, felt: float) -> float:
         scene, tables = self.model.scene, self.model.tables
@@ -165,7 +186,7 @@ class Problem:
             energies_at(self.located.place, time, state, now)
             balance = self._in_joules(time, *now.tolist())
         if m.scene.follow.extremes:
-            extremes = extremes_in_si(m, time, state)
+            extremes = extremes_in_si(m, self.located.place, time, state)
         for record, one in zip((m.state, m.work), before, strict=True):
             assign(record, one)
         exposures[:] = exposed

@@ -12,6 +12,7 @@ from gearidae.engine.followers.extremes.speeds import (
     note_hold,
     note_speed,
 )
+from gearidae.engine.followers.standing import follow as standing
 from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.dry_limit import is_pulled_back
 from gearidae.engine.motion.separation import rigid_separation, separation
@@ -39,6 +40,7 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) 
         last, now = k.point[k.last], k.point[here]
         if m.scene.kind == GEARS:
             follow_speed(m, last, now, y)
+            standing.step(m, here, y)
         _follow_separation(m, last, now, y)
         if k.smooth > 1:
             follow_force(m, k.point[k.last - 1 if k.last > 0 else 2], last, now, spare)
@@ -75,8 +77,11 @@ def note_present(m: Model, y: Floats) -> None:
 def resume(m: Model, t: float, y: Floats) -> None:
     """Note that an event has brought the gear to rest, and that dry resistance holds it."""
     p = m.work.track.point[m.work.track.last]
+    if m.scene.kind == GEARS:
+        standing.resume(m, t, y, p.speed)
     if m.scene.kind == GEARS and y[W] <= 0.0 < p.speed:
         come_to_stand(m, t, y[PHASE] + m.state.turns, is_pulled_back(m, t, y))
+    if m.scene.kind == GEARS:
         p.speed = y[W]
     if m.scene.dry != 0 and m.state.slip == 0.0:
         note_hold(m, t)
@@ -91,6 +96,8 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
         e.separation = separation(m, y)
     k.time, k.last, k.smooth, k.next_part = t, 0, 1, next_part(m)
     _set_point(m, 0, t, y, yp)
+    if m.scene.kind == GEARS:
+        standing.begin(m, t, y)
     first_force(m, t, k.point[0].force)
     e.begun = 1
     note_present(m, y)

@@ -8,17 +8,20 @@ from types import SimpleNamespace
 from typing import Any
 
 from gearidae.engine.followers.exposures.bins import ROWS, exposure_table
+from gearidae.engine.followers.standing.units import standing_in_si
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, V, W, plain
 from gearidae.records import Extremes
 
 
-def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
+def extremes_in_si(m: Model, place: int, time: float, y: Floats) -> Extremes:
     """Take the extremes out of a model.
 
     Parameters
     ----------
     m : Model
         Its extremes include the state at `time`.
+    place : int
+        Of the model, from `gearidae.engine.model.located.Located`.
     time : float
         Reached, over tau.
     y : ndarray, shape (n,)
@@ -55,7 +58,8 @@ def extremes_in_si(m: Model, time: float, y: Floats) -> Extremes:
         late_spread=spreads[1],
         last_min_gear_speed=speed * part[2].lowest if part[2].begun else math.nan,
         final_speed=speed * float(y[W]),
-        **_standstill(e, tau, time, position),
+        **_time_adhering(e, tau, time),
+        **standing_in_si(m, place, time, y),
         mesh_exits=e.mesh_exits,
         reversals=e.reversals,
         exposures=_exposures(m),
@@ -74,23 +78,12 @@ def _exposures(m: Model) -> array[float]:
     return array("d", table.tobytes())
 
 
-def _standstill(e: SimpleNamespace, tau: float, time: float, position: float) -> dict[str, Any]:
-    """Where and when the gear came to stand, and how long adhesion has held it."""
-    if e.is_stuck:
-        return {
-            "stick_time": tau * e.stuck_time,
-            "stick_exits": e.stuck_exits,
-            "turned_back": max(e.stuck_position - position, 0.0),
-            "turn_backs": e.turn_backs,
-            "time_adhering": tau * (e.adhering + (time - e.turn_back_time if e.turn_backs > 1 else 0.0)),
-        }
-    never_moved = e.highest_speed <= 0.0
+def _time_adhering(e: SimpleNamespace, tau: float, time: float) -> dict[str, Any]:
+    """How often adhesion has turned the gear back where it is, and how long it has held it."""
+    turns = e.turn_backs if e.is_stuck else 0
     return {
-        "stick_time": 0.0 if never_moved else math.nan,
-        "stick_exits": e.mesh_exits,
-        "turned_back": max(-position, 0.0) if never_moved else 0.0,
-        "turn_backs": 0,
-        "time_adhering": tau * e.adhering,
+        "turn_backs": turns,
+        "time_adhering": tau * (e.adhering + (time - e.turn_back_time if turns > 1 else 0.0)),
     }
 
 

@@ -1,0 +1,309 @@
+"""Where a gear stands, followed over accepted times and events, and what is said of it at an end."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.followers.standing.free_gears import follow_free
+from gearidae.engine.followers.standing.free_torques import (
+    enter_segments,
+    excess,
+    free_torque,
+    largest_excess,
+    slowest_period,
+)
+from gearidae.engine.followers.standing.zeros import (
+    add_zero,
+    copy_zero,
+    distance,
+    drop_left,
+    follow_zeros,
+    free_advance,
+    last_slow,
+    make_zero,
+    note_slow,
+    standing_since,
+)
+from gearidae.engine.formulas.interpolation import cubic, cubic_slope
+from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS, SPARE
+from gearidae.engine.model.located import model_at
+from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
+from gearidae.engine.model.state import DRIVE, PHASE, STOPS, Floats, Model, Record, W
+from gearidae.records.standing import HALF_PITCH
+
+SLOWER: Final = 0.1
+"""Share of the speed at which a gear leaves half a pitch, below which it has not begun to."""
+LOOKS_AHEAD: Final = 4096
+"""Times at most, besides knots of schedules, at which a run that is to stop looks at what is still to come."""
+_STICKS: Final = STOPS.index("sticks")
+_BISECTIONS: Final = 40
+
+
+@compiled
+def begin(m: Model, t: float, y: Floats) -> None:
+    """Go on from a start of the integration."""
+    s, position = m.state.standing, y[PHASE] + m.state.turns
+    if m.state.extremes.begun == 0:
+        s.low = position
+        make_zero(m, HIGH, t * m.scene.time_unit, position, y, y[W] == 0.0)
+        s.high_known = 1
+        s.breakaway = _drive_torque(m, HIGH, t)
+        if y[W] == 0.0:
+            add_zero(m, t, position, y, True)
+    elif y[W] == 0.0:
+        follow_zeros(m, t)
+    if s.direction >= 0 and position > s.zero[HIGH].position:
+        s.high_known = 0
+    if s.direction < 0:
+        follow_free(m, HIGH, t, math.inf)
+    if m.scene.stop == _STICKS:
+        plan_stop(m, t)
+
+
+@compiled(inline=True)
+def step(m: Model, here: int, y: Floats) -> None:
+    """Follow the gear from the last accepted time to this one, given as index of its ``POINT`` and as a state."""
+    s, unit, track = m.state.standing, m.scene.time_unit, m.work.track
+    last, now = track.point[track.last], track.point[here]
+    if is_at_rest(m):
+        s.rest_time += (now.time - last.time) * unit
+    turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
+    if turned or now.speed * last.speed <= 0.0:
+        _look_for_zeros(m, here, y, turned)
+    if s.zero_count > 0:
+        note_slow(
+            m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position
+        )
+        if abs(now.position - s.zero[0].position) > HALF_PITCH:
+            leave(m, now.time, now.speed, now.position)
+    if s.direction >= 0:
+        if s.high_known != 0 and now.position < s.zero[HIGH].position - HALF_PITCH:
+            s.turn_time = now.time * unit if s.direction != 0 else 0.0
+            s.direction, s.low = -1, now.position
+    if s.direction <= 0 and now.position > s.low + HALF_PITCH:
+        s.direction, s.high_known = 1, 0
+    if s.left == 0 and abs(now.position - m.state.first_place) > HALF_PITCH:
+        s.left = 1
+
+
+@compiled
+def resume(m: Model, t: float, y: Floats, before: float) -> None:
+    """Note that an event has brought the gear to rest, which had a speed before."""
+    if y[W] == 0.0 and before != 0.0:
+        add_zero(m, t, y[PHASE] + m.state.turns, y, False)
+        if m.scene.stop == _STICKS:
+            plan_stop(m, t)
+
+
+@compiled
+def is_at_rest(m: Model) -> bool:
+    """Whether all that is dry holds the gear."""
+    if m.scene.friction.on != 0:
+        return bool(m.state.hold == AT_REST or m.state.hold == HELD_GEAR)
+    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
+
+
+@compiled_once(SOLVER)
+def _look_for_zeros(m: Model, here: int, y: Floats, turned: bool) -> None:
+    """Find zeros of the speed within a step: one where its sign changes, or two about an extremum beyond zero."""
+    track = m.work.track
+    last, now = track.point[track.last], track.point[here]
+    w0, w1 = last.speed, now.speed
+    if w0 == 0.0 and w1 == 0.0:
+        return
+    if w0 == 0.0:  # it has been noted when the gear came to rest; from there on it moves
+        add_zero(m, last.time, last.position, y, False)
+    elif w1 == 0.0:
+        add_zero(m, now.time, now.position, y, False)
+    elif w0 * w1 < 0.0:
+        _add_between(m, last, now, y, 0.0, 1.0)
+    elif turned:
+        h, low, high = now.time - last.time, 0.0, 1.0
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            if cubic_slope(middle, h, w0, last.speed_rate, w1, now.speed_rate) * w0 < 0.0:
+                low = middle
+            else:
+                high = middle
+        if cubic(low, h, w0, last.speed_rate, w1, now.speed_rate) * w0 < 0.0:
+            _add_between(m, last, now, y, 0.0, low)
+            _add_between(m, last, now, y, low, 1.0)
+    if m.scene.stop == _STICKS:
+        plan_stop(m, now.time)
+
+
+@compiled
+def _add_between(m: Model, last: Record, now: Record, y: Floats, low: float, high: float) -> None:
+    """Add the zero of the speed between two shares of a step, at which its signs differ."""
+    h, rate = now.time - last.time, m.scene.phase_rate
+    sign = cubic(low, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        if cubic(middle, h, last.speed, last.speed_rate, now.speed, now.speed_rate) * sign > 0.0:
+            low = middle
+        else:
+            high = middle
+    position = cubic(high, h, last.position, rate * last.speed, now.position, rate * now.speed)
+    add_zero(m, last.time + high * h, position, y, False)
+
+
+@compiled_once(SOLVER)
+def leave(m: Model, t: float, speed: float, position: float) -> None:
+    """Leave half a pitch from the first zero: note the standstill that lies behind, if there is one."""
+    s, unit = m.state.standing, m.scene.time_unit
+    time, place = last_slow(m, SLOWER * abs(speed) * m.scene.phase_rate / unit)
+    i = standing_since(m, time / unit, time, place)
+    if i >= 0 and s.zero[i].spent == 0:
+        _note_standstill(m, i, time, place)
+        for k in range(s.zero_count):
+            s.zero[k].spent = 1
+    drop_left(m, position)
+    if m.scene.stop == _STICKS:
+        plan_stop(m, t)
+
+
+@compiled
+def _note_standstill(m: Model, i: int, time: float, position: float) -> None:
+    s = m.state.standing
+    z = s.zero[i]
+    start = standstill_begin(m, z)
+    s.standstills += 1
+    s.standing_time += time - start
+    s.standing_rest += s.rest_time - z.rest_time
+    s.last_end, s.breakaway = time, _drive_torque(m, i, time / m.scene.time_unit)
+    at = s.stand_count
+    if at == MOST_STANDSTILLS:  # the shortest makes room
+        at = 0
+        for k in range(1, MOST_STANDSTILLS):
+            one, least = s.standstill[k], s.standstill[at]
+            if one.end - one.begin < least.end - least.begin:
+                at = k
+        if time - start <= s.standstill[at].end - s.standstill[at].begin:
+            return
+        for k in range(at, MOST_STANDSTILLS - 1):
+            s.standstill[k] = s.standstill[k + 1]
+        at = MOST_STANDSTILLS - 1
+    else:
+        s.stand_count += 1
+    kept = s.standstill[at]
+    kept.begin, kept.end = start, time
+    kept.advance, kept.free_advance = distance(z, position), free_advance(z, time)
+    kept.excess, kept.driven_time, kept.rest_time = z.excess, z.driven_time, s.rest_time - z.rest_time
+
+
+@compiled
+def standstill_begin(m: Model, z: Record) -> float:
+    """When a standstill begins [s]: no two of them overlap, and one that begins at a start at rest begins there."""
+    s = m.state.standing
+    if s.left == 0 and s.zero[0].start != 0 and s.standstills == 0:
+        return s.zero[0].time
+    return max(z.time, s.last_end)
+
+
+@compiled
+def _drive_torque(m: Model, i: int, t: float) -> float:
+    """Torque of the drive on a pinion at rest [N m]."""
+    first, second, third = m.state.segment[0], m.state.segment[1], m.state.segment[2]
+    enter_segments(m, t, t)
+    torque = free_torque(m, i, DRIVE, t, 0.0, 0.0) * m.scene.force_unit * m.scene.pinion_radius
+    m.state.segment[0], m.state.segment[1], m.state.segment[2] = first, second, third
+    return torque
+
+
+@compiled
+def plan_stop(m: Model, t: float) -> None:
+    """Set when a run ends that is to end in a standstill that sticks, if the gear does not leave its first zero."""
+    s, k, i = m.state.standing, m.work.track, 0
+    while i < s.zero_count and s.zero[i].spent != 0:
+        i += 1
+    if i == s.zero_count:
+        k.planned = k.stop_time = 0.0
+    elif k.planned != s.zero[i].time + 1.0:
+        k.planned, k.stop_time = s.zero[i].time + 1.0, _stop_time(m, i, t)
+
+
+@compiled_once(SOLVER)
+def _stop_time(m: Model, i: int, t: float) -> float:
+    """Time over tau when free gears have turned by a pitch and nothing ahead drives harder than before; 0 if never."""
+    copy_zero(m, SPARE, i)
+    end = follow_free(m, SPARE, m.scene.end, 1.0)
+    if m.state.standing.zero[SPARE].free_farthest < 1.0:
+        return 0.0
+    begin = m.state.standing.zero[i].time / m.scene.time_unit
+    end = max(end, begin + slowest_period(m), _hardest(m, max(begin, m.scene.start)))
+    # behind the present time, so that it is a root
+    return max(end, t + 1e-9 * (m.scene.end - m.scene.start))
+
+
+@compiled
+def _hardest(m: Model, t: float) -> float:
+    """Time at which the drive exceeds the load most, of a gear that stands at the zero `SPARE`."""
+    first, second, third = m.state.segment[0], m.state.segment[1], m.state.segment[2]
+    longest, most, found = m.scene.end - t, -math.inf, t
+    if m.scene.free_step > 0.0:
+        longest = max(m.scene.free_step, longest / LOOKS_AHEAD)
+    while True:
+        knot = enter_segments(m, t, m.scene.end)
+        size = largest_excess(m, SPARE, t)
+        if size > most + 1e-9 * abs(most) or most == -math.inf:
+            most, found = size, t
+        if t >= m.scene.end:
+            break
+        t = min(knot, t + longest)
+    m.state.segment[0], m.state.segment[1], m.state.segment[2] = first, second, third
+    return found
+
+
+STANDING_NUMBERS: Final = 17
+"""Numbers that `standing_at` leaves, in the order in which it writes them."""
+
+
+@compiled
+def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
+    """Say where the gear stands if the run ends here, and how far it has gone back.
+
+    Parameters
+    ----------
+    place : int
+        Of the model, from `gearidae.engine.model.located.Located`.
+    t : float
+        Time over tau.
+    y : ndarray, shape (n,)
+        State there.
+    out : ndarray, shape (STANDING_NUMBERS,)
+        Filled in; see `gearidae.engine.followers.extremes.units`.
+    """
+    m = model_at(place)
+    s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
+    out[:] = 0.0
+    i = standing_since(m, t, time, position) if s.zero_count > 0 else -1
+    out[0] = 1.0 if i >= 0 else 0.0
+    if s.zero_count > 0:
+        z = s.zero[max(i, 0)]
+        never = s.left == 0 and s.zero[0].start != 0
+        out[1], out[2] = s.zero[0].time if never else z.time, float(s.zero[0].exits if never else z.exits)
+        out[3], out[4] = distance(z, position), free_advance(z, time)
+        out[5], out[6] = z.driven_time, z.excess
+        out[7], out[8] = s.rest_time - z.rest_time, standstill_begin(m, z)
+        out[9] = excess(m, max(i, 0), t) * m.scene.force_unit * m.scene.gear_radius
+    if s.direction < 0:
+        follow_free(m, HIGH, t, math.inf)
+        high = s.zero[HIGH]
+        out[10], out[11] = high.position - position, max(-high.free_travel, 0.0)
+        out[12], out[13], out[14] = high.time, float(high.exits), s.turn_time
+    out[15], out[16] = slowest_period(m) * m.scene.time_unit, 1.0 if is_at_rest(m) else 0.0
+
+
+@compiled
+def settle_standing_at(place: int, t: float) -> None:
+    """Follow all free gears to the end of a run, after which torques may be others."""
+    m = model_at(place)
+    s = m.state.standing
+    for i in range(s.zero_count):
+        s.zero[i].free_before = s.zero[i].free_farthest
+        follow_free(m, i, t, math.inf)
+    if s.direction < 0:
+        follow_free(m, HIGH, t, math.inf)

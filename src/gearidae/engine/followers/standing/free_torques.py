@@ -1,0 +1,95 @@
+"""Torques on free gears, at any time of the run: the schedules' segments are set for it and put back."""
+
+from __future__ import annotations
+
+import math
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.model.state import DRIVE, LOAD, SCHEDULES, Model
+from gearidae.engine.torques.harmonic import sum_of_cosines
+from gearidae.engine.torques.torque import torque_force
+
+
+@compiled
+def _angle(m: Model, i: int, shaft: int, travel: float) -> float:
+    """Angle of a shaft [rad] of free gears that have travelled so far from a zero [pb]."""
+    if m.scene.torque[shaft].takes_angle == 0:
+        return 0.0
+    z = m.state.standing.zero[i]
+    way = (z.position + travel - m.state.first_place) / m.scene.phase_rate
+    if shaft != LOAD:
+        way += z.lead
+    return way * m.scene.torque[shaft].angle_unit
+
+
+@compiled_once(SOLVER)
+def free_torque(m: Model, i: int, shaft: int, t: float, travel: float, speed: float) -> float:
+    """Torque of a shaft over its base radius, scaled, of free gears from the zero `i`; the load's is dry resistance."""
+    if shaft != LOAD:
+        return torque_force(m, DRIVE, t, _angle(m, i, DRIVE, travel), speed)
+    if m.scene.dry == 0:
+        return 0.0
+    return max(torque_force(m, LOAD, t, _angle(m, i, LOAD, travel), speed), 0.0)
+
+
+@compiled
+def excess(m: Model, i: int, t: float) -> float:
+    """Size of the drive less the dry resistance, of a gear that stands at a zero, scaled."""
+    return abs(free_torque(m, i, DRIVE, t, 0.0, 0.0)) - free_torque(m, i, LOAD, t, 0.0, 0.0)
+
+
+@compiled
+def largest_excess(m: Model, i: int, t: float) -> float:
+    """Return the same with all harmonics at their amplitudes, the worst that they can do."""
+    drive = free_torque(m, i, DRIVE, t, 0.0, 0.0) - _harmonics(m, DRIVE, t)
+    load = free_torque(m, i, LOAD, t, 0.0, 0.0)
+    if m.scene.dry != 0:
+        load = max(load - _harmonics(m, LOAD, t) - _amplitudes(m, LOAD), 0.0)
+    return abs(drive) + _amplitudes(m, DRIVE) - load
+
+
+@compiled
+def _harmonics(m: Model, shaft: int, t: float) -> float:
+    own = m.scene.torque[shaft]
+    return sum_of_cosines(m, own.harmonics_at, own.harmonic_count, t)
+
+
+@compiled
+def _amplitudes(m: Model, shaft: int) -> float:
+    own, total = m.scene.torque[shaft], 0.0
+    for k in range(own.harmonic_count):
+        total += abs(m.tables[own.harmonics_at + 3 * k])
+    return total
+
+
+@compiled
+def slowest_period(m: Model) -> float:
+    """Period of the slowest harmonic of both torques, over tau; 0 without any."""
+    longest = 0.0
+    for shaft in range(2):
+        own = m.scene.torque[shaft]
+        for k in range(own.harmonic_count):
+            at = own.harmonics_at + 3 * k
+            if m.tables[at] != 0.0 and m.tables[at + 1] != 0.0:
+                longest = max(longest, 2.0 * math.pi / abs(m.tables[at + 1]))
+    return longest
+
+
+@compiled
+def enter_segments(m: Model, t: float, end: float) -> float:
+    """Set the segments of all schedules for a time, and return when the next begins, at most `end`."""
+    for which in range(SCHEDULES):
+        own = m.scene.schedule[which]
+        step, count = (own.knot_count - 1, 2) if own.cubic != 0 else (1, own.knot_count)
+        low, high = 0, count  # knots before `low` have passed, those from `high` on have not
+        while low < high:
+            middle = (low + high) // 2
+            if m.tables[own.knots_at + 2 * step * middle] <= t:
+                low = middle + 1
+            else:
+                high = middle
+        m.state.segment[which] = low
+        if low < count:
+            end = min(end, m.tables[own.knots_at + 2 * step * low])
+    return end

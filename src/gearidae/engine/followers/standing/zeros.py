@@ -1,0 +1,211 @@
+"""Zeros of the gear's speed from which on it has stayed within half a pitch.
+
+Ringing makes millions of them. A zero is dropped if an earlier one in the same place has been left no farther and its
+free gears have been at rest no longer: what is judged from it is judged from the earlier one. Of what is left
+`MOST_ZEROS` are kept; where that is not enough, the two that are most alike become one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.followers.standing.free_gears import follow_free
+from gearidae.engine.model.checkpoint_record import HIGH, MOST_SLOW, MOST_ZEROS
+from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U
+from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.records.standing import HALF_PITCH, stands
+
+DECIDED: Final = 2.0 * HALF_PITCH
+"""Pitches of free gears from which on a gear stands that has stayed within half a pitch."""
+SELDOM: Final = 1e-3
+"""Share of the run after which free gears are then followed."""
+_PLACE: Final = 1.0 / 32.0
+_ALIKE: Final = 1e-3
+"""Pitches between zeros in the same place, and between distances that are the same."""
+_FASTER: Final = 1.1
+"""Ratio of the speeds of two entries among the slow times: 32 of them go over more than a factor of ten."""
+
+_stands = compiled(stands)
+
+
+@compiled
+def make_zero(m: Model, i: int, t: float, position: float, y: Floats, at_start: bool) -> None:
+    """Write a zero at a time [s] and a position [pb]; the state is one near it."""
+    z = m.state.standing.zero[i]
+    z.time = z.free_time = t
+    z.position = z.lowest = z.highest = position
+    z.lead = 0.0
+    if m.scene.torque[DRIVE].takes_angle != 0:
+        z.lead = y[U] - m.state.first_lead
+        if m.scene.error_count != 0:
+            z.lead += static_error(m, y[U], y[PHASE])[1]
+    z.exits = m.state.extremes.mesh_exits
+    z.start = 1 if at_start else 0
+    z.spent = 0
+    z.rest_time = m.state.standing.rest_time
+    z.free_travel = z.free_speed = z.free_farthest = z.free_before = 0.0
+    z.excess = z.driven_time = 0.0
+
+
+@compiled
+def copy_zero(m: Model, to: int, i: int) -> None:
+    """Copy a zero to another place."""
+    m.state.standing.zero[to] = m.state.standing.zero[i]
+
+
+@compiled_once(SOLVER)
+def add_zero(m: Model, t: float, position: float, y: Floats, at_start: bool) -> None:
+    """Note that the gear's speed is zero at a time over tau; `y` is a state near it."""
+    s, time = m.state.standing, t * m.scene.time_unit
+    note_slow(m, time, 0.0, position)
+    _note_turn(m, time, position, y)
+    for i in range(s.zero_count):
+        z = s.zero[i]
+        z.lowest, z.highest = min(z.lowest, position), max(z.highest, position)
+    if s.zero_count > 0 and s.zero[0].free_farthest > DECIDED:
+        s.zero_count = 1  # whatever comes, from the first on the gear stands until it leaves
+        if time - s.zero[0].free_time > SELDOM * (m.scene.end - m.scene.start) * m.scene.time_unit:
+            follow_zeros(m, t)
+        return
+    follow_zeros(m, t)
+    if s.zero_count == MOST_ZEROS:
+        _drop(m, _most_alike(m))
+    make_zero(m, s.zero_count, time, position, y, at_start)
+    s.zero_count += 1
+    i = s.zero_count - 1
+    while i > 0:
+        if _is_needless(m, i):
+            _drop(m, i)
+        i -= 1
+
+
+@compiled
+def _note_turn(m: Model, time: float, position: float, y: Floats) -> None:
+    """Note a zero farther forward or back than all since the gear last went that way."""
+    s = m.state.standing
+    if s.direction >= 0 and (s.high_known == 0 or position >= s.zero[HIGH].position):
+        make_zero(m, HIGH, time, position, y, False)
+        s.high_known = 1
+    if s.direction <= 0:
+        s.low = min(s.low, position)
+
+
+@compiled
+def follow_zeros(m: Model, t: float) -> None:
+    """Follow the free gears of all zeros to a time over tau, than which no standstill ends earlier."""
+    s = m.state.standing
+    for i in range(s.zero_count):
+        follow_free(m, i, t, math.inf)
+        s.zero[i].free_before = s.zero[i].free_farthest
+
+
+@compiled
+def distance(z: Record, position: float) -> float:
+    """How far the gear has been from a zero [pb], with its present position."""
+    return max(z.highest - z.position, z.position - z.lowest, abs(position - z.position))
+
+
+@compiled
+def _is_needless(m: Model, i: int) -> bool:
+    """Whether an earlier zero says all that this one does."""
+    zero = m.state.standing.zero
+    last = zero[i]
+    for k in range(i):
+        z = zero[k]
+        near = abs(z.position - last.position) < _PLACE
+        rests = z.free_farthest == 0.0 or last.free_farthest > 0.0
+        if near and rests and distance(z, z.position) <= distance(last, last.position) + _ALIKE:
+            return True
+    return False
+
+
+@compiled
+def _most_alike(m: Model) -> int:
+    """Zero, but for the first, that differs least from the one before."""
+    zero, least, found = m.state.standing.zero, math.inf, 1
+    for i in range(1, MOST_ZEROS):
+        before, z = zero[i - 1], zero[i]
+        apart = abs(z.position - before.position)
+        apart += abs(distance(z, z.position) - distance(before, before.position))
+        if (z.free_farthest == 0.0) == (before.free_farthest == 0.0) and apart < least:
+            least, found = apart, i
+    return found
+
+
+@compiled
+def _drop(m: Model, i: int) -> None:
+    s = m.state.standing
+    for k in range(i, s.zero_count - 1):
+        copy_zero(m, k, k + 1)
+    s.zero_count -= 1
+
+
+@compiled
+def drop_left(m: Model, position: float) -> None:
+    """Drop zeros that the gear has left by half a pitch."""
+    s, kept = m.state.standing, 0
+    for i in range(s.zero_count):
+        if abs(position - s.zero[i].position) <= HALF_PITCH:
+            if kept < i:
+                copy_zero(m, kept, i)
+            kept += 1
+    s.zero_count = kept
+
+
+@compiled
+def standing_since(m: Model, t: float, time: float, position: float) -> int:
+    """First zero from which the gear stands until a time, over tau and in s, at a position; -1 if there is none."""
+    s = m.state.standing
+    for i in range(s.zero_count):
+        z = s.zero[i]
+        if z.time > time:
+            break
+        follow_free(m, i, t, math.inf)
+        if _stands(distance(z, position), free_advance(z, time), time - z.time, time):
+            return i
+    return -1
+
+
+@compiled
+def free_advance(z: Record, time: float) -> float:
+    """Farthest distance of free gears until a time [s]; a run has ended where they have been followed farther."""
+    return z.free_farthest if z.free_time <= time * (1.0 + 1e-12) else z.free_before
+
+
+@compiled
+def note_slow(m: Model, time: float, speed: float, position: float) -> None:
+    """Note the speed at an accepted time, to know later when the gear was last slower than a speed."""
+    s = m.state.standing
+    n = s.slow_count
+    while n > 0 and s.slow[n - 1].speed >= speed:
+        n -= 1
+    if n > 0 and speed < _FASTER * s.slow[n - 1].speed:
+        s.slow_count = n
+        return
+    if n == MOST_SLOW:
+        for k in range(1, n):
+            s.slow[k - 1] = s.slow[k]
+        n -= 1
+    s.slow[n].time, s.slow[n].speed, s.slow[n].position = time, speed, position
+    s.slow_count = n + 1
+
+
+@compiled
+def last_slow(m: Model, speed: float) -> tuple[float, float]:
+    """Time [s] and position [pb] at which the gear was last slower than a speed [pb/s]."""
+    s = m.state.standing
+    k = s.slow_count - 1
+    while k > 0 and s.slow[k].speed >= speed:
+        k -= 1
+    last = s.slow[k]
+    if last.speed >= speed or k == s.slow_count - 1:
+        return last.time, last.position
+    after = s.slow[k + 1]
+    share = (speed - last.speed) / (after.speed - last.speed)
+    return (
+        last.time + share * (after.time - last.time),
+        last.position + share * (after.position - last.position),
+    )

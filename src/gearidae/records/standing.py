@@ -1,0 +1,66 @@
+"""Standing: the conditions under which a gear stands, sticks, or is thought to have left, in one place.
+
+Free gears are the same shafts under the same torques, joined without backlash, adhesion and friction. Advances are the
+farthest distances of the gear and of free gears from a zero of the gear's speed, in pitches of the gear.
+"""
+
+from __future__ import annotations
+
+from enum import IntFlag
+
+COLUMNS = ("begin", "end", "advance", "free_advance", "held_torque", "holding", "driven_time", "rest_time")
+"""Numbers of a standstill: begin and end [s], end NaN at the end of the run; advances [pitches]; largest torque held
+beyond the dry load [N m]; what held it, a `Holding`; times for which the drive exceeded the load, and at rest [s]."""
+
+
+class Holding(IntFlag):
+    """What holds a gear."""
+
+    DRY_RESISTANCE = 1
+    HUB_FRICTION = 2
+    FLANK_FRICTION = 4
+    ADHESION = 8
+
+    @property
+    def words(self) -> str:
+        """Names of all that hold it."""
+        return " and ".join((part.name or "").lower().replace("_", " ") for part in Holding if part in self)
+
+
+HALF_PITCH = 0.5
+"""Pitches that a gear must move from a zero of its speed to have left it."""
+NOTICED = 0.1
+"""Pitches that free gears must have moved for a standstill of any duration, and for one that sticks."""
+SHARE = 0.01
+"""Of the time since the start: a standstill in which free gears have moved less lasts longer than this."""
+
+
+def stands(advance: float, free_advance: float, lasts: float, until: float) -> bool:
+    """Whether a gear stands that has stayed within half a pitch since a zero of its speed.
+
+    Parameters
+    ----------
+    advance, free_advance : float
+        Of the gear and of free gears since the zero [pitches].
+    lasts : float
+        Time since the zero [s].
+    until : float
+        Time since the start of the chain of runs [s].
+    """
+    held = free_advance == 0.0 or advance < 0.5 * free_advance
+    return held and (free_advance >= NOTICED or lasts > SHARE * until)
+
+
+def is_driven(free_advance: float, driven_time: float, until: float) -> bool:
+    """Whether a gear that stands is driven: it sticks, and does not only stop.
+
+    Parameters
+    ----------
+    free_advance : float
+        Of free gears [pitches].
+    driven_time : float
+        For which the drive exceeded the dry load [s].
+    until : float
+        As for `stands`.
+    """
+    return free_advance >= NOTICED or driven_time > SHARE * until
