@@ -121,6 +121,7 @@ ZERO: Final = record_type(  # of the gear's speed; free gears start there at res
     ("free_speed", REAL),  # of free gears [pb/s]
     ("free_farthest", REAL),  # largest size of `free_travel` [pb]
     ("free_before", REAL),  # that at the end of the run before [pb]
+    ("onset", REAL),  # when free gears have begun to move; 0 before [s]
     ("excess", REAL),  # largest torque of the drive at the gear beyond the dry load [N m]
     ("driven_time", REAL),  # for which there was any [s]
 )

@@ -26,6 +26,7 @@ from gearidae.engine.followers.standing.zeros import (
     make_zero,
     note_slow,
     standing_since,
+    stood_until,
 )
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS, SPARE
@@ -155,43 +156,63 @@ def leave(m: Model, t: float, speed: float, position: float) -> None:
     """Leave half a pitch from the first zero: note the standstill that lies behind, if there is one."""
     s, unit = m.state.standing, m.scene.time_unit
     time, place = last_slow(m, SLOWER * abs(speed) * m.scene.phase_rate / unit)
-    i = standing_since(m, time / unit, time, place)
-    if i >= 0 and s.zero[i].spent == 0:
-        _note_standstill(m, i, time, place)
-        for k in range(s.zero_count):
-            s.zero[k].spent = 1
+    i = standing_since(m, time, place, m.scene.end * unit)
+    if i >= 0:
+        if s.zero[i].spent == 0:
+            z = s.zero[i]
+            _note_standstill(m, i, i, time, distance(z, place), free_advance(z, time))
+    else:
+        note_stood(m, time)
     drop_left(m, position)
     if m.scene.stop == _STICKS:
         plan_stop(m, t)
 
 
 @compiled
-def _note_standstill(m: Model, i: int, time: float, position: float) -> None:
+def note_stood(m: Model, limit: float) -> None:
+    """Note a standstill that has ended before a time [s] as the gear began to move as free gears do."""
+    s, i = m.state.standing, 0
+    while i < s.zero_count:
+        if s.zero[i].spent == 0 and s.zero[i].time < limit:
+            time, way, free = stood_until(m, i, limit, m.scene.end * m.scene.time_unit)
+            if time > 0.0:
+                if free == 0.0:
+                    s.zero[SPARE].excess = s.zero[SPARE].driven_time = 0.0
+                _note_standstill(m, i, SPARE, time, way, free)
+                return
+        i += 1
+
+
+@compiled
+def _note_standstill(m: Model, i: int, k: int, time: float, way: float, free: float) -> None:
+    """Note a standstill from zero `i` to a time [s]; of the drive since then the place `k` knows."""
     s = m.state.standing
-    z = s.zero[i]
-    start = standstill_begin(m, z)
+    z, drive = s.zero[i], s.zero[k]
+    start, rest = standstill_begin(m, z), s.rest_time - z.rest_time
+    for j in range(s.zero_count):
+        if s.zero[j].time <= time:
+            s.zero[j].spent = 1
     s.standstills += 1
     s.standing_time += time - start
-    s.standing_rest += s.rest_time - z.rest_time
+    s.standing_rest += min(rest, time - start)
     s.last_end, s.breakaway = time, _drive_torque(m, i, time / m.scene.time_unit)
     at = s.stand_count
     if at == MOST_STANDSTILLS:  # the shortest makes room
         at = 0
-        for k in range(1, MOST_STANDSTILLS):
-            one, least = s.standstill[k], s.standstill[at]
+        for j in range(1, MOST_STANDSTILLS):
+            one, least = s.standstill[j], s.standstill[at]
             if one.end - one.begin < least.end - least.begin:
-                at = k
+                at = j
         if time - start <= s.standstill[at].end - s.standstill[at].begin:
             return
-        for k in range(at, MOST_STANDSTILLS - 1):
-            s.standstill[k] = s.standstill[k + 1]
+        for j in range(at, MOST_STANDSTILLS - 1):
+            s.standstill[j] = s.standstill[j + 1]
         at = MOST_STANDSTILLS - 1
     else:
         s.stand_count += 1
     kept = s.standstill[at]
-    kept.begin, kept.end = start, time
-    kept.advance, kept.free_advance = distance(z, position), free_advance(z, time)
-    kept.excess, kept.driven_time, kept.rest_time = z.excess, z.driven_time, s.rest_time - z.rest_time
+    kept.begin, kept.end, kept.advance, kept.free_advance = start, time, way, free
+    kept.excess, kept.driven_time, kept.rest_time = drive.excess, drive.driven_time, min(rest, time - start)
 
 
 @compiled
@@ -279,7 +300,9 @@ def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
     m = model_at(place)
     s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
     out[:] = 0.0
-    i = standing_since(m, t, time, position) if s.zero_count > 0 else -1
+    i = standing_since(m, time, position, time) if s.zero_count > 0 else -1
+    if i < 0:
+        note_stood(m, time)
     out[0] = 1.0 if i >= 0 else 0.0
     if s.zero_count > 0:
         z = s.zero[max(i, 0)]

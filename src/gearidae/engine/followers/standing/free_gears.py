@@ -62,6 +62,8 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
                 t = after
                 continue
             sign = math.copysign(1.0, push)
+            if z.free_farthest == 0.0:
+                z.onset = t * m.scene.time_unit
         h = min(max(h, least), longest, stop - t)
         if m.scene.angle_omega > 0.0 and w != 0.0:
             h = min(h, max(_TURN / (m.scene.angle_omega * m.scene.phase_rate * abs(w)), least))

@@ -13,10 +13,10 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.followers.standing.free_gears import follow_free
-from gearidae.engine.model.checkpoint_record import HIGH, MOST_SLOW, MOST_ZEROS
+from gearidae.engine.model.checkpoint_record import HIGH, MOST_SLOW, MOST_ZEROS, SPARE
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U
 from gearidae.engine.pairs.tooth_pairs import static_error
-from gearidae.records.standing import HALF_PITCH, stands
+from gearidae.records.standing import HALF_PITCH, SHARE, stands
 
 DECIDED: Final = 2.0 * HALF_PITCH
 """Pitches of free gears from which on a gear stands that has stayed within half a pitch."""
@@ -47,7 +47,7 @@ def make_zero(m: Model, i: int, t: float, position: float, y: Floats, at_start: 
     z.spent = 0
     z.rest_time = m.state.standing.rest_time
     z.free_travel = z.free_speed = z.free_farthest = z.free_before = 0.0
-    z.excess = z.driven_time = 0.0
+    z.onset = z.excess = z.driven_time = 0.0
 
 
 @compiled
@@ -156,17 +156,52 @@ def drop_left(m: Model, position: float) -> None:
 
 
 @compiled
-def standing_since(m: Model, t: float, time: float, position: float) -> int:
-    """First zero from which the gear stands until a time, over tau and in s, at a position; -1 if there is none."""
+def standing_since(m: Model, time: float, position: float, length: float) -> int:
+    """First zero from which the gear stands until a time at a position, in a run of a length [s]; -1 if none."""
     s = m.state.standing
     for i in range(s.zero_count):
         z = s.zero[i]
         if z.time > time:
             break
-        follow_free(m, i, t, math.inf)
-        if _stands(distance(z, position), free_advance(z, time), time - z.time, time):
+        follow_free(m, i, time / m.scene.time_unit, math.inf)
+        if _stands(distance(z, position), free_advance(z, time), time - z.time, length):
             return i
     return -1
+
+
+@compiled
+def stood_until(m: Model, i: int, limit: float, length: float) -> tuple[float, float, float]:
+    """When the conditions of standing from a zero held last before a time [s]; 0 if they did not.
+
+    A gear that begins to move as free gears do ends a standstill without leaving half a pitch. Since the last zero its
+    way is among the slow times; before, the standstill of a gear that is not driven ends where free gears begin to move.
+
+    Returns
+    -------
+    time, advance, free_advance : float
+        [s], [pb], [pb].
+    """
+    s = m.state.standing
+    copy_zero(m, SPARE, i)
+    z = s.zero[SPARE]
+    found = (0.0, 0.0, 0.0)
+    before = -1.0
+    for k in range(s.slow_count):
+        point = s.slow[k]
+        if point.time < z.free_time or point.time > limit:
+            continue
+        follow_free(m, SPARE, point.time / m.scene.time_unit, math.inf)
+        way, free = distance(z, point.position), z.free_farthest
+        margin = 0.5 * free - way
+        if _stands(way, free, point.time - z.time, length):
+            found, before = (point.time, way, free), margin
+        elif before >= 0.0:
+            share = before / (before - margin)
+            found = (found[0] + share * (point.time - found[0]), found[1], found[2])
+            before = -1.0
+    if found[0] == 0.0 and z.onset > 0.0 and z.onset <= limit and z.onset - z.time > SHARE * length:
+        found = (z.onset, distance(z, z.position), 0.0)
+    return found
 
 
 @compiled
