@@ -64,7 +64,7 @@ def test_dry_resistance_stops_the_gear_and_the_books_balance(braking):
     assert told.dry_loss == pytest.approx(3e-11 * turned, rel=1e-12, abs=0.0)
     # what is lost in the contacts is small, and more than the error of the sum: adhesion only takes
     assert 0.0 < told.contact_loss < 1e-3 * told.dry_loss
-    assert told.uncertainty < 0.5 * told.contact_loss
+    assert told.residual < 0.5 * told.contact_loss
 
 
 def test_work_of_a_schedule_on_a_free_pinion():
@@ -80,7 +80,7 @@ def test_work_of_a_schedule_on_a_free_pinion():
     assert told.drive_work == pytest.approx(work, rel=1e-5, abs=0.0)
     assert told.kinetic_change == pytest.approx(work, rel=1e-5, abs=0.0)
     assert abs(told.contact_loss) < 1e-5 * work
-    assert told.uncertainty < 1e-5 * work
+    assert told.residual < 1e-5 * work
 
 
 def test_held_at_rest_from_the_beginning_to_the_end():
@@ -152,7 +152,7 @@ def test_the_energies_are_those_summed_over_the_samples(braking):
     error = abs(summed.contact_loss - coarse.contact_loss)
     assert error < 0.02 * told.contact_loss
     assert told.contact_loss == pytest.approx(summed.contact_loss, rel=0.0, abs=2.0 * error)
-    assert told.uncertainty < error
+    assert told.residual < error
 
 
 def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
@@ -168,7 +168,7 @@ def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
             "damping_loss",
             "kinetic_change",
             "contact_loss",
-            "uncertainty",
+            "residual",
         ),
         *("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound"),
         *("friction_loss", "efficiency"),

@@ -124,6 +124,30 @@ class Results:
                 columns[name] = [getattr(each, name) for each in judged]
         return pd.DataFrame(columns)
 
+    def standstills(self) -> pd.DataFrame:
+        """Make a table of the times at which the gears stood; see `gearidae.records.standing`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each standstill, of more than 64 in a run the longest: the swept keys, ``begin`` and ``end`` [s],
+            the end NaN where the run has ended before; ``advance`` and ``free_advance`` [pitches] of the gear and of
+            free gears; ``held_torque`` [N m], the largest torque of the drive at the gear beyond the dry load;
+            ``held_by``; ``verdict``, as if the run had ended there; ``rest_time`` [s], for which dry friction held
+            all of the gear. Empty for a gear that never stood.
+
+        Raises
+        ------
+        SceneError
+            If the runs have not kept it: rollers, archives of version 0.2, sweeps that keep other parts.
+        """
+        import pandas as pd
+
+        from gearidae.analysis.verdict.standstills import standstill_rows
+
+        names, rows = standstill_rows(self._ds)
+        return pd.DataFrame(rows, columns=names)
+
     def to_dataframe(
         self, variables: Sequence[str] | None = None, *, largest: float = LARGEST_TABLE
     ) -> pd.DataFrame:

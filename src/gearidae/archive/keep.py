@@ -30,7 +30,15 @@ if TYPE_CHECKING:
 GROUPS = ("verdict", "extremes", "statistics", "energy_balance", "scene", "exposures", "samples", "events")
 """Names that stand for several variables, or for one, from the smallest to the largest."""
 _ALWAYS = ("status", "message", "wall_time", *VERDICT)
-_IN_WORDS = ("stick_time", "stick_exits", "free_advance", "holding", "turned_back", "back_time", "followed_time")
+_IN_WORDS = (
+    "stick_time",
+    "stick_exits",
+    "free_advance",
+    "holding",
+    "turned_back",
+    "back_time",
+    "followed_time",
+)
 """What the words of a gear's verdict say besides."""
 
 

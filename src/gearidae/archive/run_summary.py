@@ -76,8 +76,8 @@ class Account:
         Kinetic energy of both gears at the end less that at the start.
     contact_loss : float
         What is left of the work: lost to adhesion or stored in contacts, less the work of the changing radius.
-    uncertainty : float
-        How far that can be trusted: the balance's residual.
+    residual : float
+        Size of the balance's residual: no uncertainty of the losses, which scatter with the tolerance by more.
     adhesion_loss, stored_change, radius_work, model_change : float
         What it is made of, from the balance; see `gearidae.records.EnergyBalance`.
     residual_bound : float
@@ -100,7 +100,7 @@ class Account:
     damping_loss: float
     kinetic_change: float
     contact_loss: float
-    uncertainty: float
+    residual: float
     adhesion_loss: float = math.nan
     stored_change: float = math.nan
     radius_work: float = math.nan
@@ -231,7 +231,7 @@ def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
     own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
     parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
     if balance is None:
-        return dict.fromkeys((*own, *parts, "contact_loss", "uncertainty"), math.nan)
+        return dict.fromkeys((*own, *parts, "contact_loss", "residual"), math.nan)
     friction = sum(balance[name] for name in FRICTION_LOSSES)
     useful = balance["drag_loss"] + balance["dry_loss"]
     lost = useful + balance["damping_loss"] + balance["adhesion_loss"] + friction
@@ -240,7 +240,7 @@ def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
     contact -= balance["radius_work"] + balance["model_change"]
     return energies | {
         "contact_loss": contact,
-        "uncertainty": abs(balance["residual"]),
+        "residual": abs(balance["residual"]),
         "friction_loss": friction,
         "efficiency": useful / lost if lost > 0.0 and balance["drive_work"] > 0.0 else math.nan,
     }

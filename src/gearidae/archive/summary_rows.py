@@ -6,6 +6,7 @@ The terminal and the report show these rows, in these words; the names are those
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from typing import Any, Final, TypeAlias
 
@@ -50,6 +51,7 @@ def summary_rows(ds: xr.Dataset) -> list[Row]:
     found: list[Row] = []
     if "account" in ds.attrs:
         found += _with_reach(ds, _summary_rows(json.loads(ds.attrs["account"])))
+    found += _standing_rows(ds)
     if numbers := balance_in_attributes(ds):
         found += _with_reach(ds, _balance_rows(numbers))
     return found
@@ -85,6 +87,25 @@ def _summary_rows(kept: dict[str, Any]) -> Iterator[tuple[str, Row]]:
     if kept.get("friction_loss") and kept["efficiency"] is not None:
         share = f"{100.0 * kept['efficiency']:.4g} %"
         yield "efficiency", ("efficiency", share, "drag and dry resistance over all losses")
+
+
+def _standing_rows(ds: xr.Dataset) -> Iterator[Row]:
+    """How long the gear stood, and when it started."""
+    if "standing_time" not in ds or ds["standing_time"].dims or math.isnan(float(ds["standing_time"])):
+        return
+    count, rest = int(ds["standstills"]), float(ds["standing_rest_time"])
+    if count:
+        times = "1 standstill" if count == 1 else f"{count} standstills"
+        remark = f"{times}; {with_prefix(rest, 's', 4)} of it held at rest"
+        yield "time standing", with_prefix(float(ds["standing_time"]), "s", 4), remark
+    start = float(ds["start_time"])
+    if count and start > 0.0:
+        torque = with_prefix(float(ds["breakaway_torque"]), "N m", 4)
+        yield (
+            "start time",
+            with_prefix(start, "s", 4),
+            f"end of the last standstill, at a drive torque of {torque}",
+        )
 
 
 def _balance_rows(kept: dict[str, float]) -> Iterator[tuple[str, Row]]:

@@ -208,7 +208,9 @@ _GEAR_EXTREMES = (
     Variable("advance", (), "1", "pitches that the gear has been away from where it came to stand"),
     Variable("free_advance", (), "1", "pitches that free gears would have been away from there"),
     Variable("driven_time", (), "s", "time since then for which the drive exceeded the dry load"),
-    Variable("held_torque", (), "N m", "largest torque of the drive at the gear beyond the dry load since then"),
+    Variable(
+        "held_torque", (), "N m", "largest torque of the drive at the gear beyond the dry load since then"
+    ),
     Variable("holding", (), "1", "what holds the gear at the end", np.int64, comment=_HOLDING),
     Variable("turned_back", (), "1", "pitches by which the gear has gone back at the end"),
     Variable("free_turned_back", (), "1", "pitches by which free gears would have gone back"),

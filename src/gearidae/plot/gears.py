@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import math
+
 import xarray as xr
 from matplotlib.axes import Axes
 
+from gearidae.analysis.verdict.standstills import standstill_rows
+from gearidae.archive.variables import STANDSTILL_LIST
+from gearidae.plot.outcome import look_of
 from gearidae.plot.style import Run, label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 
 
 def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the speed of the gear over time, all runs in one frame (Teodorescu et al. 2009, Figs. 4 and 7).
+
+    Of a single run, the times at which the gear stood are shaded, by the verdict of each standstill.
 
     Parameters
     ----------
@@ -28,7 +35,10 @@ def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         If the dataset has no samples of it.
     """
     ax = new_axes(ax)
-    _overlay(ax, runs_of(ds, "gear_speed"), "gear_speed", 1.0)
+    drawn = runs_of(ds, "gear_speed")
+    _overlay(ax, drawn, "gear_speed", 1.0)
+    if len(drawn) == 1:
+        _mark_standstills(ax, drawn[0])
     ax.set_ylabel("gear speed (rad/s)")
     low, high = ax.get_ylim()
     if low < 0.0 < high:
@@ -108,6 +118,34 @@ def _overlay(ax: Axes, runs: list[Run], name: str, factor: float) -> None:
         )
     tidy(ax)
     legend(ax, runs)
+
+
+def _mark_standstills(ax: Axes, run: Run) -> None:
+    """Shade the times at which the gear stood, by the verdict of each."""
+    if STANDSTILL_LIST.name not in run.data:
+        return
+    time = label_time(ax, [run])
+    names, rows = standstill_rows(run.data)
+    named: dict[str, None] = {}
+    for row in rows:
+        one = dict(zip(names, row, strict=True))
+        end = float(run.data["time"][-1]) if math.isnan(one["end"]) else one["end"]
+        label = "_" if one["verdict"] in named else one["verdict"]
+        named[one["verdict"]] = None
+        look = look_of(one["verdict"])
+        ax.axvspan(
+            one["begin"] * time.factor,
+            end * time.factor,
+            facecolor=look.colour,
+            alpha=0.2,
+            hatch=look.hatch,
+            edgecolor="white",
+            linewidth=0.0,
+            label=label,
+            zorder=0,
+        )
+    if named:
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
 
 
 def _liveliness(run: Run, name: str) -> float:

@@ -22,7 +22,7 @@ from gearidae.plot.style import new_axes, scale_for, scaled, tidy
 
 
 @dataclass(frozen=True, slots=True)
-class _Look:
+class Look:
     """How a verdict looks: colour, marker of a run, hatch of a field; each identifies it without the others."""
 
     colour: str
@@ -31,18 +31,19 @@ class _Look:
 
 
 _LOOKS = {
-    "turns smoothly": _Look("#0072B2", "o", ""),
-    "rebounds": _Look("#0072B2", "o", ""),
-    "runs": _Look("#0072B2", "o", ""),
-    "irregular": _Look("#E69F00", "D", "//"),
-    "running up": _Look("#56B4E9", "^", ".."),
-    "running down": _Look("#009E73", "v", "--"),
-    "runs back": _Look("#CC79A7", "<", "++"),
-    "sticks": _Look("#D55E00", "X", "xx"),
-    "stops": _Look("#D55E00", "X", "xx"),
-    "flies": _Look("#56B4E9", "^", ".."),
+    "turns smoothly": Look("#0072B2", "o", ""),
+    "rebounds": Look("#0072B2", "o", ""),
+    "runs": Look("#0072B2", "o", ""),
+    "irregular": Look("#E69F00", "D", "//"),
+    "running up": Look("#56B4E9", "^", ".."),
+    "running down": Look("#009E73", "v", "--"),
+    "runs back": Look("#CC79A7", "<", "++"),
+    "sticks": Look("#D55E00", "X", "xx"),
+    "stops": Look("#F0E442", "s", "**"),
+    "turns back": Look("#56B4E9", "<", "++"),
+    "flies": Look("#56B4E9", "^", ".."),
 }
-_UNKNOWN = _Look("#999999", "P", "oo")
+_UNKNOWN = Look("#999999", "P", "oo")
 _MOST_NAMES = 12
 
 
@@ -86,7 +87,8 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _look(verdict: str) -> _Look:
+def look_of(verdict: str) -> Look:
+    """How a verdict looks."""
     return _LOOKS.get(verdict, _UNKNOWN)
 
 
@@ -99,7 +101,7 @@ def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerO
     ax.vlines(along.places, lows, highs, color="0.6", linewidth=1.6, zorder=2)
     for verdict in dict.fromkeys(one.verdict for one in judged):
         own = np.array([one.verdict == verdict for one in judged])
-        look = _look(verdict)
+        look = look_of(verdict)
         ax.plot(
             along.places[own],
             lows[own],
@@ -144,13 +146,13 @@ def _fields(ax: Axes, down: ParameterAxis, across: ParameterAxis, verdicts: NDAr
     grid = grid[np.ix_(rows, columns)]
     shown = list(dict.fromkeys(verdicts.tolist()))
     for verdict in shown:
-        look = _look(verdict)
+        look = look_of(verdict)
         corners = [_square(row, column) for row, column in np.argwhere(grid == verdict)]
         fields = PolyCollection(corners, facecolors=look.colour, edgecolors="white", linewidths=0.6)
         fields.set_hatch(look.hatch)
         ax.add_collection(fields, autolim=False)
     handles = [
-        Patch(facecolor=_look(one).colour, hatch=_look(one).hatch, edgecolor="white", linewidth=0.0)
+        Patch(facecolor=look_of(one).colour, hatch=look_of(one).hatch, edgecolor="white", linewidth=0.0)
         for one in shown
     ]
     ax.set_xlim(-0.5, len(columns) - 0.5)

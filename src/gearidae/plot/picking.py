@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-_HELD = ("sticks", "runs back", "stops")
-"""Verdicts of gears that adhesion or a load has stopped."""
+from gearidae.analysis.verdict.codes import STUCK
 
 
 def pick(verdicts: Sequence[str], most: int) -> list[int]:
@@ -44,7 +43,7 @@ def _in_order_of_interest(verdicts: Sequence[str]) -> Iterator[int]:
     yield from (0, len(verdicts) - 1)
     changes = [number for number, (one, next_one) in enumerate(pairwise(verdicts)) if one != next_one]
     for number in changes:
-        if (verdicts[number] in _HELD) != (verdicts[number + 1] in _HELD):
+        if (verdicts[number] in STUCK) != (verdicts[number + 1] in STUCK):
             yield from (number, number + 1)
     for number in changes:
         if verdicts[number + 1] == "irregular":

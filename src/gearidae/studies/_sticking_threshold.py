@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress, sweep_progress
@@ -28,7 +29,7 @@ from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import prepare
 from gearidae.scene.keys import find_key
 from gearidae.studies.products import open_product
-from gearidae.studies.requirements import require_constant, require_gears
+from gearidae.studies.requirements import require_gears
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
 if TYPE_CHECKING:
@@ -63,7 +64,8 @@ def sticking_threshold(
     Parameters
     ----------
     scene : Scene
-        With gears, torques without a schedule.
+        With gears. Torques that follow a schedule are run for ``run.duration``, in which a gear must stick or pass all
+        exits; constant ones for as long as it takes.
     over : str, optional
         Key of a number.
     between : tuple of two values, optional
@@ -89,7 +91,8 @@ def sticking_threshold(
     Raises
     ------
     SceneError
-        If the scene has no gears, or follows a schedule; a setting is not allowed; or the gear does alike at both ends.
+        If the scene has no gears; a setting is not allowed; the gear does alike at both ends; or in the time of a
+        schedule it neither sticks nor passes the exits.
     Interrupted
         On Ctrl-C, with the brackets so far as its ``dataset``.
 
@@ -109,7 +112,8 @@ def sticking_threshold(
     ends = _ends(base, over, between)
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
     _check(base, exits, width)
-    base = base.replace({"run.duration": _window(base, exits)})
+    if not is_scheduled(base.to_dict()):  # a schedule has a time of its own
+        base = base.replace({"run.duration": _window(base, exits)})
     how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
@@ -159,8 +163,20 @@ class _Pool:
         scenes = [self.scene.replace({self.over: value}) for value in todo]
         found = solutions(self.kept, self.executor, run_until, scenes, self.exits, self.backend)
         for value, (solution, _) in zip(todo, found, strict=True):
-            self.runs.append(ThresholdRun.of(value, solution))
+            run = ThresholdRun.of(value, solution)
+            _refuse_short(self.scene, run, self.exits)
+            self.runs.append(run)
             self.report(len(self.runs))
+
+
+def _refuse_short(scene: Scene, run: ThresholdRun, exits: int) -> None:
+    """Refuse a schedule in whose time a gear neither sticks nor passes all exits: one run then gives no answer."""
+    if math.isnan(run.stick_time) and run.passed < exits and is_scheduled(scene.to_dict()):
+        allowed = (
+            f"must be at most {run.passed}, or run.duration longer: at {run.value:g} the gear does not stick in the "
+            f"{run.window:g} s of its schedule and passes no more"
+        )
+        raise SceneError("exits", exits, allowed)
 
 
 def _search(pool: _Pool, ends: tuple[float, float], waits: Sequence[int], width: float) -> None:
@@ -268,7 +284,6 @@ def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, flo
 
 def _check(scene: Scene, exits: int, width: float) -> None:
     require_gears(scene)
-    require_constant(scene, "a threshold", "a gear that is braked to rest has not stuck")
     if not isinstance(exits, int) or isinstance(exits, bool) or exits < 1:
         raise SceneError("exits", exits, "must be a whole number, 1 or more")
     if not 0.0 < width < math.inf:

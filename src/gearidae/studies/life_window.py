@@ -229,7 +229,7 @@ def stands(solution: Solution, scene: Scene) -> bool:
     """Whether the gear stands at the end of a run that was to end after some turns, or has not turned so far."""
     found, reached = solution.extremes, solution.reached or 0.0
     late = reached - solution.start >= scene.run.duration * (1.0 - 1e-9)
-    return found is None or not math.isnan(found.stick_time) or late
+    return found is None or late or not (math.isnan(found.stick_time) and math.isnan(found.back_time))
 
 
 def solved(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:

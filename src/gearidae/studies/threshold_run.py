@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from gearidae.analysis.verdict.judge import has_stuck, is_scheduled
 from gearidae.errors import SceneError
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.keys import scene_value
@@ -51,7 +52,10 @@ class ThresholdRun:
         found = solution.extremes
         if found is None or solution.status != "finished":
             raise unfinished(solution, f"the run at {value:g}")
-        return cls(value, found.stick_exits, found.stick_time, solution.reached or 0.0)
+        if not has_stuck(found):
+            return cls(value, found.mesh_exits, math.nan, solution.reached or 0.0)
+        time = found.back_time if math.isnan(found.stick_time) else found.stick_time
+        return cls(value, found.stick_exits, time, solution.reached or 0.0)
 
 
 def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
@@ -61,15 +65,17 @@ def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
     ----------
     scene : Scene
         With the time that a gear without adhesion would take, and some more. A gear that neither sticks in it nor
-        passes the exits gets more time.
+        passes the exits gets more time, but for torques that follow a schedule: these have a time of their own.
     backend : str
         As for `simulate`.
     """
     duration, longest = scene.run.duration, _LONGEST * scene.run.duration
+    scheduled = is_scheduled(scene.to_dict())
     while True:
         solution = solve_to_end(scene.replace({"run.duration": duration}), backend)
         found = solution.extremes
-        slow = found is not None and math.isnan(found.stick_time) and found.mesh_exits < exits
+        moves = found is not None and math.isnan(found.stick_time) and math.isnan(found.back_time)
+        slow = not scheduled and moves and found is not None and found.mesh_exits < exits
         if not slow or solution.status != "finished" or duration >= longest:
             return replace(solution, events=unsolved("", "").events), ""
         duration *= 2.0

@@ -9,10 +9,9 @@ from itertools import pairwise
 import numpy as np
 import xarray as xr
 
+from gearidae.analysis.verdict.codes import STUCK
 from gearidae.analysis.verdict.outcome import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.select import swept_dims
-
-_STUCK = ("sticks", "runs back")
 
 
 def headline(ds: xr.Dataset) -> str:
@@ -41,7 +40,7 @@ def _limit(ds: xr.Dataset, subject: str, judged: Sequence[GearOutcome | RollerOu
     if values.dtype.kind not in "fiu" or any(each.verdict == "unfinished" for each in judged):
         return ""
     order = np.argsort(values)
-    stuck = [judged[place].verdict in _STUCK for place in order]
+    stuck = [judged[place].verdict in STUCK for place in order]
     changes = [k for k, (one, other) in enumerate(pairwise(stuck)) if one != other]
     if len(changes) != 1:
         return ""

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.analysis.verdict.codes import STUCK
 from gearidae.records import EventKind, Extremes, Solution
 from gearidae.records.standing import is_driven
 from gearidae.scene import Scene
@@ -67,6 +68,11 @@ def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str
     if scheduled:
         return "runs" if found.last_min_gear_speed > 0.0 else "irregular"
     return _turning(found)
+
+
+def has_stuck(found: Extremes) -> bool:
+    """Whether a run counts as sticking, whatever its torques are."""
+    return gear_verdict(found, "finished", scheduled=True) in STUCK
 
 
 def standing_verdict(free_advance: float, driven_time: float, until: float) -> str:

@@ -106,24 +106,26 @@ SPARE: Final = MOST_ZEROS + 1
 MOST_SLOW: Final = 32
 MOST_STANDSTILLS: Final = 64
 
-ZERO: Final = record_type(  # of the gear's speed; free gears start there at rest. Units stay with a change of torques
-    ("time", REAL),  # [s]
-    ("position", REAL),  # how far the gear had turned by then [pb]
-    ("lead", REAL),  # of the pinion's base circle over the gear's, from the start of a chain [sigma]
-    ("exits", INT),  # mesh exits until then
-    ("lowest", REAL),  # position of the gear since then, at zeros of its speed [pb]
-    ("highest", REAL),  # [pb]
-    ("start", INT),  # 1 for a start at rest
-    ("spent", INT),  # 1 if a standstill that has ended lies behind it
-    ("rest_time", REAL),  # time at rest until then [s]
-    ("free_time", REAL),  # up to which free gears are followed [s]
-    ("free_travel", REAL),  # of free gears [pb]
-    ("free_speed", REAL),  # of free gears [pb/s]
-    ("free_farthest", REAL),  # largest size of `free_travel` [pb]
-    ("free_before", REAL),  # that at the end of the run before [pb]
-    ("onset", REAL),  # when free gears have begun to move; 0 before [s]
-    ("excess", REAL),  # largest torque of the drive at the gear beyond the dry load [N m]
-    ("driven_time", REAL),  # for which there was any [s]
+ZERO: Final = (
+    record_type(  # of the gear's speed; free gears start there at rest. Units stay with a change of torques
+        ("time", REAL),  # [s]
+        ("position", REAL),  # how far the gear had turned by then [pb]
+        ("lead", REAL),  # of the pinion's base circle over the gear's, from the start of a chain [sigma]
+        ("exits", INT),  # mesh exits until then
+        ("lowest", REAL),  # position of the gear since then, at zeros of its speed [pb]
+        ("highest", REAL),  # [pb]
+        ("start", INT),  # 1 for a start at rest
+        ("spent", INT),  # 1 if a standstill that has ended lies behind it
+        ("rest_time", REAL),  # time at rest until then [s]
+        ("free_time", REAL),  # up to which free gears are followed [s]
+        ("free_travel", REAL),  # of free gears [pb]
+        ("free_speed", REAL),  # of free gears [pb/s]
+        ("free_farthest", REAL),  # largest size of `free_travel` [pb]
+        ("free_before", REAL),  # that at the end of the run before [pb]
+        ("onset", REAL),  # when free gears have begun to move; 0 before [s]
+        ("excess", REAL),  # largest torque of the drive at the gear beyond the dry load [N m]
+        ("driven_time", REAL),  # for which there was any [s]
+    )
 )
 
 SLOW: Final = record_type(  # an accepted time after which the gear has been faster

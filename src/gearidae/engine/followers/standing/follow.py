@@ -75,9 +75,7 @@ def step(m: Model, here: int, y: Floats) -> None:
     if turned or now.speed * last.speed <= 0.0:
         _look_for_zeros(m, here, y, turned)
     if s.zero_count > 0:
-        note_slow(
-            m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position
-        )
+        note_slow(m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position)
         if abs(now.position - s.zero[0].position) > HALF_PITCH:
             leave(m, now.time, now.speed, now.position)
     if s.direction >= 0:

@@ -28,7 +28,9 @@ def standing_in_si(m: Model, place: int, time: float, y: Floats) -> dict[str, An
     """
     numbers = np.empty(STANDING_NUMBERS)
     standing_at(place, time, y, numbers)
-    stands, since, exits, advance, free, driven, held, rest, begin, _, *back, period, at_rest = numbers.tolist()
+    stands, since, exits, advance, free, driven, held, rest, begin, _, *back, period, at_rest = (
+        numbers.tolist()
+    )
     s, e, now = plain(m.state.standing), m.state.extremes, time * float(m.scene.time_unit)
     turned, free_turned, back_time, back_exits, turn_time = back
     gone = turned > 0.0 and (turn_time == 0.0 or turn_time <= now - period)
@@ -61,7 +63,16 @@ def standing_in_si(m: Model, place: int, time: float, y: Floats) -> dict[str, An
 def _row(m: Model, one: Any) -> list[float]:
     """Return the `COLUMNS` of a standstill that has ended."""
     holding = _holding(m, one.rest_time > 0.5 * (one.end - one.begin), one.excess)
-    kept = (one.begin, one.end, one.advance, one.free_advance, one.excess, holding, one.driven_time, one.rest_time)
+    kept = (
+        one.begin,
+        one.end,
+        one.advance,
+        one.free_advance,
+        one.excess,
+        holding,
+        one.driven_time,
+        one.rest_time,
+    )
     return [float(number) for number in kept]
 
 
