@@ -165,7 +165,7 @@ def judge(
         b = float(np.abs(free_way(plant, float(time[k]), time[k:])).max()) / pitch
         lasts = length - time[k]
         if (a < 0.5 * b or b == 0.0) and (b >= 0.1 or lasts > 0.01 * length):
-            beyond = np.array([plant.excess(float(t)) for t in time[k:]]) > 1e-30
+            beyond = [float(plant.excess(float(t)) > 1e-30) for t in time[k:]]
             driven = float(np.trapezoid(beyond, time[k:])) > 0.01 * length
             never = speed[0] == 0.0 and np.abs(x - x[0]).max() <= 0.5
             return ("sticks" if b >= 0.1 or driven else "stops"), (0.0 if never else float(time[k]))

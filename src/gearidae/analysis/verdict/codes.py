@@ -51,7 +51,7 @@ CODE_ATTRIBUTES: dict[str, Any] = {
 _CODES = {code.word: int(code) for code in VerdictCode}
 _STUCK = (VerdictCode.STICKS, VerdictCode.RUNS_BACK)
 STUCK = tuple(code.word for code in _STUCK)
-"""Verdicts that count as sticking wherever runs are counted; a gear that stops, or turns back as driven, has not stuck."""
+"""Verdicts that count as sticking wherever runs are counted; ``stops`` and ``turns back`` do not."""
 
 
 def verdict_codes(words: Sequence[str] | NDArray[np.str_]) -> NDArray[np.int8]:

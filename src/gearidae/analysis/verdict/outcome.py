@@ -26,6 +26,8 @@ from gearidae.records.standing import Holding
 START_UP = RUN_PARTS[0]
 """Share of the run in which the teeth may still bounce from how they were set down."""
 
+_NOTHING = Holding(0)
+
 
 @dataclass(frozen=True, slots=True)
 class GearOutcome(Shown):
@@ -88,7 +90,7 @@ class GearOutcome(Shown):
     window: float
     imbalance: float = math.nan
     free_advance: float = math.nan
-    holding: Holding = Holding(0)
+    holding: Holding = _NOTHING
     turned_back: float = math.nan
     scheduled: bool = False
     old: bool = False

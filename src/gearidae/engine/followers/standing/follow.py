@@ -78,10 +78,9 @@ def step(m: Model, here: int, y: Floats) -> None:
         note_slow(m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position)
         if abs(now.position - s.zero[0].position) > HALF_PITCH:
             leave(m, now.time, now.speed, now.position)
-    if s.direction >= 0:
-        if s.high_known != 0 and now.position < s.zero[HIGH].position - HALF_PITCH:
-            s.turn_time = now.time * unit if s.direction != 0 else 0.0
-            s.direction, s.low = -1, now.position
+    if s.direction >= 0 and s.high_known != 0 and now.position < s.zero[HIGH].position - HALF_PITCH:
+        s.turn_time = now.time * unit if s.direction != 0 else 0.0
+        s.direction, s.low = -1, now.position
     if s.direction <= 0 and now.position > s.low + HALF_PITCH:
         s.direction, s.high_known = 1, 0
     if s.left == 0 and abs(now.position - m.state.first_place) > HALF_PITCH:

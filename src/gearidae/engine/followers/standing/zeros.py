@@ -174,7 +174,7 @@ def stood_until(m: Model, i: int, limit: float, length: float) -> tuple[float, f
     """When the conditions of standing from a zero held last before a time [s]; 0 if they did not.
 
     A gear that begins to move as free gears do ends a standstill without leaving half a pitch. Since the last zero its
-    way is among the slow times; before, the standstill of a gear that is not driven ends where free gears begin to move.
+    way is among the slow times; before, the standstill of a gear that is not driven ends where free gears begin.
 
     Returns
     -------
