@@ -1,11 +1,21 @@
-"""What counts as a schedule in the verdict, and the rule for rollers."""
+"""What counts as a schedule in the verdict, the rules of standing and going back, and the rule for rollers."""
+
+import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.analysis.verdict.judge import in_touch, is_scheduled, roller_verdict
+from gearidae.analysis.verdict.judge import (
+    gear_verdict,
+    has_stuck,
+    in_touch,
+    is_scheduled,
+    roller_verdict,
+)
 from gearidae.records import EventKind, Extremes
+from gearidae.records.standing import Holding, stands
 
 LOW = gd.preset("teodorescu2009_low_speed")
 KNOTS = [(0.0, 5.0), (1.0, 6.0)]
@@ -23,6 +33,56 @@ KNOTS = [(0.0, 5.0), (1.0, 6.0)]
 )
 def test_speeds_that_are_asked_to_change(changes, expected):
     assert is_scheduled(LOW.replace(changes).to_dict()) is expected
+
+
+STANDS = Extremes(stick_time=0.2, free_advance=3.0, driven_time=0.1, followed_time=0.3, turned_back=0.0)
+MOVES = replace(
+    STANDS, stick_time=math.nan, settled_gear_speed=1.0, settled_spread=0.1, last_min_gear_speed=0.9
+)
+BACK = replace(MOVES, turned_back=12.0, free_turned_back=12.0, back_time=0.1)
+
+
+@pytest.mark.parametrize("scheduled", [False, True])
+@pytest.mark.parametrize(
+    ("found", "verdict"),
+    [
+        (STANDS, "sticks"),
+        (replace(STANDS, driven_time=0.0), "sticks"),  # free gears have moved by more than a tenth
+        (replace(STANDS, free_advance=0.05), "sticks"),  # driven for more than a hundredth of the run
+        (replace(STANDS, free_advance=0.05, driven_time=0.003), "stops"),
+        (replace(STANDS, free_advance=0.0, driven_time=0.0), "stops"),
+        (replace(STANDS, turned_back=12.0), "sticks"),  # standing goes before gone back
+        (BACK, "turns back"),
+        (replace(BACK, free_turned_back=6.0), "turns back"),
+        (replace(BACK, free_turned_back=5.9), "runs back"),
+        (replace(BACK, turned_back=0.0, free_turned_back=0.0, back_time=math.nan), None),
+    ],
+)
+def test_standing_is_judged_alike_for_every_torque(found, verdict, scheduled):
+    wanted = verdict or ("runs" if scheduled else "turns smoothly")
+    assert gear_verdict(found, "finished", scheduled=scheduled) == wanted
+    assert has_stuck(found) is (verdict in ("sticks", "runs back"))
+
+
+@pytest.mark.parametrize(
+    ("advance", "free", "lasts", "expected"),
+    [
+        (0.3, 0.61, 0.002, True),
+        (0.3, 0.6, 0.002, False),  # it has moved on by half as much
+        (0.2, 0.0, 0.004, True),  # rocking in a well, undriven
+        (0.2, 0.0, 0.002, False),  # for too short a time
+        (0.0, 0.05, 0.002, False),
+        (0.0, 0.05, 0.004, True),
+        (0.05, 0.05, 0.2, False),  # just starting
+    ],
+)
+def test_conditions_of_standing(advance, free, lasts, expected):
+    assert stands(advance, free, lasts, 0.3) is expected
+
+
+def test_what_holds_in_words():
+    assert Holding(0).words == ""
+    assert (Holding.DRY_RESISTANCE | Holding.ADHESION).words == "dry resistance and adhesion"
 
 
 def test_a_scene_without_gears_has_no_schedule():

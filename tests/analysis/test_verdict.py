@@ -75,8 +75,8 @@ def test_gear_verdicts(speed, verdict):
     ("speed", "verdict"),
     [
         (10 * AT, "runs"),
-        (10 * np.maximum(0.8 - AT, 0.0), "stops"),
-        (10 * np.maximum(0.96 - AT, -0.01), "stops"),  # turned back by less than half a pitch
+        (10 * np.maximum(0.8 - AT, 0.0), "sticks"),
+        (10 * np.maximum(0.96 - AT, -0.01), "sticks"),  # turned back by less than half a pitch
         (100 * (0.5 - AT), "runs back"),
         (-100 * np.ones(201), "runs back"),
         (1e3 * np.abs(0.96 - AT), "irregular"),  # at rest for an instant, and turns on

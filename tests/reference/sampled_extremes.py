@@ -37,7 +37,22 @@ def _of_gear(time, speed, place):
         "late_gear_speed": late.mean(),
         "late_spread": np.ptp(late),
         "last_min_gear_speed": speed[min(int(LAST * end), end - 1) :].min(),
-        **_standstill(time, speed, place),
+        **_standing(time, **_standstill(time, speed, place)),
+    }
+
+
+def _standing(time, stick_time, turned_back):
+    """What follows of a driven gear: free gears have turned on by three pitches."""
+    back = turned_back > HELD_WITHIN
+    stands = not math.isnan(stick_time) and not back
+    return {
+        "stick_time": stick_time if stands else math.nan,
+        "back_time": stick_time if back else math.nan,
+        "turned_back": turned_back if back else 0.0,
+        "free_turned_back": 0.0,
+        "free_advance": 3.0,
+        "driven_time": time[-1],
+        "followed_time": time[-1],
     }
 
 

@@ -246,10 +246,19 @@ def plan_stop(m: Model, t: float) -> None:
 @compiled_once(SOLVER)
 def _stop_time(m: Model, i: int, t: float) -> float:
     """Time over tau when free gears have turned by a pitch and nothing ahead drives harder than before; 0 if never."""
+    s = m.state.standing
     copy_zero(m, SPARE, i)
-    end = follow_free(m, SPARE, m.scene.end, 1.0)
-    if m.state.standing.zero[SPARE].free_farthest < 1.0:
+    low, end = s.zero[i].free_time / m.scene.time_unit, follow_free(m, SPARE, m.scene.end, 1.0)
+    if s.zero[SPARE].free_farthest < 1.0:
         return 0.0
+    for _ in range(_BISECTIONS):  # within the last of the steps
+        middle = 0.5 * (low + end)
+        copy_zero(m, SPARE, i)
+        follow_free(m, SPARE, middle, math.inf)
+        if s.zero[SPARE].free_farthest < 1.0:
+            low = middle
+        else:
+            end = middle
     begin = m.state.standing.zero[i].time / m.scene.time_unit
     end = max(end, begin + slowest_period(m), _hardest(m, max(begin, m.scene.start)))
     # behind the present time, so that it is a root

@@ -1,0 +1,154 @@
+"""Where gears stand: the pair of a start-up of seconds, and drawn runs beside a judge that has samples alone."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.analysis.verdict import outcomes
+from reference.standing import Plant, judge
+
+SURFACE = {
+    "youngs_modulus": 161e9,
+    "poisson_ratio": 0.23,
+    "energy": 1.5,
+    "asperity_density": 169e12,
+    "asperity_radius": 450e-9,
+    "roughness": 6e-9,
+}
+RAMP = [(0.0, 0.0), (5.0, 1.2e-17), (7.0, 1.2e-17), (9.0, 0.0)]
+PAIR = gd.Scene.from_dict(
+    {
+        "gears": {
+            "pinion_teeth": 18,
+            "gear_teeth": 54,
+            "module": 3e-6,
+            "pressure_angle": math.radians(20.0),
+            "face_width": 2.5e-6,
+            "density": 2330.0,
+        },
+        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6},
+        "surface": SURFACE,
+        "coating": {"sam_fraction": 0.5, "energy": 0.1},
+        "drive": {"schedule": RAMP},
+        "load": {"torque": 3e-18, "drag": 8e-18},
+        "initial": {"gear_speed": 0.0, "gap": 0.1e-6, "mesh_phase": 0.3},
+        "run": {"duration": 10.0, "samples": "off", "rtol": 1e-6},
+    }
+)
+
+
+def ended(duration, **changes):
+    return gd.simulate(PAIR.replace({"run.duration": duration} | changes))
+
+
+@pytest.mark.parametrize("duration", [1.6, 2.2, 2.4, 7.0])
+def test_a_gear_that_stands_sticks_whenever_the_run_ends(duration):
+    """Free gears move on; the gear has stood since 1.5175 s."""
+    (outcome,) = outcomes(ended(duration))
+    assert outcome.verdict == "sticks"
+    assert outcome.stick_time == pytest.approx(1.5175, abs=5e-4)
+    assert outcome.words.startswith("sticks at 1.52 s (6 mesh exits): free gears would have turned on by ")
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8])
+def test_the_tolerance_has_no_part_in_where_it_stands(rtol):
+    ds = ended(2.0, **{"run.rtol": rtol})
+    assert float(ds.stick_time) == pytest.approx(1.5175, abs=5e-4)
+    assert float(ds.free_advance) == pytest.approx(4.187, rel=1e-3)
+
+
+def test_a_run_up_that_begins_to_move_and_sticks_has_two_standstills():
+    """The drive exceeds the dry load from 5 s / 12 on; until then the gear is not driven."""
+    table = ended(2.4).gearidae.standstills()
+    assert table.verdict.tolist() == ["stops", "sticks"]
+    assert table.end[0] == pytest.approx(5.0 / 12.0, rel=1e-6)
+    assert math.isnan(table.end[1])
+    assert table.held_torque[1] == pytest.approx(3.0 * 2.4e-18 * 2.4 - 3e-18, rel=1e-6)
+
+
+def test_what_belongs_to_the_standstills_adds_up():
+    ds = ended(2.4)
+    assert int(ds.standstills) == 2
+    assert float(ds.standing_time) == pytest.approx(5.0 / 12.0 + 2.4 - float(ds.stick_time))
+    assert float(ds.start_time) == pytest.approx(5.0 / 12.0, rel=1e-6)
+    assert float(ds.breakaway_torque) == pytest.approx(1e-18, rel=1e-6)
+
+
+def test_a_chain_has_the_standstill_of_a_single_run():
+    whole = ended(2.0)
+    rest = gd.simulate(PAIR.replace({"run.duration": 0.3}), start=ended(1.7))
+    assert outcomes(rest)[0].words == outcomes(whole)[0].words
+    assert float(rest.free_advance) == pytest.approx(float(whole.free_advance), rel=1e-3)
+    assert float(rest.standing_time) == pytest.approx(float(whole.standing_time), rel=1e-4)
+
+
+def test_a_run_ends_where_it_sticks_and_nothing_drives_harder_any_more():
+    """The torque rises until 5 s: what was held before does not tell whether the rest is held."""
+    ds = ended(8.0, **{"run.stop": "sticks"})
+    assert float(ds.attrs["t_end"]) == pytest.approx(5.0, rel=1e-6)
+    assert outcomes(ds)[0].verdict == "sticks"
+
+
+def test_a_start_from_rest_is_not_ended_by_its_first_knock():
+    ds = ended(1.2, **{"run.stop": "sticks"})
+    assert ds.attrs["t_end"] == 1.2
+    assert outcomes(ds)[0].verdict == "runs"
+
+
+def test_the_same_torque_as_a_constant_and_as_a_schedule_sticks_alike():
+    low = gd.preset("teodorescu2009_low_speed").replace({"run.samples": "off", "coating.sam_fraction": 0.4})
+    ramp = {"drive.torque": 0.0, "drive.schedule": [(0.0, 4.4e-18), (0.01, 4.5e-18)]}
+    assert (
+        outcomes(gd.simulate(low))[0].verdict
+        == outcomes(gd.simulate(low.replace(ramp)))[0].verdict
+        == "sticks"
+    )
+
+
+def test_an_undriven_gear_that_its_dry_load_stops_has_not_stuck():
+    off = {"drive.schedule": [], "initial.gear_speed": 1.0, "coating.sam_fraction": 1.0}
+    (outcome,) = outcomes(ended(0.5, **off))
+    assert outcome.verdict == "stops"
+    assert outcome.free_advance == 0.0
+
+
+def test_a_gear_that_is_driven_back_turns_back():
+    drive = {"drive.schedule": [(0.0, 3e-18), (0.3, 3e-18), (0.4, -4e-18)], "coating.sam_fraction": 1.0}
+    (outcome,) = outcomes(ended(2.0, **drive))
+    assert outcome.verdict == "turns back"
+    assert outcome.words.endswith("pitches, as driven")
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_drawn_runs_are_judged_as_from_samples_alone(seed):
+    """A judge with its own free gears, which sees samples only, and no zero between two of them."""
+    random = np.random.default_rng(seed)
+    duration, torque = 1.0, 4.5e-18 * float(random.uniform(0.3, 3.0))
+    times = np.sort(random.uniform(0.0, duration, 4))
+    values = torque * random.uniform(-0.5, 1.5, 4)
+    changes = {
+        "run.samples": 20_001,
+        "coating.sam_fraction": float(random.choice([1.0, 0.6, 0.45, 0.2])),
+        "drive.schedule": [(float(t), float(v)) for t, v in zip(times, values, strict=True)],
+        "load.torque": float(random.choice([0.0, 1e-18, 3e-18])),
+    }
+    if seed % 2:
+        changes["drive.harmonic"] = [{"amplitude": torque, "frequency": 20.0, "phase": 1.0}]
+    scene = PAIR.replace(changes | {"run.duration": duration})
+    ds = gd.simulate(scene)
+    (outcome,) = outcomes(ds)
+    moves = outcome.verdict not in ("sticks", "stops", "turns back", "runs back")
+    wanted, _ = judge(
+        ds.time.values,
+        ds.gear_angle.values,
+        ds.gear_speed.values,
+        Plant.of(scene),
+        2.0 * math.pi / 54,
+        0.05 if seed % 2 else 0.0,
+    )
+    assert ("moves" if moves else outcome.verdict) == wanted, json.dumps(scene.to_dict()["drive"])
