@@ -32,7 +32,10 @@ def judged(changes, found=STOOD):
     [
         ({}, ("sticks", False)),  # 4 times 4.5e-18 N m are beyond the dry load
         ({"drive.torque": 0.0}, ("stops", False)),
-        ({"drive.torque": 1e-18, "drive.harmonic": [{"amplitude": 1e-18, "frequency": 10.0}]}, ("sticks", True)),
+        (
+            {"drive.torque": 1e-18, "drive.harmonic": [{"amplitude": 1e-18, "frequency": 10.0}]},
+            ("sticks", True),
+        ),
         ({"drive.schedule": [(0.0, 0.0), (0.1, 1e-18)]}, ("sticks", False)),  # beyond it at any time
         ({"drive.torque": 0.0, "drive.schedule": [(0.0, 1e-18), (0.1, 0.0)]}, ("stops", True)),
         ({"load.schedule": [(0.0, 0.0), (0.1, 1e-16)]}, ("stops", True)),

@@ -19,7 +19,7 @@ from gearidae.archive.keep import kept_in
 from gearidae.archive.select import run_value, runs, scene_of
 from gearidae.archive.single import single_run
 from gearidae.archive.stack import Axis, stack
-from gearidae.archive.variables import ENERGY_BALANCE, EXPOSURES, EXTREMES, RUN, VERDICT
+from gearidae.archive.variables import ENERGY_BALANCE, EXPOSURES, EXTREMES, RUN, STANDSTILL_LIST, VERDICT
 from gearidae.errors import SceneError
 from gearidae.records import Events, Solution, Statistics
 from gearidae.scene import Scene, describe_keys
@@ -238,10 +238,10 @@ def _number(run: xr.Dataset, name: str) -> Any:
 def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_Run]) -> xr.Dataset:
     """Put in what is taken from the runs' datasets as it is: extremes, energy balances, verdicts, and totals."""
     dims, shape = ds["status"].dims, ds["status"].shape
-    for name, variable in {**EXTREMES, **VERDICT}.items():
+    for name, variable in {**EXTREMES, STANDSTILL_LIST.name: STANDSTILL_LIST, **VERDICT}.items():
         if all(name in each.picked and not each.picked[name].dims for each in found):
             values = np.array([each.picked[name].values.item() for each in found], dtype=variable.dtype)
-            ds[name] = (dims, values.reshape(shape), variable.attributes)
+            ds[name] = (dims, values.reshape(shape), found[0].picked[name].attrs)
     balances = [balance_of(each.single) or {} for each in found]
     for name in ENERGY_BALANCE:
         if name in ds:

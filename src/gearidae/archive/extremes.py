@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST, extreme_names
+from gearidae.archive.variables import EXTREMES, ROLLER_EXTREMES, STANDSTILL_LIST, extreme_names
 from gearidae.records import Extremes
 from gearidae.records.standing import COLUMNS
 from gearidae.scene import Scene
@@ -43,8 +43,9 @@ def extreme_variables(
     if scene.contact.model == "elastic":  # of these it is sampled
         names.remove("min_separation")
     made: dict[Hashable, Any] = {}
+    catalogue = EXTREMES if scene.roller is None else ROLLER_EXTREMES
     for name in names:
-        variable = EXTREMES[name]
+        variable = catalogue[name]
         nothing = 0 if variable.dtype is np.int64 else math.nan
         field = "smallest_separation" if name == "min_separation" else name
         values = [getattr(extremes, field, nothing) for extremes in runs]

@@ -120,7 +120,16 @@ def run_scene(run: xr.Dataset) -> Scene:
                 raise SceneError("dataset", f"{dim} {value}", f"must number one of {len(swept[key])} values")
             value = swept[key][value]
         changes[key] = value
-    return scene.replace(changes)
+    return _of_its_labels(scene.replace(changes), run)
+
+
+def _of_its_labels(scene: Scene, run: xr.Dataset) -> Scene:
+    """Refuse the scene of another run, which `xarray.concat` leaves with all."""
+    fraction = run.coords.get("sam_fraction")
+    if fraction is not None and not fraction.dims and float(fraction) != scene.coating.sam_fraction:
+        allowed = f"is not that of its scene, {scene.coating.sam_fraction:g}: join runs by gearidae.concat"
+        raise SceneError("coating.sam_fraction", float(fraction), allowed)
+    return scene
 
 
 def motion_samples(run: xr.Dataset) -> int:

@@ -175,8 +175,9 @@ _FORCE_EXTREMES = (
         "smallest distance of the flanks, deflection included",
         comment="of elastic contacts along time, of others over the run",
     ),
-    Variable("final_speed", (), "1", "speed of the gear [rad/s] or the roller [m/s] where the run ended"),
 )
+_GEAR_SPEED = Variable("final_speed", (), "rad s-1", "speed of the gear where the run ended")
+_ROLLER_SPEED = Variable("final_speed", (), "m s-1", "speed of the roller where the run ended")
 _ASPERITY_COUNTS = (
     Variable("asperity_onsets", (), "1", "asperities that have joined", np.int64),
     Variable("asperity_detachments", (), "1", "asperities that have detached", np.int64),
@@ -283,10 +284,11 @@ PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACE
 """What the exposures are labelled by."""
 ENERGY_BALANCE: Mapping[str, Variable] = {variable.name: variable for variable in _ENERGY_BALANCE}
 ROLLER_EXTREMES: Mapping[str, Variable] = {
-    variable.name: variable for variable in (*_FORCE_EXTREMES, *_ASPERITY_COUNTS)
+    variable.name: variable for variable in (*_FORCE_EXTREMES, _ROLLER_SPEED, *_ASPERITY_COUNTS)
 }
 EXTREMES: Mapping[str, Variable] = {
-    variable.name: variable for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES, *_ASPERITY_COUNTS)
+    variable.name: variable
+    for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES, _GEAR_SPEED, *_ASPERITY_COUNTS)
 }
 STANDSTILL_LIST = Variable(
     "standstill_list", (), "1", "standstills of the run as JSON, see ds.gearidae.standstills()", np.object_
