@@ -87,15 +87,6 @@ def test_an_archive_tells_the_same(ds, tmp_path):
     assert kept.gearidae.run(**one).identical(ds.gearidae.run(**one))
 
 
-@pytest.mark.parametrize(
-    ("labels", "said"),
-    [
-        ({"sam_fracton": 0.5}, "must be one of"),
-        ({"sam_fraction": 0.51, "torque": 4e-18}, "must be one of 1, 0.5"),
-        ({"sam_fraction": 0.5}, r"leaves several runs: name one, such as run\(torque=4e-18\)"),
-        ({}, "leaves several runs"),
-    ],
-)
 def test_chunked_data_tell_the_same(ds):
     """As of a sweep that is opened from zarr."""
     pytest.importorskip("dask")
@@ -107,6 +98,15 @@ def test_chunked_data_tell_the_same(ds):
     )
 
 
+@pytest.mark.parametrize(
+    ("labels", "said"),
+    [
+        ({"sam_fracton": 0.5}, "must be one of"),
+        ({"sam_fraction": 0.51, "torque": 4e-18}, "must be one of 1, 0.5"),
+        ({"sam_fraction": 0.5}, r"leaves several runs: name one, such as run\(torque=4e-18\)"),
+        ({}, "leaves several runs"),
+    ],
+)
 def test_labels_that_name_no_run(ds, labels, said):
     with pytest.raises(gd.SceneError, match=said):
         ds.gearidae.run(**labels)
