@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import ast
-import inspect
-import io
-import tokenize
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from cyclopts import Argument
@@ -24,8 +20,9 @@ from gearidae.archive.variables import (
     Variable,
 )
 from gearidae.cli.session import app
-from gearidae.engine.model import checkpoint_record
+from gearidae.engine.model.checkpoint_record import STATE_FIELDS
 from gearidae.records import EventKind, Flank
+from gearidae.records.quantity import Quantity
 from gearidae.scene import describe_keys
 
 __all__ = ["command_tables", "dataset_tables", "key_table", "state_tables", "write_tables"]
@@ -115,46 +112,25 @@ def command_tables() -> str:
 
 
 def state_tables() -> str:
-    """List what a checkpoint carries, from the declarations in `gearidae.engine.model` and their comments."""
-    source = inspect.getsource(checkpoint_record)
-    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
-    comments = {one.start[0]: one.string.removeprefix("# ") for one in tokens if one.type == tokenize.COMMENT}
-    records = {}
-    for node in ast.parse(source).body:
-        if (
-            isinstance(node, ast.AnnAssign)
-            and isinstance(node.target, ast.Name)
-            and isinstance(node.value, ast.Call)
-        ):
-            records[node.target.id] = (node.value, comments.get(node.lineno, ""))
-    parts = []
-    for name, access in (
-        ("STATE", "state"),
-        ("HISTORY", "state.history[k]"),
-        ("ENERGY", "state.energy"),
-        ("PROGRESS", "state.progress"),
-    ):
-        call, about = records[name]
-        rows = [
-            (
-                f"`{access}.{field.elts[0].value}`",
-                comments.get(field.end_lineno or 0, _kind(field.elts[1], records)),
-            )
-            for field in call.args
-            if isinstance(field, ast.Tuple) and isinstance(field.elts[0], ast.Constant)
-        ]
-        heading = f"## `{name}`\n\n" + (f"{about[0].upper()}{about[1:]}.\n\n" if about else "")
-        parts.append(heading + _table(("field", "what it is"), rows))
-    return "\n".join(parts)
+    """List what a checkpoint carries, from the declarations in `gearidae.engine.model.checkpoint_record`."""
+    return "\n".join(_record_tables("state", "STATE", STATE_FIELDS))
 
 
-def _kind(annotation: ast.expr, records: Iterable[str]) -> str:
-    """Point at a record that is listed by itself."""
-    return (
-        f"the record `{annotation.id}`"
-        if isinstance(annotation, ast.Name) and annotation.id in records
-        else ""
-    )
+def _record_tables(access: str, title: str, fields: Iterable[Quantity]) -> Iterator[str]:
+    """List the fields of a record, then those of the records within it."""
+    rows, inner = [], []
+    for each in fields:
+        meaning = each.meaning
+        if isinstance(each.kind, tuple):
+            name = f"{access}.{each.name}" + ("[k]" if each.shape else "")
+            inner.append((name, each.name.upper(), each.kind))
+            meaning += f": the record `{each.name.upper()}`"
+        elif each.unit.scaled != "1":
+            meaning += f" [{each.unit.scaled}]"
+        rows.append((f"`{access}.{each.name}`", meaning))
+    yield f"## `{title}`\n\n{_table(('field', 'what it is'), rows)}"
+    for name, heading, parts in inner:
+        yield from _record_tables(name, heading, parts)
 
 
 def _names(argument: Argument) -> str:

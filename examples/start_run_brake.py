@@ -5,8 +5,6 @@ balance and its time. The torques of a run are those of the time that goes on. T
 stand.
 """
 
-import json
-
 import gearidae as gd
 
 short = {"run.samples": "1 MHz", "coating.sam_fraction": 0.8}
@@ -30,6 +28,6 @@ for name, scene in (("start_up", start_up), ("running", running), ("braking", br
         f"{name}: {float(run.time[0]) * 1e3:.2f} to {run.attrs['t_end'] * 1e3:.2f} ms, "
         f"{float(run.final_speed):.0f} rad/s"
     )
-balance = json.loads(run.attrs["energy_balance"])
+balance = run.gearidae.energy_balance
 print(f"the drive has done {balance['drive_work'] * 1e15:.0f} fJ since the start")
 print(f"balance closes: {abs(balance['residual']) <= balance['residual_bound']}")

@@ -1,7 +1,6 @@
 """What counts as a schedule in the verdict, the rules of standing and going back, and the rule for rollers."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -36,10 +35,10 @@ def test_speeds_that_are_asked_to_change(changes, expected):
 
 
 STANDS = Extremes(stick_time=0.2, free_advance=3.0, driven_time=0.1, followed_time=0.3, turned_back=0.0)
-MOVES = replace(
+MOVES = Extremes(
     STANDS, stick_time=math.nan, settled_gear_speed=1.0, settled_spread=0.1, last_min_gear_speed=0.9
 )
-BACK = replace(MOVES, turned_back=12.0, free_turned_back=12.0, back_time=0.1)
+BACK = Extremes(MOVES, turned_back=12.0, free_turned_back=12.0, back_time=0.1)
 
 
 @pytest.mark.parametrize("scheduled", [False, True])
@@ -47,15 +46,15 @@ BACK = replace(MOVES, turned_back=12.0, free_turned_back=12.0, back_time=0.1)
     ("found", "verdict"),
     [
         (STANDS, "sticks"),
-        (replace(STANDS, driven_time=0.0), "sticks"),  # free gears have moved by more than a tenth
-        (replace(STANDS, free_advance=0.05), "sticks"),  # driven for more than a hundredth of the run
-        (replace(STANDS, free_advance=0.05, driven_time=0.003), "stops"),
-        (replace(STANDS, free_advance=0.0, driven_time=0.0), "stops"),
-        (replace(STANDS, turned_back=12.0), "sticks"),  # standing goes before gone back
+        (Extremes(STANDS, driven_time=0.0), "sticks"),  # free gears have moved by more than a tenth
+        (Extremes(STANDS, free_advance=0.05), "sticks"),  # driven for more than a hundredth of the run
+        (Extremes(STANDS, free_advance=0.05, driven_time=0.003), "stops"),
+        (Extremes(STANDS, free_advance=0.0, driven_time=0.0), "stops"),
+        (Extremes(STANDS, turned_back=12.0), "sticks"),  # standing goes before gone back
         (BACK, "turns back"),
-        (replace(BACK, free_turned_back=6.0), "turns back"),
-        (replace(BACK, free_turned_back=5.9), "runs back"),
-        (replace(BACK, turned_back=0.0, free_turned_back=0.0, back_time=math.nan), None),
+        (Extremes(BACK, free_turned_back=6.0), "turns back"),
+        (Extremes(BACK, free_turned_back=5.9), "runs back"),
+        (Extremes(BACK, turned_back=0.0, free_turned_back=0.0, back_time=math.nan), None),
     ],
 )
 def test_standing_is_judged_alike_for_every_torque(found, verdict, scheduled):

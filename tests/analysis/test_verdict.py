@@ -153,7 +153,7 @@ STUCK = {"stick_time": 0.2124, "stick_exits": 4, "mesh_exits": 9, "reversals": 3
     ],
 )
 def test_a_verdict_follows_from_the_extremes_and_not_from_the_samples(found, verdict, words):
-    solution = dataclasses.replace(solution_of(LOW), extremes=dataclasses.replace(EXTREMES, **found))
+    solution = dataclasses.replace(solution_of(LOW), extremes=Extremes(EXTREMES, **found))
     solution.samples["gear_speed"] = np.full(len(solution.time), -3.0)
     (outcome,) = outcomes(to_dataset(LOW, solution))
     assert (outcome.verdict, outcome.words) == (verdict, words)

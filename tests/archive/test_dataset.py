@@ -29,6 +29,7 @@ ROLLER = gd.preset("roller_slow").replace({"run.samples": 51})
 
 # The layout that users' scripts rely on, written out: name, dimension, unit.
 GEAR_LAYOUT = {
+    "reached": ("s",),
     "gear_speed": ("time", "rad s-1"),
     "pinion_speed": ("time", "rad s-1"),
     "gear_angle": ("time", "rad"),
@@ -48,7 +49,12 @@ GEAR_LAYOUT = {
     "event_gap_rate": ("event", "m s-1"),
     "event_sam_fraction": ("event", "1"),
 }
-ROLLER_LAYOUT = {"height": ("time", "m"), "speed": ("time", "m s-1"), "force": ("time", "N")}
+ROLLER_LAYOUT = {
+    "reached": ("s",),
+    "height": ("time", "m"),
+    "speed": ("time", "m s-1"),
+    "force": ("time", "N"),
+}
 
 
 def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:

@@ -69,7 +69,7 @@ def test_outcome_and_account(long, lengths):
     opened, ds = long
     assert_same(outcomes(opened), outcomes(ds))
     piecewise, whole = account_module.account(opened), account_module.account(ds)
-    assert piecewise.as_json() == whole.as_json()  # in which what is not told, NaN, equals itself
+    assert piecewise.as_plain() == whole.as_plain()  # in which what is not told, NaN, equals itself
     assert 1 < max(lengths) <= PIECE + 2  # pieces of the account overlap
 
 

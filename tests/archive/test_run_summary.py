@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,8 @@ from gearidae.archive.end_state import end_state_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.run_summary import account
 from gearidae.archive.summary_rows import summary_rows
+from gearidae.archive.variables import ENERGY_BALANCE
+from gearidae.cli import main
 from gearidae.scene.prefixes import with_prefix
 from reference.sampled_work import SampledWork
 
@@ -156,31 +157,28 @@ def test_the_energies_are_those_summed_over_the_samples(braking):
 
 
 def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
-    partial = braking.copy()
-    del partial.attrs["energy_balance"]
+    partial = braking.drop_vars("residual")
     told, whole = account(partial).as_plain(), account(braking).as_plain()
     energies = {name for name, value in told.items() if value is None}
-    assert energies == {
-        *(
-            "drive_work",
-            "drag_loss",
-            "dry_loss",
-            "damping_loss",
-            "kinetic_change",
-            "contact_loss",
-            "residual",
-        ),
-        *("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound"),
-        *("friction_loss", "efficiency"),
-    }
+    assert energies == {*ENERGY_BALANCE, "contact_loss", "friction_loss", "efficiency"}
     assert {name: value for name, value in told.items() if name not in energies} == {
         name: value for name, value in whole.items() if name not in energies
     }
 
 
-def test_the_account_is_in_the_dataset(tmp_path):
+def test_the_accessor_and_info_have_the_summary(tmp_path, capsys):
     ds = gd.simulate(LOW, archive=tmp_path / "run.nc")
-    assert json.loads(ds.attrs["account"]) == account(ds).as_plain()
+    wanted = account(gd.simulate(LOW)).as_plain()
+    assert ds.gearidae.account.as_plain() == wanted
+    assert main(["info", str(tmp_path / "run.nc"), "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["run_summary"] == wanted
+    assert facts["energy_balance"] == ds.gearidae.energy_balance
+    swept = gd.sweep(LOW, {"coating.sam_fraction": [1.0, 0.5]})
+    assert swept.gearidae.account is None
+    assert (
+        swept.sel(sam_fraction=1.0).gearidae.account.as_plain() == wanted
+    )  # events of other runs are left out
 
 
 def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tmp_path, monkeypatch):
@@ -200,7 +198,7 @@ def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tm
     ds = cut.value.dataset
     found = extremes_of(ds)
     expected = engine.kept_at(scene, end_state_of(ds)[0])[1]
-    numbers = {name: one for name, one in asdict(expected).items() if name != "exposures"}
+    numbers = {name: one for name, one in expected.items() if name not in ("exposures", "standstill_list")}
     assert {name: getattr(found, name) for name in numbers} == pytest.approx(
         numbers, rel=1e-12, abs=0, nan_ok=True
     )
@@ -229,7 +227,7 @@ def test_what_friction_takes_and_holds():
         }
     )
     ds = gd.simulate(scene)
-    told, kept = account(ds), json.loads(ds.attrs["energy_balance"])
+    told, kept = account(ds), ds.gearidae.energy_balance
     assert told.held_by == "dry resistance and flank friction"
     speed = ds.gear_speed.values
     assert told.time_at_rest == pytest.approx((speed == 0.0).mean() * 40e-6, abs=2e-7)

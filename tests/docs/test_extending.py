@@ -206,23 +206,46 @@ assert "row[GEAR.drive_power] = " in inspect.getsource(observe.observe)
 assert observe.GEAR.drive_power == 12
 """
 
+VISCOUS_LOSS = """
+import numpy as np
+from types import SimpleNamespace
+from gearidae.archive.variables import ENERGY_BALANCE
+from gearidae.engine.followers import balance
+from gearidae.engine.model.state import STATE
+from gearidae.records.energy import (ENERGY_SUMS, LOSSES)
+from gearidae.records.quantity import in_si
+
+assert "viscous_loss" in LOSSES
+assert ENERGY_BALANCE["viscous_loss"].units == "J"
+scene = SimpleNamespace(
+    phase_rate=1.0, drag=0.0, viscous=3.0, damping=0.0, force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
+)
+energy = np.zeros(1, STATE["energy"])[0]
+state, work = SimpleNamespace(energy=energy), SimpleNamespace(resistance=SimpleNamespace())
+m = SimpleNamespace(scene=scene, state=state, work=work)
+y, yp, time = np.array([0.0, 0.0, 0.0, 2.0]), np.zeros(4), 0.25
+balance._note_resistance(m, 0.0, 0.0, y, yp)
+y[2] = 2.0 * time
+balance._accumulate_losses(m, time, y, yp)
+numbers = in_si(ENERGY_SUMS, energy, scene)
+np.testing.assert_allclose(numbers["viscous_loss"], 3.0 * 2.0**2 * time * 5.0 * 7.0)
+assert numbers["drag_loss"] == 0.0
+"""
+
 
 @pytest.mark.parametrize(
-    ("is_event", "files", "script"),
+    ("pattern", "files", "script"),
     [
-        (True, {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
-        (False, {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
+        ("PITCH_POINT|coast_phase", {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
+        ("drive_power", {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
+        ("viscous_loss", {"records/energy.py", "engine/followers/balance.py"}, VISCOUS_LOSS),
     ],
-    ids=["event", "variable"],
+    ids=["event", "variable", "loss"],
 )
-def test_changes_apply_and_work(is_event, files, script, tmp_path):
+def test_changes_apply_and_work(pattern, files, script, tmp_path):
     """In a copy of the sources, run as plain Python: compiling it would take half a minute for each."""
     shutil.copytree(ROOT / "src", tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
-    touched = {
-        apply(block, tmp_path)
-        for block in blocks("diff")
-        if is_event == bool(re.search("PITCH_POINT|coast_phase", block))
-    }
+    touched = {apply(block, tmp_path) for block in blocks("diff") if re.search(pattern, block)}
     assert touched == {f"src/gearidae/{name}" for name in files}
     environment = os.environ | {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}
     done = subprocess.run(

@@ -1,6 +1,5 @@
 """Attraction across the gap in runs: closed forms, both flanks, the materials' shares, and the energy balance."""
 
-import json
 import math
 
 import numpy as np
@@ -39,7 +38,7 @@ TABLE = [[1.0, 0.4, 0.8]] + [[0.5, 0.9, 0.3]] * 18
 
 
 def balance(ds):
-    found = json.loads(ds.attrs["energy_balance"])
+    found = ds.gearidae.energy_balance
     assert abs(found["residual"]) <= found["residual_bound"]
     return found
 

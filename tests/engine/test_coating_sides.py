@@ -31,7 +31,7 @@ def coated(scene, first, second, **more):
 
 def lowest_speed(scene):
     run = gd.simulate(scene)
-    balance = json.loads(run.attrs["energy_balance"])
+    balance = run.gearidae.energy_balance
     assert abs(balance["residual"]) <= balance["residual_bound"]
     return float(run.min_gear_speed)
 
@@ -164,7 +164,7 @@ def test_another_thickness_and_pairing_may_go_on():
     """What the contacts store changes with the materials, and is booked; the rest closes."""
     first = gd.simulate(SHORT.replace({"coating.sam_fraction": 0.5, "run.duration": "6 ms"}))
     rest = gd.simulate(coated(SHORT, 0.3, 0.5, thickness="1 nm"), start=first)
-    balance = json.loads(rest.attrs["energy_balance"])
+    balance = rest.gearidae.energy_balance
     assert balance["model_change"] != 0.0
     assert abs(balance["residual"]) <= balance["residual_bound"]
 

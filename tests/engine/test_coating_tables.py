@@ -1,6 +1,5 @@
 """Fractions by tooth and place: which tooth and place the engine takes, limits, energy, an independent integrator."""
 
-import json
 import math
 
 import numpy as np
@@ -221,7 +220,7 @@ def test_a_run_goes_on_with_worn_teeth():
     expected = gd.simulate(whole.replace({"run.checkpoints": ["6 ms"]}))
     assert rest.gear_speed[-1].item() == pytest.approx(expected.gear_speed[-1].item(), rel=1e-12)
     worn = gd.simulate(sides(SHORT, 0.7 * PINION, GEAR).replace({"run.duration": "9 ms"}), start=first)
-    balance = json.loads(worn.attrs["energy_balance"])
+    balance = worn.gearidae.energy_balance
     assert balance["model_change"] != 0.0
     assert abs(balance["residual"]) <= balance["residual_bound"]
     assert math.isfinite(float(worn.min_gear_speed))

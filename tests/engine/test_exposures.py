@@ -200,9 +200,8 @@ def test_adhesion_work_adds_up_to_the_loss(worn):
 
 
 def _loss(ds):
-    import json
 
-    return json.loads(ds.attrs["energy_balance"])["adhesion_loss"]
+    return ds.gearidae.energy_balance["adhesion_loss"]
 
 
 def test_each_contact_costs_its_loss(worn):

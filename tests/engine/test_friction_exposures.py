@@ -1,7 +1,6 @@
 """Work of friction among the exposures: against the energy balance and the sliding work, and through interruptions."""
 
 import itertools
-import json
 
 import numpy as np
 import pytest
@@ -49,7 +48,7 @@ SCENES = {
 
 def losses(ds):
     """Losses of the drive and the coast flank to friction, from the energy balance [J]."""
-    balance = json.loads(ds.attrs["energy_balance"])
+    balance = ds.gearidae.energy_balance
     return [balance["drive_friction_loss"], balance["coast_friction_loss"]]
 
 

@@ -1,7 +1,5 @@
 """Exposures of real asperities, and coverage by teeth of both sides, against readable twins."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -84,7 +82,7 @@ def test_contacts_and_adhesion_are_those_of_the_events(coating):
     allowed = 1e-6 if even else 1e-4  # of a loss, what the located root leaves out; of the quadrature
     np.testing.assert_allclose(ours * shares, contacts, rtol=1e-12 if even else allowed, atol=0)
     np.testing.assert_allclose(work * shares, lost, rtol=allowed, atol=allowed * lost.max())
-    total = json.loads(ds.attrs["energy_balance"])["adhesion_loss"]
+    total = ds.gearidae.energy_balance["adhesion_loss"]
     assert float((work * shares).sum()) == pytest.approx(total, rel=1e-12 if even else allowed, abs=0)
     if not even:
         assert ((contacts > 0).any(axis=(0, 2, 3))).sum() > 1  # of several materials
@@ -230,7 +228,7 @@ def test_each_asperity_rubs_at_its_own_place(changes):
         place = np.minimum((np.clip(along / g.path_length, 0.0, 1.0) * PLACES).astype(int), PLACES - 1)
         work[pair % 19] += np.bincount(place, (power * speed[:, None]).sum(axis=0) * time[1], PLACES)
     ours = (ds.friction_work * ds.flank_area).sel(flank="drive").values
-    total = json.loads(ds.attrs["energy_balance"])["drive_friction_loss"]
+    total = ds.gearidae.energy_balance["drive_friction_loss"]
     assert ours.sum() == pytest.approx(total, rel=1e-12, abs=0)  # the same quadrature, added up otherwise
     assert (work.sum(axis=0) > 0.0).sum() > 1
     np.testing.assert_allclose(ours, work, rtol=0, atol=2e-3 * work.max())

@@ -267,8 +267,8 @@ MUTANTS = (
     Mutant(
         "work of a stiff drive on errors of the speed left out of the balance's bound",
         "engine/followers/balance.py",
-        "out[4] = _torque_slopes(m, t, y)",
-        "out[4] = 0.0",
+        "_torque_slopes(m, t, y) * top_speed * t",
+        "0.0",
         ("engine/test_balance_bound.py",),
     ),
     Mutant(

@@ -186,7 +186,7 @@ def test_run_that_ended_early(single):
 
 def test_run_summary_in_the_words_of_the_terminal(single, swept, capsys):
     page = Page(build_report(single)).text
-    drive_work = json.loads(single.attrs["account"])["drive_work"]
+    drive_work = single.gearidae.account.drive_work
     assert f"drive work {with_prefix(drive_work, 'J', 5)} input" in page
     show_summary(single)
     printed = [line.strip() for line in capsys.readouterr().out.splitlines()]

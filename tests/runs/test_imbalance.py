@@ -1,6 +1,5 @@
 """A run whose energy balance does not close says so: in the log, in its outcome, by the command."""
 
-import json
 import logging
 
 import numpy as np
@@ -40,7 +39,7 @@ def test_a_run_in_memory_and_one_in_an_archive(caplog, capsys, tmp_path):
         assert len(warned_of(caplog)) == 1
         assert "out by 2 times its bound: do not rely on it" in warned_of(caplog)[0]
         assert outcomes(ds)[0].words.endswith(", energy balance out by 2 times its bound")
-        kept = json.loads(ds.attrs["energy_balance"])
+        kept = ds.gearidae.energy_balance
         assert outcomes(ds)[0].imbalance == pytest.approx(abs(kept["residual"]) / kept["residual_bound"])
     main(["info", str(tmp_path / "run.nc")])
     shown = " ".join(capsys.readouterr().out.split())

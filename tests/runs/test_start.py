@@ -3,7 +3,6 @@
 import json
 import math
 import re
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +62,7 @@ def assert_continued(first, second, whole):
             assert_same(second[name], whole[name])
     for name in ("steps", "restarts", "residual_evaluations", "guard_evaluations"):
         assert first.attrs[name] + second.attrs[name] == whole.attrs[name]
-    assert second.attrs["energy_balance"] == whole.attrs["energy_balance"]
+    assert second.gearidae.energy_balance == whole.gearidae.energy_balance
     words = [end_state_of(ds)[0] for ds in (second, whole)]
     assert words[0].size == words[1].size
 
@@ -147,7 +146,7 @@ def test_a_continued_run_is_resumed_with_its_start(tmp_path):
 
 
 def balance_closes(ds):
-    balance = json.loads(ds.attrs["energy_balance"])
+    balance = ds.gearidae.energy_balance
     return abs(balance["residual"]) <= balance["residual_bound"]
 
 
@@ -172,7 +171,7 @@ def test_a_material_that_was_absent_begins_with_nothing_stretched(before, after,
     second = gd.simulate(scene.replace({"coating.sam_fraction": after}), start=first)
     assert second.attrs["status"] == "finished"
     assert balance_closes(second)
-    assert json.loads(second.attrs["energy_balance"])["model_change"] != 0.0
+    assert second.gearidae.energy_balance["model_change"] != 0.0
 
 
 @pytest.mark.parametrize("model", ["asperity", "elastic"])
@@ -194,7 +193,7 @@ def test_a_worn_run_does_what_its_coating_makes_it_do():
     first = gd.simulate(LOW)
     same = gd.simulate(LOW, start=first)
     worn = gd.simulate(LOW.replace({"coating.sam_fraction": 0.3}), start=first)
-    change = [json.loads(ds.attrs["energy_balance"])["model_change"] for ds in (same, worn)]
+    change = [ds.gearidae.energy_balance["model_change"] for ds in (same, worn)]
     assert change[0] == 0.0
     assert change[1] != 0.0
     assert abs(worn.gear_speed - same.gear_speed).max() > 1e-3
@@ -419,7 +418,7 @@ def kept(scene, words, start):
         "lag_rate": power / float(scene_units.time_unit),
     }
     rates = {name: np.sort(used[name]) * unit for name, unit in scaled.items()}
-    numbers = asdict(extremes) | {f"energy {name}": one for name, one in asdict(balance).items()} | rates
+    numbers = {**extremes} | {f"energy {name}": one for name, one in balance.items()} | rates
     numbers["standstill_list"] = np.nan_to_num(np.array(extremes.standstill_list))
     return {
         name: one
@@ -470,9 +469,9 @@ def test_time_at_rest_of_a_continued_run_is_its_own():
     scene = gd.load_case(START_UP).replace({"run.duration": "1 ms", "run.samples": "off"})
     first = gd.simulate(scene)
     second = gd.simulate(scene.replace({"run.duration": "4 ms"}), start=first)
-    told = [json.loads(run.attrs["account"])["time_at_rest"] for run in (first, second)]
+    told = [run.gearidae.account.time_at_rest for run in (first, second)]
     slip = float(second.event_time[second.event_kind == EventKind.SLIP][0])
     assert told[0] == pytest.approx(1e-3, rel=1e-12)
     assert told[1] == pytest.approx(slip - 1e-3, rel=1e-9)
     still = gd.simulate(scene, start=first)  # held all the time, without an event of its own
-    assert json.loads(still.attrs["account"])["time_at_rest"] == pytest.approx(1e-3, rel=1e-9)
+    assert still.gearidae.account.time_at_rest == pytest.approx(1e-3, rel=1e-9)

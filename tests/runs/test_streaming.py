@@ -312,7 +312,7 @@ def test_ctrl_c_after_the_last_step_is_resumable(path, monkeypatch):
 
     whole = gd.simulate(LOW, backend="sksundae")
     with monkeypatch.context() as patched:
-        patched.setattr(streaming, "account_of", interrupted)
+        patched.setattr(streaming, "log_imbalance", interrupted)
         with pytest.raises(gd.Interrupted, match="--resume"):
             simulate(path)
     assert gd.open_archive(path).sizes["time"] == whole.sizes["time"]

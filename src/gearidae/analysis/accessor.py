@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.keep import kept_in
-from gearidae.archive.run_summary import with_account
+from gearidae.archive.energy import energy_balance
+from gearidae.archive.run_summary import Account, account
 from gearidae.archive.select import run_scene, runs, scene_of, swept_dims
 from gearidae.archive.single import single_run
 from gearidae.archive.tables import LARGEST_TABLE, event_table, run_labels, time_series
@@ -62,6 +62,17 @@ class Results:
         """The scene that the runs of a sweep were derived from; of a single run, its own."""
         return Scene.from_dict(scene_of(self._ds))
 
+    @property
+    def account(self) -> Account | None:
+        """Run summary of a single run; None for a roller, several runs, or without samples and events."""
+        several = any(self._ds.sizes[dim] != 1 for dim in swept_dims(self._ds))
+        return None if several else account(single_run(self._ds))
+
+    @property
+    def energy_balance(self) -> dict[str, float] | None:
+        """Energy balance of a single run [J] by the names of its variables, with ``time`` [s]; None without one."""
+        return energy_balance(self._ds)
+
     def run(self, **labels: Any) -> xr.Dataset:
         """Pick one run, with its own scene and only its own events.
 
@@ -90,10 +101,7 @@ class Results:
             raise SceneError(
                 "run", _shown_labels(labels), f"leaves several runs: name one, such as run({named})"
             )
-        if "swept" not in ds.attrs:
-            return ds
-        single = single_run(ds)
-        return single if kept_in(ds.attrs, self.template).names is not None else with_account(single)
+        return single_run(ds)
 
     def verdicts(self) -> pd.DataFrame:
         """Make a table of how the runs ended.

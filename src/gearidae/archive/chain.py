@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.joint import history_of, part_name, software_of
 from gearidae.archive.select import run_scene
 from gearidae.archive.single import single_run
@@ -66,7 +65,7 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     ds = xr.Dataset(
         {name: each for name, each in variables.items() if name not in last.coords},
         coords={name: each for name, each in variables.items() if name in last.coords},
-        attrs={name: value for name, value in last.attrs.items() if name != "account"},
+        attrs=last.attrs,
     )
     ds.attrs.pop("start_time", None)
     if "start_time" in singles[0].attrs:
@@ -139,8 +138,8 @@ def _start(run: xr.Dataset) -> float:
 def _end(run: xr.Dataset) -> float:
     """When a run ends [s]."""
     lasts = [float(run[name][-1]) for name in ("time", "event_time") if name in run and run[name].size]
-    if "time" in balance_in_attributes(run) and not (run.sizes.get("time", 0)):
-        lasts.append(balance_in_attributes(run)["time"])
+    if not run.sizes.get("time", 0):
+        lasts.append(float(run["reached"]))
     return max(lasts, default=0.0)
 
 
@@ -153,7 +152,7 @@ def _links(run: xr.Dataset) -> Iterator[dict[str, Any]]:
     if "chain" in run.attrs:
         yield from json.loads(run.attrs["chain"])
         return
-    start, end = _start(run), max(_end(run), balance_in_attributes(run).get("time", 0.0))
+    start, end = _start(run), max(_end(run), float(run["reached"]))
     yield {
         "start": None if math.isinf(start) else start,
         "end": end,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -12,10 +12,9 @@ import numpy as np
 
 from gearidae.archive.commits import Commit
 from gearidae.archive.store import Store
-from gearidae.records import Extremes, Statistics, Words
+from gearidae.records import COUNTERS, EnergyBalance, Extremes, Statistics, Words
 
-COUNTERS: Final = tuple(one.name for one in fields(Statistics) if one.type == "int")
-_EXTREMES: Final = tuple(one.name for one in fields(Extremes) if one.name != "exposures")
+_COUNTERS: Final = tuple(each.name for each in COUNTERS)
 _PREFIX: Final = "checkpoint_"
 
 
@@ -39,6 +38,8 @@ class Checkpoint:
         Of the run until then, without exposures.
     checksums : mapping of str to int
         Of the samples and events until then, see `gearidae.archive.commits.Commit`.
+    balance : EnergyBalance, optional
+        Of the run until then.
     """
 
     samples: int
@@ -49,6 +50,7 @@ class Checkpoint:
     state: Words
     extremes: Extremes | None = None
     checksums: Mapping[str, int] = field(default_factory=dict)
+    balance: EnergyBalance | None = None
 
     @property
     def commit(self) -> Commit:
@@ -74,8 +76,9 @@ class Checkpoint:
             "time": self.time,
             "wall_time": self.wall_time,
             "checksums": self.checksums,
-            "statistics": {name: getattr(self.statistics, name) for name in COUNTERS},
-            "extremes": self.extremes and {name: getattr(self.extremes, name) for name in _EXTREMES},
+            "statistics": {name: getattr(self.statistics, name) for name in _COUNTERS},
+            "balance": self.balance,
+            "extremes": self.extremes and {**self.extremes, "exposures": ()},
         }
         # as words: some may be no numbers
         words = np.ascontiguousarray(self.state).view(np.uint64)
@@ -90,11 +93,13 @@ class Checkpoint:
                 return None
             header, tables = found
             statistics, extremes = Statistics(**header.pop("statistics")), header.pop("extremes")
+            balance = header.pop("balance")
             return cls(
                 **header,
                 statistics=statistics,
+                balance=balance and EnergyBalance(balance),
                 state=tables["state"].view(np.float64),
-                extremes=extremes and Extremes(**extremes),
+                extremes=extremes and Extremes(extremes),
             )
         except Exception:  # what a damaged file makes the libraries raise may be anything
             return None

@@ -12,7 +12,6 @@ import xarray as xr
 
 from gearidae.archive.chain import chained
 from gearidae.archive.dataset import dimension_names
-from gearidae.archive.energy import balance_in_attributes, balance_of
 from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.joint import history_of, part_name, software_of
 from gearidae.archive.keep import kept_in
@@ -216,7 +215,7 @@ def _solution(run: xr.Dataset) -> Solution:
         events = {name: run[f"event_{name}"].values for name in (*events, *more)}
     numbers = {name: _number(run, name) for name in RUN if name not in ("status", "message")}
     statistics = Statistics(**numbers, skipped=json.loads(run.attrs.get("skipped", "{}")))
-    reached = balance_in_attributes(run).get("time", run.attrs["t_end"])
+    reached = run["reached"] if "reached" in run else run.attrs["t_end"]
     return Solution(
         run["time"].values if "time" in run.dims else np.empty(0),
         samples,
@@ -238,15 +237,20 @@ def _number(run: xr.Dataset, name: str) -> Any:
 def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_Run]) -> xr.Dataset:
     """Put in what is taken from the runs' datasets as it is: extremes, energy balances, verdicts, and totals."""
     dims, shape = ds["status"].dims, ds["status"].shape
-    for name, variable in {**EXTREMES, STANDSTILL_LIST.name: STANDSTILL_LIST, **VERDICT}.items():
-        if all(name in each.picked and not each.picked[name].dims for each in found):
-            values = np.array([each.picked[name].values.item() for each in found], dtype=variable.dtype)
-            ds[name] = (dims, values.reshape(shape), found[0].picked[name].attrs)
-    balances = [balance_of(each.single) or {} for each in found]
-    for name in ENERGY_BALANCE:
-        if name in ds:
-            values = np.array([balance.get(name, math.nan) for balance in balances])
-            ds[name] = (dims, values.reshape(shape), ds[name].attrs)
+    for name, variable in {
+        **ENERGY_BALANCE,
+        **EXTREMES,
+        STANDSTILL_LIST.name: STANDSTILL_LIST,
+        **VERDICT,
+    }.items():
+        known = [name in each.picked and not each.picked[name].dims for each in found]
+        if all(known) or (name in ENERGY_BALANCE and any(known)):
+            numbers = [
+                each.picked[name].values.item() if has else math.nan
+                for each, has in zip(found, known, strict=True)
+            ]
+            values = np.array(numbers, dtype=variable.dtype)
+            ds[name] = (dims, values.reshape(shape), found[known.index(True)].picked[name].attrs)
     for name, variable in RUN.items():
         if name not in ds and name in ds.attrs:  # of runs that have not kept theirs the parts know the sum
             entries = [part.attrs[name] for part in parts]

@@ -13,14 +13,12 @@ from numpy.typing import NDArray
 
 from gearidae.archive.asperity_events import tooth_of
 from gearidae.archive.end_state import end_state_attributes
-from gearidae.archive.energy import balance_attribute, balance_numbers
 from gearidae.archive.exposures import exposure_coordinates, exposure_variables
-from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.sample_table import SampleTable
+from gearidae.archive.totals import total_variables
 from gearidae.archive.variables import (
-    ENERGY_BALANCE,
     EVENTS,
     OF_SWEPT_RUN,
     POPULATION_EVENTS,
@@ -54,15 +52,16 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Samples along ``time``, events along ``event``, scalar coordinate ``sam_fraction``; provenance, scene,
-        solver statistics, status and energy balance (as JSON) as attributes. Everything in SI units.
+        Samples along ``time``, events along ``event``, scalar coordinate ``sam_fraction``, energy balance and extremes
+        without a dimension; provenance, scene, solver statistics and status as attributes. Everything in SI units.
     """
     fraction = scene.coating.sam_fraction
     variables: dict[Hashable, Any] = {
         name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in _columns(scene)
     }
     variables |= _event_variables([scene], [solution], np.array([fraction]))
-    variables |= extreme_variables(scene, [solution.extremes])
+    variables["reached"] = ((), reached(solution), OF_SWEPT_RUN["reached"].attributes)
+    variables |= total_variables(scene, [scene], [solution])
     exposures = exposure_variables(scene, [scene], [solution])
     variables |= exposures
     return xr.Dataset(
@@ -77,7 +76,6 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             "status": solution.status,
             "message": solution.message,
             **_totals([solution]),
-            **balance_attribute(scene, solution),
             **surface_regimes(scene),
             **_asperities_digest(scene),
             **end_state_attributes(solution.start, solution.checkpoint),
@@ -155,11 +153,11 @@ def combine(
     if keep.events:
         variables |= _events_of_sweep(labels, scenes, solutions)
     of_runs = _of_runs(scenes, solutions, keep)
-    extremes = extreme_variables(scene, [each.extremes for each in solutions], dims, shape)
+    totals = total_variables(scene, scenes, solutions, dims, shape)
     for name, (variable, values) in of_runs.items():
         if keep.holds(name):
             variables[name] = (dims, values.reshape(shape), variable.attributes)
-    variables |= {name: each for name, each in extremes.items() if keep.holds(str(name))}
+    variables |= {name: each for name, each in totals.items() if keep.holds(str(name))}
     exposures = exposure_variables(scene, scenes, solutions, dims, shape)
     exposures = {name: each for name, each in exposures.items() if keep.holds(str(name))}
     variables |= exposures
@@ -191,7 +189,7 @@ def combine(
 def _of_runs(
     scenes: Sequence[Scene], solutions: Sequence[Solution], keep: Keep
 ) -> dict[str, tuple[Variable, NDArray[Any]]]:
-    """One value a run of what is kept: how it ended, its statistics, its input and its energy balance."""
+    """One value a run of what is kept: how it ended, its statistics and its input."""
     found: dict[str, tuple[Variable, NDArray[Any]]] = {}
     for name, variable in RUN.items():
         if not keep.holds(name):
@@ -208,11 +206,6 @@ def _of_runs(
         )  # in an array of text every entry is as long as the longest
         inputs[:] = [json.dumps(each.to_dict(), allow_nan=False) for each in scenes]
         found["scene"] = OF_SWEPT_RUN["scene"], inputs
-    energies = {name: variable for name, variable in ENERGY_BALANCE.items() if keep.holds(name)}
-    if energies:
-        kept = [balance_numbers(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
-        for name, variable in energies.items():
-            found[name] = variable, np.array([numbers.get(name, math.nan) for numbers in kept])
     return found
 
 

@@ -25,15 +25,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.asperity_events import teeth_in, tooth_of
-from gearidae.archive.checkpoint import COUNTERS, Checkpoint, drop_checkpoints
+from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
 from gearidae.archive.commits import COPIED, COUNTS, LENGTH, RECORDS, Commit, check_bytes
 from gearidae.archive.definition import define
 from gearidae.archive.disk import disk_errors, sync
 from gearidae.archive.end_state import packed_state
-from gearidae.archive.extremes import extreme_variables
 from gearidae.archive.library import LIBRARY, close, opened
+from gearidae.archive.totals import total_variables
 from gearidae.archive.variables import EVENTS
-from gearidae.records import Block, EventColumn, Statistics, sample_times
+from gearidae.records import COUNTERS, Block, EventColumn, Statistics, sample_times
 from gearidae.scene import Scene
 
 EVENT_ROOM = 65_536
@@ -177,15 +177,16 @@ class GrowingArchive:
             due = last or time.monotonic() - self._checkpointed >= CHECKPOINT_SECONDS
             if block.checkpoint is not None and due:
                 sync(self.path)
-                counts = (self.samples, self.events)
                 point = Checkpoint(
-                    *counts,
+                    self.samples,
+                    self.events,
                     block.time,
                     wall_time,
                     statistics,
                     block.checkpoint,
                     block.extremes,
                     self._commits.checksums,
+                    block.balance,
                 )
                 point.keep(self.path, self._run)
                 self._checkpointed = time.monotonic()
@@ -357,10 +358,13 @@ def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool)
             "message": f"not at its end yet; checkpoint at {point.time:g} s",
             "end_state": packed_state(point.state),
             "wall_time": point.wall_time,
-            **{name: getattr(point.statistics, name) for name in COUNTERS if name in cut.attrs},
+            **{
+                each.name: getattr(point.statistics, each.name) for each in COUNTERS if each.name in cut.attrs
+            },
         }
         scene = Scene.from_dict(json.loads(cut.attrs["scene"]))
-        cut = cut.assign(extreme_variables(scene, [point.extremes]))
+        cut["reached"] = ((), point.time, cut["reached"].attrs)
+        cut = cut.assign(total_variables(scene, [scene], [point]))
     return cut
 
 

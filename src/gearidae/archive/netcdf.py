@@ -19,6 +19,7 @@ from gearidae.archive.integrity import CheckedStore
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
+from gearidae.archive.older import converted
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
@@ -112,6 +113,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         _check_layout(ds, path)
         if is_growing(ds):
             ds = trimmed(ds, source, commit, running=running)
+        ds = converted(ds)
         if ds.nbytes <= _LAZY_ABOVE:
             ds = in_memory(ds)
     except SceneError:

@@ -8,25 +8,24 @@ of its newest checkpoint and no energies. `Account.time_to_speed` always is that
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Callable, Hashable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Hashable, Iterator, Mapping
 from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.energy import FRICTION_LOSSES, balance_of
+from gearidae.archive.energy import balance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.select import is_roller, scene_of
+from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.arrays import Floats
 from gearidae.records import EventKind, Extremes
+from gearidae.records.energy import LOSSES
+from gearidae.records.quantity import Totals
 from gearidae.scene import Scene
 from gearidae.scene.friction import has_flank_friction, has_hub_friction
-
-Read = Callable[[str, slice], NDArray[Any]]
 
 PIECE = 2**18
 """Samples, or events, looked at together."""
@@ -36,9 +35,8 @@ OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "time_at_rest
 """Rows of the run summary that begin with a run that goes on from another; everything else goes on over the chain."""
 
 
-@dataclass(frozen=True, slots=True)
-class Account:
-    """What one run of a gear pair did; times in s, work and energies in J, NaN for what has not been kept.
+class Account(Totals):
+    """What one run of a gear pair did: the energies of `ENERGY_BALANCE` [J], and more; NaN for what has not been kept.
 
     Of a run that goes on from another, `OF_ONE_RUN` names what is of this run alone.
 
@@ -47,14 +45,14 @@ class Account:
     top_speed : float
         Largest speed of the gear [rad/s].
     time_to_speed : float
-        Time of the first sample with `AT_SPEED` of the largest sampled speed. NaN without samples, and of a gear that
-        never turns. An impact shorter than the interval between samples has no part in it.
+        Time of the first sample with `AT_SPEED` of the largest sampled speed [s]. NaN without samples, and of a gear
+        that never turns. An impact shorter than the interval between samples has no part in it.
     sticks, slips : int
         How often dry resistance, with friction in the gear's hub, took hold of the gear, and gave way.
     time_at_rest : float
-        Held at rest by them, or by friction of two pairs of flanks.
+        Held at rest by them, or by friction of two pairs of flanks [s].
     time_adhering : float
-        Held by adhesion: turned back by teeth that cling to each other, again and again within half a pitch.
+        Held by adhesion [s]: turned back by teeth that cling to each other, again and again within half a pitch.
         Counted from one turning back to the next there, and to the end if the gear is there still.
     held_by : str
         What holds the gear at the end: ``dry resistance``, ``hub friction``, ``flank friction``, those that act
@@ -62,61 +60,23 @@ class Account:
     impacts : int
         Contacts made.
     largest_force, largest_force_time : float
-        Largest force along the line of action [N], either way, and when.
-    drive_work : float
-        Done by the torque on the pinion.
-    drag_loss, dry_loss, damping_loss : float
-        Taken by the drag and the dry resistance at the gear, and by the mesh's viscous damping.
+        Largest force along the line of action [N], either way, and when [s].
     friction_loss : float
-        Taken by friction of flanks and hubs.
+        Taken by friction of flanks and hubs [J].
     efficiency : float
         What drag and dry resistance at the gear have taken over all that has been lost; 1 without losses in mesh and
         hubs. NaN where nothing has been lost, or the drive has done no work.
-    kinetic_change : float
-        Kinetic energy of both gears at the end less that at the start.
     contact_loss : float
-        What is left of the work: lost to adhesion or stored in contacts, less the work of the changing radius.
+        What is left of the work [J]: lost to adhesion or stored in contacts, less the work of the changing radius.
     residual : float
-        Size of the balance's residual: no uncertainty of the losses, which scatter with the tolerance by more.
-    adhesion_loss, stored_change, radius_work, model_change : float
-        What it is made of, from the balance; see `gearidae.records.EnergyBalance`.
-    residual_bound : float
-        What the balance's residual stays below in a sound run.
+        Size of the balance's residual [J]: no uncertainty of the losses, which scatter with the tolerance by more.
     """
 
-    top_speed: float
-    time_to_speed: float
-    sticks: int
-    slips: int
-    time_at_rest: float
-    time_adhering: float
-    held_by: str
-    impacts: int
-    largest_force: float
-    largest_force_time: float
-    drive_work: float
-    drag_loss: float
-    dry_loss: float
-    damping_loss: float
-    kinetic_change: float
-    contact_loss: float
-    residual: float
-    adhesion_loss: float = math.nan
-    stored_change: float = math.nan
-    radius_work: float = math.nan
-    model_change: float = math.nan
-    residual_bound: float = math.nan
-    friction_loss: float = math.nan
-    efficiency: float = math.nan
+    __slots__ = ()
 
     def as_plain(self) -> dict[str, Any]:
         """Return the run summary as data fit for JSON, which has no NaN."""
-        plain = asdict(self)
-        return {name: None if isinstance(v, float) and math.isnan(v) else v for name, v in plain.items()}
-
-    def as_json(self) -> str:
-        """Return the run summary as the dataset's attribute ``account`` holds it."""
-        return json.dumps(self.as_plain(), allow_nan=False)
+        return {name: None if isinstance(v, float) and math.isnan(v) else v for name, v in self.items()}
 
 
 def account(ds: xr.Dataset) -> Account | None:
@@ -137,18 +97,31 @@ def account(ds: xr.Dataset) -> Account | None:
     SceneError
         If the dataset carries no scene.
     """
-    if is_roller(ds) or ds["gear_speed"].dims != ("time",):
+    if is_roller(ds) or "event" not in ds.dims or "gear_speed" not in ds or ds["gear_speed"].ndim != 1:
         return None
+    incidents = _Events(Scene.from_dict(scene_of(ds)), float(ds.attrs.get("start_time", 0.0)))
+    for piece in _pieces(ds, "event", ("event_time", "event_kind", "event_pair", "event_flank")):
+        incidents.add(*piece.values())
+    top = last = math.nan
+    for piece in _pieces(ds, "time", ("time", "gear_speed")):
+        top, last = float(np.fmax(top, piece["gear_speed"].max())), float(piece["time"][-1])
+    found = extremes_of(ds) or Extremes()
+    force, force_time = _largest_force(found)
     end = float(ds.attrs["t_end"]) if ds.attrs["status"] == "finished" else 0.0
-    scene = Scene.from_dict(scene_of(ds))
-    return account_of(
-        scene,
-        lambda name, cut: ds[name][cut].values,
-        ds.sizes["time"],
-        ds.sizes["event"],
-        (float(ds.attrs.get("start_time", 0.0)), end),
-        balance_of(ds),
-        extremes_of(ds),
+    end, still = max(end, incidents.time, float(np.nan_to_num(last))), found.final_speed == 0.0
+    at_rest, resting = incidents.rest(end, still=still)
+    return Account(
+        top_speed=found.max_gear_speed,
+        time_to_speed=_time_to_speed(ds, top),
+        sticks=incidents.counts[EventKind.STICK],
+        slips=incidents.counts[EventKind.SLIP],
+        time_at_rest=at_rest,
+        time_adhering=found.time_adhering,
+        held_by=incidents.holds() if resting else "adhesion" if found.turn_backs > 1 else "",
+        impacts=incidents.counts[EventKind.ONSET],
+        largest_force=force,
+        largest_force_time=force_time,
+        **_energies(balance_of(ds)),
     )
 
 
@@ -167,58 +140,6 @@ def counted_over(name: str, attributes: Mapping[Hashable, Any]) -> str:
     return "this run" if name in OF_ONE_RUN else "the chain"
 
 
-def account_of(
-    scene: Scene,
-    read: Read,
-    samples: int,
-    events: int,
-    span: tuple[float, float],
-    balance: Mapping[str, float] | None = None,
-    extremes: Extremes | None = None,
-) -> Account:
-    """Summarise a run whose samples and events are stored anywhere.
-
-    Parameters
-    ----------
-    scene : Scene
-        A gear pair.
-    read : callable
-        Returns the values of a variable, named as in a dataset, in a slice.
-    samples, events : int
-        How many there are.
-    span : tuple of two floats
-        When the run began [s], and the time that it is known to have reached besides that of samples and events.
-    balance : mapping, optional
-        The run's energy balance, from `gearidae.archive.energy.balance_of`.
-    extremes : Extremes, optional
-        The run's extremes, from `gearidae.archive.extremes.extremes_of`.
-    """
-    start, end = span
-    incidents = _Events(scene, start)
-    for piece in _pieces(read, events, ("event_time", "event_kind", "event_pair", "event_flank")):
-        incidents.add(*piece.values())
-    top = last = math.nan
-    for piece in _pieces(read, samples, ("time", "gear_speed")):
-        top, last = float(np.fmax(top, piece["gear_speed"].max())), float(piece["time"][-1])
-    found = extremes or Extremes()
-    force, force_time = _largest_force(found)
-    still = found.final_speed == 0.0
-    at_rest, resting = incidents.rest(max(end, incidents.time, np.nan_to_num(last)), still=still)
-    return Account(
-        top_speed=found.max_gear_speed,
-        time_to_speed=_time_to_speed(read, samples, top),
-        sticks=incidents.counts[EventKind.STICK],
-        slips=incidents.counts[EventKind.SLIP],
-        time_at_rest=at_rest,
-        time_adhering=found.time_adhering,
-        held_by=incidents.holds() if resting else "adhesion" if found.turn_backs > 1 else "",
-        impacts=incidents.counts[EventKind.ONSET],
-        largest_force=force,
-        largest_force_time=force_time,
-        **_energies(balance),
-    )
-
-
 def _largest_force(extremes: Extremes) -> tuple[float, float]:
     """Return the larger of both extremes of the force, without its sign, and when it acted."""
     if extremes.largest_mesh_force >= -extremes.smallest_mesh_force:
@@ -228,40 +149,30 @@ def _largest_force(extremes: Extremes) -> tuple[float, float]:
 
 def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
     """Energies of the run summary from those of the energy balance; NaN without one."""
-    own = ("drive_work", "drag_loss", "dry_loss", "damping_loss", "kinetic_change")
-    parts = ("adhesion_loss", "stored_change", "radius_work", "model_change", "residual_bound")
-    if balance is None:
-        return dict.fromkeys((*own, *parts, "contact_loss", "residual"), math.nan)
-    friction = sum(balance[name] for name in FRICTION_LOSSES)
-    useful = balance["drag_loss"] + balance["dry_loss"]
-    lost = useful + balance["damping_loss"] + balance["adhesion_loss"] + friction
-    energies = {name: balance[name] for name in (*own, *parts)}
-    contact = balance["adhesion_loss"] + balance["stored_change"]
-    contact -= balance["radius_work"] + balance["model_change"]
+    energies = {**(balance or dict.fromkeys(ENERGY_BALANCE, math.nan))}
+    useful, friction = (
+        sum(energies[name] for name, each in LOSSES.items() if each.group == group)
+        for group in ("useful", "friction")
+    )
+    lost = sum(energies[name] for name in LOSSES)
+    contact = energies["adhesion_loss"] + energies["stored_change"]
     return energies | {
-        "contact_loss": contact,
-        "residual": abs(balance["residual"]),
+        "residual": abs(energies["residual"]),
+        "contact_loss": contact - (energies["radius_work"] + energies["model_change"]),
         "friction_loss": friction,
-        "efficiency": useful / lost if lost > 0.0 and balance["drive_work"] > 0.0 else math.nan,
+        "efficiency": useful / lost if lost > 0.0 and energies["drive_work"] > 0.0 else math.nan,
     }
 
 
-def with_account(ds: xr.Dataset) -> xr.Dataset:
-    """Add the run summary, if there is one, to its dataset's attributes."""
-    found = account(ds)
-    return ds if found is None else ds.assign_attrs(account=found.as_json())
-
-
-def _pieces(read: Read, count: int, names: tuple[str, ...]) -> Iterator[dict[str, NDArray[Any]]]:
+def _pieces(ds: xr.Dataset, dim: str, names: tuple[str, ...]) -> Iterator[dict[str, NDArray[Any]]]:
     """Go through a dimension."""
-    for start in range(0, count, PIECE):
-        cut = slice(start, min(start + PIECE, count))
-        yield {name: read(name, cut) for name in names}
+    for start in range(0, ds.sizes[dim], PIECE):
+        yield {name: ds[name][start : start + PIECE].values for name in names}
 
 
-def _time_to_speed(read: Read, samples: int, top: float) -> float:
+def _time_to_speed(ds: xr.Dataset, top: float) -> float:
     if top > 0.0:
-        for piece in _pieces(read, samples, ("time", "gear_speed")):
+        for piece in _pieces(ds, "time", ("time", "gear_speed")):
             fast = np.flatnonzero(piece["gear_speed"] >= AT_SPEED * top)
             if fast.size:
                 return float(piece["time"][fast[0]])

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import math
 from typing import Any
 
 import xarray as xr
 
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.select import own_events, run_scene, swept_dims
-from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN, PLACES, RUN
+from gearidae.archive.variables import OF_SWEPT_RUN, PLACES, RUN
 
 
 def single_run(ds: xr.Dataset) -> xr.Dataset:
@@ -24,7 +22,7 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        With the scene, the statistics, the energy balance and the events of that run alone, where `gearidae.simulate`
+        With the scene, the statistics and the events of that run alone, where `gearidae.simulate`
         puts them.
 
     Raises
@@ -37,10 +35,9 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     scene = run_scene(ds)
     ds = own_events(ds.squeeze(swept_dims(ds)))
     found: dict[str, Any] = {name: ds[name].values.item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
-    reached = found.pop("reached", scene.run.duration)
-    energies = {name: float(ds[name]) for name in ENERGY_BALANCE if name in ds}
+    found.pop("reached", None)
     swept = [str(name) for name in ds.coords if name not in ("time", "event", "sam_fraction", *PLACES)]
-    gone = {*found, *energies, "reached", *swept, *(f"event_{name}" for name in swept)}
+    gone = {*found, *swept, *(f"event_{name}" for name in swept)}
     single = ds.drop_vars([name for name in gone if name in ds.variables])
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
     single.attrs = {
@@ -49,6 +46,4 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
         **found,
         **surface_regimes(scene),
     }
-    if len(energies) == len(ENERGY_BALANCE) and not any(map(math.isnan, energies.values())):
-        single.attrs["energy_balance"] = json.dumps({"time": float(reached), **energies}, allow_nan=False)
     return single

@@ -5,35 +5,19 @@ The terminal and the report show these rows, in these words; the names are those
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator
-from typing import Any, Final, TypeAlias
+from typing import Any, TypeAlias
 
 import xarray as xr
 
-from gearidae.archive.energy import balance_in_attributes, imbalance
-from gearidae.archive.run_summary import counted_over
+from gearidae.archive.energy import balance_of, imbalance
+from gearidae.archive.run_summary import account, counted_over
+from gearidae.records.energy import LOSSES, TERMS
 from gearidae.scene.prefixes import with_prefix
 
 Row: TypeAlias = tuple[str, str, str]
 """Name, value and remark; a row without a value is a heading."""
-
-_BALANCE_ROWS: Final = (
-    ("drive_work", "input"),
-    ("radius_work", "input, from the change of the radii of curvature along the path of contact"),
-    ("model_change", "input, from the change to the elastic contact model"),
-    ("drag_loss", "lost"),
-    ("dry_loss", "lost"),
-    ("damping_loss", "lost"),
-    ("adhesion_loss", "lost"),
-    ("drive_friction_loss", "lost"),
-    ("coast_friction_loss", "lost"),
-    ("pinion_hub_loss", "lost"),
-    ("gear_hub_loss", "lost"),
-    ("stored_change", "stored in contacts"),
-    ("kinetic_change", "stored in motion"),
-)
 
 
 def summary_rows(ds: xr.Dataset) -> list[Row]:
@@ -49,10 +33,10 @@ def summary_rows(ds: xr.Dataset) -> list[Row]:
     list of (str, str, str)
     """
     found: list[Row] = []
-    if "account" in ds.attrs:
-        found += _with_reach(ds, _summary_rows(json.loads(ds.attrs["account"])))
+    if summary := account(ds):
+        found += _with_reach(ds, _summary_rows(summary.as_plain()))
     found += _standing_rows(ds)
-    if numbers := balance_in_attributes(ds):
+    if numbers := balance_of(ds):
         found += _with_reach(ds, _balance_rows(numbers))
     return found
 
@@ -110,8 +94,10 @@ def _standing_rows(ds: xr.Dataset) -> Iterator[Row]:
 
 def _balance_rows(kept: dict[str, float]) -> Iterator[tuple[str, Row]]:
     yield "", ("Energy balance", "", "")
-    for name, remark in _BALANCE_ROWS:
-        if kept.get(name, 0.0) != 0.0:
+    for name, each in TERMS.items():
+        if kept[name] != 0.0:
+            part = "input" if each.sign > 0 else "lost" if name in LOSSES else ""
+            remark = ", ".join(filter(None, (part, each.remark)))
             yield name, (name.replace("_", " "), with_prefix(kept[name], "J", 5), remark)
     bound = with_prefix(kept["residual_bound"], "J", 2)
     out_by = imbalance(kept["residual"], kept["residual_bound"])

@@ -7,15 +7,16 @@ UDUNITS, as CF asks. ``time`` is in ``s`` and not in "seconds since", which xarr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import DTypeLike
 
 from gearidae.records import (
+    COUNTERS,
     ELASTIC_SAMPLES,
     GEAR_SAMPLES,
     POPULATION_SAMPLES,
@@ -24,7 +25,9 @@ from gearidae.records import (
     Flank,
     sampled_columns,
 )
-from gearidae.records.standing import Holding
+from gearidae.records import extremes as records
+from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS
+from gearidae.records.quantity import INT, Quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +59,22 @@ class Variable:
     dtype: DTypeLike = np.float64
     flags: type[IntEnum] | None = None
     comment: str = ""
+
+    @classmethod
+    def catalogue(cls, quantities: Iterable[Quantity]) -> dict[str, Self]:
+        """Make the variables of the quantities that are archived, one value a run, by their names."""
+        return {
+            name: cls(
+                name,
+                (),
+                each.unit.si,
+                long_name,
+                np.int64 if each.kind == INT else np.float64,
+                comment=each.comment,
+            )
+            for each in quantities
+            for name, long_name in each.archive.items()
+        }
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -123,13 +142,7 @@ POPULATION_EVENTS: Mapping[str, Variable] = {
 _RUN = (
     Variable("status", (), "1", "how the run ended", np.str_),
     Variable("message", (), "1", "how the run ended, in a sentence", np.str_),
-    Variable("steps", (), "1", "solver steps", np.int64),
-    Variable("residual_evaluations", (), "1", "evaluations of the residual", np.int64),
-    Variable("jacobian_evaluations", (), "1", "evaluations of the Jacobian", np.int64),
-    Variable("error_test_failures", (), "1", "steps repeated because the error test failed", np.int64),
-    Variable("convergence_failures", (), "1", "steps repeated because Newton's method failed", np.int64),
-    Variable("restarts", (), "1", "restarts of the solver at order one", np.int64),
-    Variable("guard_evaluations", (), "1", "evaluations of the event functions", np.int64),
+    *Variable.catalogue(COUNTERS).values(),
     Variable("wall_time", (), "s", "wall time in the solver"),
     Variable("backend", (), "1", "driver of the solver that ran", np.str_),
     Variable("method", (), "1", "formulas that the run began with", np.str_),
@@ -144,93 +157,16 @@ _VERDICT = (
     Variable("impacts", (), "1", "contacts made (onset events)", np.int64),
     Variable("flank_changes", (), "1", "how often contact went over to the other flank", np.int64),
 )
-_ENERGY_BALANCE = (
-    Variable("drive_work", (), "J", "work of the drive"),
-    Variable("radius_work", (), "J", "work of the changing radius of curvature"),
-    Variable("model_change", (), "J", "jump of the stored energy where the contact model changed"),
-    Variable("drag_loss", (), "J", "energy lost to drag"),
-    Variable("dry_loss", (), "J", "energy lost to dry resistance"),
-    Variable("damping_loss", (), "J", "energy lost to the mesh's viscous damping"),
-    Variable("adhesion_loss", (), "J", "energy lost to adhesion"),
-    Variable("drive_friction_loss", (), "J", "energy lost to friction of the drive flank"),
-    Variable("coast_friction_loss", (), "J", "energy lost to friction of the coast flank"),
-    Variable("pinion_hub_loss", (), "J", "energy lost to friction of the pinion's hub"),
-    Variable("gear_hub_loss", (), "J", "energy lost to friction of the gear's hub"),
-    Variable("stored_change", (), "J", "energy stored in contacts, at the end less at the start"),
-    Variable("kinetic_change", (), "J", "kinetic energy, at the end less at the start"),
-    Variable("throughput", (), "J", "all works and changes of kinetic energy without regard to sign"),
+_RESIDUAL = (
     Variable("residual", (), "J", "what does not add up in the energy balance"),
     Variable("residual_bound", (), "J", "what the residual stays below in a sound run"),
 )
-_FORCE_EXTREMES = (
-    Variable("largest_mesh_force", (), "N", "largest force along the line of action, or on the roller"),
-    Variable("largest_mesh_force_time", (), "s", "when it acted"),
-    Variable("smallest_mesh_force", (), "N", "smallest force along the line of action, or on the roller"),
-    Variable("smallest_mesh_force_time", (), "s", "when it acted"),
-    Variable("smallest_separation", (), "m", "smallest distance of the flanks, deflection included"),
-    Variable(
-        "min_separation",
-        (),
-        "m",
-        "smallest distance of the flanks, deflection included",
-        comment="of elastic contacts along time, of others over the run",
-    ),
-)
-_GEAR_SPEED = Variable("final_speed", (), "rad s-1", "speed of the gear where the run ended")
-_ROLLER_SPEED = Variable("final_speed", (), "m s-1", "speed of the roller where the run ended")
-_ASPERITY_COUNTS = (
-    Variable("asperity_onsets", (), "1", "asperities that have joined", np.int64),
-    Variable("asperity_detachments", (), "1", "asperities that have detached", np.int64),
-)
-_HOLDING = "sum of " + ", ".join(f"{part.value} for {part.words}" for part in Holding)
-_GEAR_EXTREMES = (
-    Variable("min_gear_speed", (), "rad s-1", "smallest speed of the gear"),
-    Variable("max_gear_speed", (), "rad s-1", "largest speed of the gear"),
-    Variable(
-        "settled_gear_speed", (), "rad s-1", "mean speed of the gear after the first twentieth of the run"
-    ),
-    Variable("settled_spread", (), "rad s-1", "its largest speed less its smallest from then on"),
-    Variable("speed_fall", (), "rad s-1", "how far its speed fell from then on below what it had reached"),
-    Variable("speed_rise", (), "rad s-1", "how far its speed rose from then on above what it had fallen to"),
-    Variable("late_gear_speed", (), "rad s-1", "mean speed of the gear in the second half of the run"),
-    Variable("late_spread", (), "rad s-1", "its largest speed less its smallest there"),
-    Variable(
-        "last_min_gear_speed", (), "rad s-1", "smallest speed of the gear in the last twentieth of the run"
-    ),
-    Variable("reversals", (), "1", "how often the gear's speed fell to zero", np.int64),
-    Variable(
-        "stick_time",
-        (),
-        "s",
-        "when the gear came to stand",
-        comment="first zero of its speed from which it stands; NaN if it does not stand at the end",
-    ),
-    Variable("stick_exits", (), "1", "mesh exits on the drive flank until it stood or went back", np.int64),
-    Variable("advance", (), "1", "pitches that the gear has been away from where it came to stand"),
-    Variable("free_advance", (), "1", "pitches that free gears would have been away from there"),
-    Variable("driven_time", (), "s", "time since then for which the drive exceeded the dry load"),
-    Variable(
-        "held_torque", (), "N m", "largest torque of the drive at the gear beyond the dry load since then"
-    ),
-    Variable("holding", (), "1", "what holds the gear at the end", np.int64, comment=_HOLDING),
-    Variable("turned_back", (), "1", "pitches by which the gear has gone back at the end"),
-    Variable("free_turned_back", (), "1", "pitches by which free gears would have gone back"),
-    Variable("back_time", (), "s", "zero of the speed from which the gear has gone back"),
-    Variable("standstills", (), "1", "number of standstills", np.int64),
-    Variable("standing_time", (), "s", "time of all standstills"),
-    Variable("standing_rest_time", (), "s", "time for which dry friction held all of the gear in them"),
-    Variable(
-        "start_time",
-        (),
-        "s",
-        "end of the last standstill that has ended",
-        comment="0 without one; NaN if the gear has never left half a pitch",
-    ),
-    Variable("breakaway_torque", (), "N m", "torque of the drive on the pinion then"),
-    Variable("followed_time", (), "s", "time since the start of the chain of runs to which this holds"),
-    Variable("turn_backs", (), "1", "how often adhesion has turned the gear back where it stands", np.int64),
-    Variable("time_adhering", (), "s", "time held by adhesion, from one turning back to the next"),
-    Variable("mesh_exits", (), "1", "mesh exits on the drive flank", np.int64),
+_MIN_SEPARATION = Variable(
+    "min_separation",
+    (),
+    "m",
+    "smallest distance of the flanks, deflection included",
+    comment="of elastic contacts along time, of others over the run",
 )
 _FLANKS = ("flank", "tooth", "place")
 _MATERIALS = ("flank", "material", "tooth", "place")
@@ -282,18 +218,22 @@ _PLACES = (
 EXPOSURES: Mapping[str, Variable] = {variable.name: variable for variable in _EXPOSURES}
 PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACES}
 """What the exposures are labelled by."""
-ENERGY_BALANCE: Mapping[str, Variable] = {variable.name: variable for variable in _ENERGY_BALANCE}
+ENERGY_BALANCE: Mapping[str, Variable] = {
+    **Variable.catalogue((*ENERGY_SUMS, *ENERGY_NOW)),
+    **{variable.name: variable for variable in _RESIDUAL},
+}
 ROLLER_EXTREMES: Mapping[str, Variable] = {
-    variable.name: variable for variable in (*_FORCE_EXTREMES, _ROLLER_SPEED, *_ASPERITY_COUNTS)
+    **Variable.catalogue(records.ROLLER_EXTREMES),
+    _MIN_SEPARATION.name: _MIN_SEPARATION,
 }
 EXTREMES: Mapping[str, Variable] = {
-    variable.name: variable
-    for variable in (*_GEAR_EXTREMES, *_FORCE_EXTREMES, _GEAR_SPEED, *_ASPERITY_COUNTS)
+    **Variable.catalogue(records.GEAR_EXTREMES),
+    _MIN_SEPARATION.name: _MIN_SEPARATION,
 }
 STANDSTILL_LIST = Variable(
     "standstill_list", (), "1", "standstills of the run as JSON, see ds.gearidae.standstills()", np.object_
 )
-ASPERITY_COUNTS = tuple(variable.name for variable in _ASPERITY_COUNTS)
+ASPERITY_COUNTS = tuple(each.name for each in records.ASPERITY_COUNTS)
 """Those that only populations have."""
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
 OF_SWEPT_RUN: Mapping[str, Variable] = {variable.name: variable for variable in _OF_SWEPT_RUN}

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.analysis.verdict import outcomes
-from gearidae.archive.energy import balance_in_attributes
+from gearidae.archive.energy import energy_balance
+from gearidae.archive.run_summary import account
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.output import say
 from gearidae.studies.answers import answer
@@ -41,6 +42,7 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
     ds : xarray.Dataset
         What is in it.
     """
+    summary = account(ds)
     return {
         "file": str(archive),
         "bytes": archive.stat().st_size,
@@ -48,8 +50,8 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         **_contents(ds),
         "swept": {dim: ds[dim].values.tolist() for dim in swept_dims(ds)},
         "outcomes": [{**asdict(one), "words": one.words} for one in outcomes(ds)],
-        "run_summary": json.loads(ds.attrs["account"]) if "account" in ds.attrs else None,
-        "energy_balance": balance_in_attributes(ds) or None,
+        "run_summary": summary and summary.as_plain(),
+        "energy_balance": energy_balance(ds),
         "scene": scene_of(ds),
     }
 

@@ -13,7 +13,7 @@ last bit. A new torque changes the units of time and force, a new coating what a
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -38,14 +38,13 @@ from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
     EMPTY,
-    ENERGY,
     EXTREMES,
     GEARS,
     PHASE,
-    PROGRESS,
+    STATE,
+    STATE_FIELDS,
     Floats,
     Model,
-    Record,
     V,
     W,
     assign,
@@ -60,12 +59,10 @@ from gearidae.engine.setup.start import Start
 from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
+from gearidae.records.quantity import convert
 from gearidae.scene import Scene
 from gearidae.scene.differences import MAY_CHANGE, first_difference
 
-_SPEEDS: Final = ("lowest_speed", "highest_speed", "top", "bottom", "fall", "rise")
-_FORCES: Final = ("largest_force", "smallest_force")
-_TIMES: Final = ("stuck_time", "turn_back_time", "adhering", "largest_force_time", "smallest_force_time")
 _SAME: Final = 1e-12
 """Relative difference of forces below which materials are the same: units of other torques round their last digits."""
 
@@ -124,7 +121,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     y = new.start.copy()
     units.convert_motion(old_y, y)
     take_over(source, m)
-    units.convert_state(m.state)
+    convert(STATE_FIELDS, m.state, units.force, units.time)
     changed = not _same_materials(source, m)
     changed |= m.scene.population.flanks > 0 and start.scene.coating != scene.coating
     if changed:  # what other materials have been exposed to says nothing of these
@@ -212,21 +209,6 @@ class _Units:
                 self.energy
             )  # forces have the same unit, as lengths are in roughnesses
 
-    def convert_state(self, s: Record) -> None:
-        """Put a state into the new units, in place."""
-        s.last_root *= self.time
-        for name in s.energy.dtype.names:
-            s.energy[name] *= self.energy
-        for h in s.history:
-            h.gap_rate *= self.speed
-            h.lag *= self.energy
-            h.lag_power *= self.energy * self.speed
-            h.lag_rate *= self.energy * self.speed * self.speed
-        e: Any = s.extremes
-        for names, ratio in ((_SPEEDS, self.speed), (_FORCES, self.force), (_TIMES, self.time)):
-            for name in names:
-                e[name] *= ratio
-
 
 def _same_materials(old: Model, new: Model) -> bool:
     """Whether contacts of two models are of the same materials."""
@@ -292,8 +274,7 @@ def _begin_stretch(m: Model) -> None:
     s, time = m.state, float(m.state.time)
     if m.scene.nodes == 0:
         s.deep_exits = -1
-    for name in PROGRESS.names or ():
-        s.progress[name] = 0
+    assign(s.progress, np.zeros(1, STATE["progress"])[0])
     s.next_knot = 0
     s.roots = 0
     blank = np.zeros(1, EXTREMES)[0]
@@ -307,7 +288,7 @@ def _begin_stretch(m: Model) -> None:
 
 def _begin_balance(m: Model, y: Floats) -> None:
     """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
-    assign(m.state.energy, np.zeros(1, ENERGY)[0])
+    assign(m.state.energy, np.zeros(1, STATE["energy"])[0])
     for name in ("lag", "lag_power", "lag_rate"):
         m.state.history[name] = 0.0
     if m.scene.follow.balance:

@@ -15,6 +15,16 @@ from gearidae.records.columns import (
     Column,
     sampled_columns,
 )
+from gearidae.records.energy import (
+    GEAR_BOUND,
+    QUADRATURE_BOUND,
+    ROLLER_BOUND,
+    ROUNDING_BOUND,
+    TABLE_BOUND,
+    TORQUE_BOUND,
+    TRAVEL_BOUND,
+    EnergyBalance,
+)
 from gearidae.records.events import (
     EventColumn,
     EventKind,
@@ -22,6 +32,10 @@ from gearidae.records.events import (
     Flank,
 )
 from gearidae.records.exposures import ExposureRows
+from gearidae.records.extremes import (
+    RUN_PARTS,
+    Extremes,
+)
 from gearidae.records.results import (
     Block,
     Solution,
@@ -32,23 +46,13 @@ from gearidae.records.sampling import (
     sample_times,
 )
 from gearidae.records.statistics import (
+    COUNTERS,
     Ending,
     Statistics,
 )
-from gearidae.records.totals import (
-    GEAR_BOUND,
-    QUADRATURE_BOUND,
-    ROLLER_BOUND,
-    ROUNDING_BOUND,
-    RUN_PARTS,
-    TABLE_BOUND,
-    TORQUE_BOUND,
-    TRAVEL_BOUND,
-    EnergyBalance,
-    Extremes,
-)
 
 __all__ = [
+    "COUNTERS",
     "ELASTIC_COLUMNS",
     "ELASTIC_SAMPLES",
     "GEAR_BOUND",

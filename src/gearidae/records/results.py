@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.records.energy import EnergyBalance
 from gearidae.records.events import Events
+from gearidae.records.extremes import Extremes
 from gearidae.records.statistics import Statistics
-from gearidae.records.totals import EnergyBalance, Extremes
 
 Words = NDArray[Any]
 """A vector of 8-byte words, whose layout only the engine knows."""

@@ -7,6 +7,10 @@ farthest distances of the gear and of free gears from a zero of the gear's speed
 from __future__ import annotations
 
 from enum import IntFlag
+from functools import partial
+from typing import Final
+
+from gearidae.records.quantity import PITCHES, SECONDS, TORQUE, Quantity, count
 
 COLUMNS = ("begin", "end", "advance", "free_advance", "held_torque", "holding", "driven_time", "rest_time")
 """Numbers of a standstill: begin and end [s], end NaN at the end of the run; advances [pitches]; largest torque held
@@ -26,6 +30,42 @@ class Holding(IntFlag):
         """Names of all that hold it."""
         return " and ".join((part.name or "").lower().replace("_", " ") for part in Holding if part in self)
 
+
+_time, _advance = partial(Quantity, unit=SECONDS, archive=True), partial(Quantity, unit=PITCHES, archive=True)
+_torque, _number = partial(Quantity, unit=TORQUE, archive=True), partial(count, archive=True)
+
+STANDING_NOW: Final = (
+    _time(
+        "stick_time",
+        "when the gear came to stand",
+        comment="first zero of its speed from which it stands; NaN if it does not stand at the end",
+    ),
+    _number("stick_exits", "mesh exits on the drive flank until it stood or went back"),
+    _advance("advance", "pitches that the gear has been away from where it came to stand"),
+    _advance("free_advance", "pitches that free gears would have been away from there"),
+    _time("driven_time", "time since then for which the drive exceeded the dry load"),
+    _torque("held_torque", "largest torque of the drive at the gear beyond the dry load since then"),
+    _number(
+        "holding",
+        "what holds the gear at the end",
+        comment="sum of " + ", ".join(f"{part.value} for {part.words}" for part in Holding),
+    ),
+    _advance("turned_back", "pitches by which the gear has gone back at the end"),
+    _advance("free_turned_back", "pitches by which free gears would have gone back"),
+    _time("back_time", "zero of the speed from which the gear has gone back"),
+    _number("standstills", "number of standstills"),
+    _time("standing_time", "time of all standstills"),
+    _time("standing_rest_time", "time for which dry friction held all of the gear in them"),
+    _time(
+        "start_time",
+        "end of the last standstill that has ended",
+        comment="0 without one; NaN if the gear has never left half a pitch",
+    ),
+    _torque("breakaway_torque", "torque of the drive on the pinion then"),
+    _time("followed_time", "time since the start of the chain of runs to which this holds"),
+)
+"""Where the gear stands at the end of a run; advances of a gear that does not stand begin at the first zero within half
+a pitch of all that came later."""
 
 HALF_PITCH = 0.5
 """Pitches that a gear must move from a zero of its speed to have left it."""

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Final
+
+from gearidae.records.quantity import count
 
 
 class Ending(Enum):
@@ -48,6 +51,19 @@ class Ending(Enum):
     def message(self) -> str:
         """A sentence; empty when finished."""
         return self.value[1]
+
+
+COUNTERS: Final = (
+    count("steps", "solver steps", archive=True),
+    count("residual_evaluations", "evaluations of the residual", archive=True),
+    count("jacobian_evaluations", "evaluations of the Jacobian", archive=True),
+    count("error_test_failures", "steps repeated because the error test failed", archive=True),
+    count("convergence_failures", "steps repeated because Newton's method failed", archive=True),
+    count("restarts", "restarts of the solver at order one", archive=True),
+    count("guard_evaluations", "evaluations of the event functions", archive=True),
+    count("flight_steps", "steps in which no pair was in contact"),
+)
+"""Counters of a driver, which a checkpoint carries."""
 
 
 @dataclass(slots=True)

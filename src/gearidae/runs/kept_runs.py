@@ -24,7 +24,7 @@ from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statisti
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-_LAYOUT = 6
+_LAYOUT = 7
 """Version of the entries' layout."""
 _KEY: Final = re.compile(r"[0-9a-f]{64}")
 """Keys of runs."""
@@ -181,14 +181,9 @@ def _header(solution: Solution, judged: dict[str, Any]) -> dict[str, Any]:
         "status": solution.status,
         "message": solution.message,
         "reached": solution.reached,
-        "balance": None if solution.balance is None else _numbers(solution.balance),
-        "extremes": None if solution.extremes is None else _numbers(solution.extremes),
+        "balance": solution.balance,
+        "extremes": solution.extremes,
     }
-
-
-def _numbers(record: EnergyBalance | Extremes) -> dict[str, Any]:
-    """Fields of a record of numbers; `dataclasses.asdict` copies each of them deeply, which takes longer."""
-    return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
 def _rebuilt(header: dict[str, Any], tables: Mapping[str, NDArray[Any]]) -> tuple[Solution, dict[str, Any]]:
@@ -196,6 +191,7 @@ def _rebuilt(header: dict[str, Any], tables: Mapping[str, NDArray[Any]]) -> tupl
     time, *samples = tables.get("samples", np.empty((1 + len(header["columns"]), 0)))
     columns = {name: row.copy() for name, row in zip(header["columns"], samples, strict=True)}
     events = zip(_EVENTS.items(), tables.get("events", np.empty((len(_EVENTS), 0))), strict=True)
+    extremes = header["extremes"]  # JSON has no arrays
     solution = Solution(
         time.copy(),
         columns,
@@ -204,16 +200,9 @@ def _rebuilt(header: dict[str, Any], tables: Mapping[str, NDArray[Any]]) -> tupl
         header["status"],
         header["message"],
         header["reached"],
-        None if header["balance"] is None else EnergyBalance(**header["balance"]),
-        _extremes(header["extremes"]),
+        header["balance"] and EnergyBalance(header["balance"]),
+        extremes and Extremes({**extremes, "exposures": array("d", extremes["exposures"])}),
     )
     found = {name: header["judged"][name] for name in VERDICT}
     kinds = {name: str if variable.dtype is np.str_ else int for name, variable in VERDICT.items()}
     return solution, {name: kinds[name](value) for name, value in found.items() if value is not None}
-
-
-def _extremes(numbers: dict[str, Any] | None) -> Extremes | None:
-    """Read extremes back; JSON has no arrays."""
-    if numbers is None:
-        return None
-    return Extremes(**{**numbers, "exposures": array("d", numbers.get("exposures", ()))})

@@ -121,10 +121,9 @@ def simulate(
         solution = solve(scene, backend, report, start=begin, on_block=on_block)
 
     from gearidae.archive import reached, to_dataset
-    from gearidae.archive.run_summary import with_account
     from gearidae.runs.imbalance import log_imbalance
 
-    ds = with_account(to_dataset(scene, solution))
+    ds = to_dataset(scene, solution)
     log_imbalance(ds)
     ds.attrs |= started_attributes(begin)
     if solution.status == "interrupted":

@@ -12,8 +12,6 @@ from gearidae import __version__, engine
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
 from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
 from gearidae.archive.disk import DiskError
-from gearidae.archive.energy import balance_of
-from gearidae.archive.run_summary import account_of
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
@@ -157,7 +155,9 @@ class _Run:
         if ended.status == "interrupted":
             raise self._interrupted(archive)
         try:
-            archive.finish(self._final_template(archive, ended))
+            template = self._template(ended)
+            log_imbalance(template)
+            archive.finish(template)
         except KeyboardInterrupt:
             raise self._interrupted(archive) from None
         except DiskError as error:
@@ -169,24 +169,6 @@ class _Run:
         archive.close()
         kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
         return Interrupted(kept, self._left())
-
-    def _final_template(self, archive: GrowingArchive, ended: Ended) -> xr.Dataset:
-        """Make the final template, with the run summary."""
-        template = self._template(ended)
-        if self._scene.roller is None:
-            end = float(template.attrs["t_end"]) if ended.status == "finished" else 0.0
-            summary = account_of(
-                self._scene,
-                archive.read,
-                archive.samples,
-                archive.events,
-                (float(template.attrs.get("start_time", 0.0)), end),
-                balance_of(template),
-                ended.extremes,
-            )
-            template.attrs["account"] = summary.as_json()
-        log_imbalance(template)
-        return template
 
     def _not_written(self, archive: GrowingArchive, reached: float, error: DiskError) -> SolverError:
         archive.close()

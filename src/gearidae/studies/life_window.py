@@ -16,7 +16,7 @@ import numpy as np
 
 from gearidae import engine
 from gearidae.arrays import Floats
-from gearidae.records import ExposureRows
+from gearidae.records import ExposureRows, Extremes
 from gearidae.runs.estimates import steady_speed
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene import MATERIAL_NAMES
@@ -137,7 +137,7 @@ def with_exposures(found: Solution, exposures: Floats) -> Solution:
         As `gained` has them.
     """
     assert found.extremes is not None
-    extremes = replace(found.extremes, exposures=array("d", exposures.tobytes()))
+    extremes = Extremes(found.extremes, exposures=array("d", exposures.tobytes()))
     return replace(found, extremes=extremes)
 
 

@@ -6,7 +6,7 @@ The words are defined in ``docs/verdicts.md``.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
@@ -229,7 +229,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
     if found is not None and is_earlier(found):
         verdict, old = earlier_verdict(found, status, scene, scheduled=scheduled)
         if verdict is None:
-            found = replace(found, turned_back=0.0)
+            found = Extremes(found, turned_back=0.0)
     verdict = verdict or gear_verdict(found, status, scheduled=scheduled)
     kept = found or Extremes()
     return GearOutcome(

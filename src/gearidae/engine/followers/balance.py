@@ -29,6 +29,7 @@ In a closing contact, asperities come into contact until its turning point. Thei
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
@@ -49,7 +50,6 @@ from gearidae.engine.formulas.quadrature import (
     integral_of_square,
     torque_work,
 )
-from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
@@ -326,42 +326,45 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
     r.mesh_travel, r.mesh_speed, r.mesh_acceleration = y[U], y[V], yp[V]
 
 
-ENERGIES: Final = 5
-"""Numbers that `energies_at` leaves: stored and pending energy, energy of motion, lag of joining, slope of torques."""
-
-
 @compiled
-def energies_at(place: int, t: float, y: Floats, out: Floats) -> None:
-    """Say what contacts store and what moves at a state, which the sums of the balance know nothing of.
+def look(m: Model, t: float, y: Floats) -> None:
+    """Add to the sums, for a look at them, what contacts have pending, and note the present energies.
 
     Parameters
     ----------
-    place : int
-        Of the model, from `gearidae.engine.model.located.Located`.
     t : float
-        Time over tau.
+        Time over tau, to which the sums have been brought.
     y : ndarray, shape (n,)
         State there.
-    out : ndarray, shape (ENERGIES,)
-        Filled in.
     """
-    m = model_at(place)
-    out[0], out[1] = stored_energy(m, y)
-    out[2], out[3] = kinetic_energy(m, y), joining_lag(m)
-    out[4] = _torque_slopes(m, t, y)
+    e, now = m.state.energy, m.work.energy_now
+    stored, pending = stored_energy(m, y)
+    lag = joining_lag(m)
+    e.adhesion_loss = e.adhesion_loss + pending - lag
+    if m.scene.radius_force == 0:
+        e.radius_work -= lag
+    e.quadrature_error += e.loss_error
+    now.stored_change = stored - pending - e.start_stored
+    now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
+    now.largest = e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)
+    if m.scene.kind == GEARS:
+        pinion, gear, twice = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, 2.0 * e.peak_kinetic
+        now.pitch_work = 2.0 / m.scene.phase_rate  # both shafts' torques are at most the unit of force
+        now.speed_work = math.sqrt(twice / pinion) + math.sqrt(twice / gear)
+        top_speed = math.sqrt(twice / (1.0 / pinion + 1.0 / gear))
+        now.torque_work = _torque_slopes(m, t, y) * top_speed * t
 
 
 @compiled
 def _torque_slopes(m: Model, t: float, y: Floats) -> float:
-    """By how much the torques differ, over their base radii, at speeds that differ by one; 0 of a roller."""
+    """By how much the torques differ, over their base radii, at speeds that differ by one."""
     total = 0.0
-    if m.scene.kind != ROLLER:
-        for shaft in range(2):
-            if not is_constant(m, shaft):
-                speed = y[W] if shaft == LOAD else y[V] + y[W]
-                angle = torque_angle(m, shaft, y[U], y[PHASE])
-                faster = torque_force(m, shaft, t, angle, speed + 1.0)
-                total += abs(faster - torque_force(m, shaft, t, angle, speed))
+    for shaft in range(2):
+        if not is_constant(m, shaft):
+            speed = y[W] if shaft == LOAD else y[V] + y[W]
+            angle = torque_angle(m, shaft, y[U], y[PHASE])
+            faster = torque_force(m, shaft, t, angle, speed + 1.0)
+            total += abs(faster - torque_force(m, shaft, t, angle, speed))
     return total
 
 

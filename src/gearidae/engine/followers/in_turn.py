@@ -127,3 +127,5 @@ def look_at(place: int, t: float, y: Floats, yp: Floats) -> None:
     finish(m, t, y, yp)
     if m.scene.follow.extremes != 0:
         extremes.note_present(m, y)
+    if m.scene.follow.balance != 0:
+        balance.look(m, t, y)

@@ -9,8 +9,8 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import EVENT_NUMBERS
-from gearidae.engine.model.state import PROGRESS, Floats, Model, Record
-from gearidae.records import Block, Ending, EnergyBalance, Extremes, Statistics
+from gearidae.engine.model.state import Floats, Model, Record
+from gearidae.records import COUNTERS, Block, Ending, EnergyBalance, Extremes, Statistics
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -30,9 +30,6 @@ __all__ = [
     "sample_time",
     "update_statistics",
 ]
-
-COUNTERS = tuple(name for name in PROGRESS.names or () if name != "next_sample")
-"""Work counters that a run keeps."""
 
 BLOCK_ROWS = 16_384
 """Samples in a full block."""
@@ -74,9 +71,8 @@ def ending_of_flag(flag: int, alone: bool = False) -> Ending:
 
 def update_statistics(statistics: Statistics, progress: Record) -> None:
     """Take a driver's counters over."""
-    for name, count in zip(PROGRESS.names or (), progress.item(), strict=True):
-        if name in COUNTERS:
-            setattr(statistics, name, count)
+    for each in COUNTERS:
+        setattr(statistics, each.name, int(progress[each.name]))
 
 
 class Output(NamedTuple):

@@ -1,101 +1,111 @@
 """``STATE``: all that a checkpoint carries, besides the state vector and the nodes of an elastic contact.
 
-Units as in `gearidae.engine.model.scene_record`.
+What compiled code uses as an index, a count or a flag is a whole number with bounds: a checkpoint comes from a file.
 """
 
 from __future__ import annotations
 
 from typing import Final
 
-from gearidae.engine.model.record_types import INT, MATERIALS, REAL, SCHEDULES, SLOTS_HIGH, record_type
-from gearidae.records import RUN_PARTS
+from gearidae.engine.model.record_types import (
+    AT_REST,
+    EMPTY,
+    FREE,
+    MATERIALS,
+    SCHEDULES,
+    SLOTS_HIGH,
+    STUCK,
+    record_type,
+)
+from gearidae.records import COUNTERS, RUN_PARTS
+from gearidae.records.energy import ENERGY_SUMS
+from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES
+from gearidae.records.quantity import (
+    COUNT_HIGH,
+    ENERGY,
+    LENGTH,
+    PITCHES,
+    POWER,
+    POWER_RATE,
+    SECONDS,
+    SPEED,
+    TIME,
+    TORQUE,
+    Quantity,
+    Unit,
+    count,
+    flag,
+)
 
-HISTORY: Final = record_type(
-    ("pair", INT),  # number of the pair, counted without the turns taken out of the phase, or EMPTY
-    ("direction", REAL),  # sign of the gap rate; 0 at the very start
-    ("gap", REAL),  # at the last accepted time [sigma]
-    ("gap_rate", REAL),  # at the last accepted time [sigma/tau]
-    ("in_contact", INT),  # 1 between onset and separation
-    ("joined", REAL, (MATERIALS,)),  # height above which asperities joined by the last turn [sigma]
-    ("fully_stretched", INT, (MATERIALS,)),  # 1 once full stretch has been reached on the way apart
-    (
+_HEIGHT_HIGH: Final = 1e6
+"""Roughnesses: a step may have gone far below the tables before that was noticed."""
+
+HISTORY_FIELDS: Final = (
+    count(
+        "pair", "number of the pair, counted without the turns taken out of the phase, or EMPTY", low=EMPTY
+    ),
+    Quantity("direction", "sign of the gap rate; 0 at the very start"),
+    Quantity("gap", "at the last accepted time", LENGTH),
+    Quantity("gap_rate", "at the last accepted time", SPEED),
+    flag("in_contact", "1 between onset and separation"),
+    Quantity(
+        "joined",
+        "height above which asperities joined by the last turn",
+        LENGTH,
+        shape=(MATERIALS,),
+        high=_HEIGHT_HIGH,
+    ),
+    flag("fully_stretched", "1 once full stretch has been reached on the way apart", shape=(MATERIALS,)),
+    Quantity(
         "adhered_energy",
-        REAL,
-        (MATERIALS,),
-    ),  # adhesion loss above `joined`, rigid bodies [`force_scale` sigma]
-    ("lag", REAL),  # what joining has taken less than at the present contact length [F sigma]
-    ("lag_power", REAL),  # rate of `lag` at the last accepted time [F sigma/tau]
-    ("lag_rate", REAL),  # rate of `lag_power` there [F sigma/tau^2]
-    ("length", REAL),  # contact length of an elastic contact at its last evaluation [sqrt(pb)]
-    ("loaded", INT),  # 1 if that evaluation found it within reach
-    ("stretched", INT),  # 1 if asperities of it were stretched at the last turning point
-    ("slide", INT),  # direction of sliding, -1 or 1; `STUCK`, or 0 while nothing rubs: see `record_types`
+        "adhesion loss above `joined`, rigid bodies",
+        Unit("`force_scale` sigma"),
+        shape=(MATERIALS,),
+    ),
+    Quantity("lag", "what joining has taken less than at the present contact length", ENERGY),
+    Quantity("lag_power", "rate of `lag` at the last accepted time", POWER),
+    Quantity("lag_rate", "rate of `lag_power` there", POWER_RATE),
+    Quantity("length", "contact length of an elastic contact at its last evaluation", Unit("sqrt(pb)")),
+    flag("loaded", "1 if that evaluation found it within reach"),
+    flag("stretched", "1 if asperities of it were stretched at the last turning point"),
+    count(
+        "slide",
+        "direction of sliding, -1 or 1; `STUCK`, or 0 while nothing rubs: see `record_types`",
+        low=-1,
+        high=STUCK,
+    ),
 )
 
-ENERGY: Final = record_type(  # sums over the run
-    ("drive_work", REAL),  # work of the drive [F sigma]
-    ("drag_loss", REAL),  # loss by drag and viscous resistance [F sigma]
-    ("dry_loss", REAL),  # loss by dry resistance [F sigma]
-    ("damping_loss", REAL),  # loss by damping of the mesh [F sigma]
-    ("adhesion_loss", REAL),  # loss by joining [F sigma]
-    ("radius_work", REAL),  # work of the changing radius of curvature [F sigma]
-    ("model_change", REAL),  # jumps of the stored energy where the contact model changes [F sigma]
-    ("throughput", REAL),  # all that has been exchanged, without regard to sign [F sigma]
-    ("start_stored", REAL),  # energy stored at the start [F sigma]
-    ("start_kinetic", REAL),  # energy of motion at the start [F sigma]
-    ("quadrature_error", REAL),  # about how far quadratures over gathered steps may be out [F sigma]
-    ("loss_error", REAL),  # the same of drag and damping, which do not decide how many are gathered [F sigma]
-    ("peak_kinetic", REAL),  # largest energy of motion [F sigma]
-    ("flank_loss", REAL, (2,)),  # loss by friction of the drive and the coast flank [F sigma]
-    ("hub_loss", REAL, (2,)),  # loss by friction of the pinion's and the gear's hub [F sigma]
-)
-
-PROGRESS: Final = record_type(  # of a driver
-    ("next_sample", INT),  # index of the coming sample
-    ("steps", INT),  # accepted steps
-    ("residual_evaluations", INT),  # evaluations of the residual
-    ("jacobian_evaluations", INT),  # evaluations of its Jacobian
-    ("error_test_failures", INT),  # steps rejected for their error
-    ("convergence_failures", INT),  # steps rejected by Newton's iteration
-    ("restarts", INT),  # restarts of the integration
-    ("guard_evaluations", INT),  # evaluations of the guard
-    ("flight_steps", INT),  # steps in free flight
+PROGRESS_FIELDS: Final = (
+    count("next_sample", "index of the coming sample", high=lambda scene: scene.samples),
+    *COUNTERS,
 )
 
 STOPS: Final = ("time", "sticks", "turns")
 """What ends a run, by number."""
 
-PART: Final = record_type(  # of a run, from where it begins to where the run stands
-    ("begun", INT),  # 1 once it has begun
-    ("lowest", REAL),  # lowest speed of the gear [sigma/tau]
-    ("highest", REAL),  # highest speed of the gear [sigma/tau]
-    ("time", REAL),  # when it began [tau]
-    ("position", REAL),  # how far the gear had turned by then [pb]
+_PART_FIELDS: Final = (  # from where the part begins to where the run stands
+    flag("begun", "1 once it has begun"),
+    Quantity("lowest", "lowest speed of the gear", SPEED),
+    Quantity("highest", "highest speed of the gear", SPEED),
+    Quantity("time", "when it began", TIME),
+    Quantity("position", "how far the gear had turned by then", PITCHES),
 )
 
-EXTREMES: Final = record_type(  # of a run so far, at accepted times and located extrema
-    ("begun", INT),  # 1 once the run has begun
-    ("lowest_speed", REAL),  # of the gear, or of a roller [sigma/tau]
-    ("highest_speed", REAL),  # of the gear, or of a roller [sigma/tau]
-    ("top", REAL),  # highest speed since start-up [sigma/tau]
-    ("bottom", REAL),  # lowest speed since start-up [sigma/tau]
-    ("fall", REAL),  # how far the speed has fallen below `top` [sigma/tau]
-    ("rise", REAL),  # how far it has risen above `bottom` [sigma/tau]
-    ("part", PART, (len(RUN_PARTS),)),  # parts of the run
-    ("reversals", INT),  # how often the speed has fallen to zero
-    ("is_stuck", INT),  # 1 while the gear has not turned on by half a pitch since a reversal
-    ("stuck_time", REAL),  # time of the first such reversal [tau]
-    ("stuck_position", REAL),  # how far the gear had turned by then [pb]
-    ("stuck_exits", INT),  # mesh exits until then
-    ("turn_backs", INT),  # how often the drive flank's adhesion has turned the gear back there
-    ("turn_back_time", REAL),  # when it last did [tau]
-    ("adhering", REAL),  # all times from one such to the next in the same place [tau]
-    ("mesh_exits", INT),  # on the drive flank
-    ("largest_force", REAL),  # along the line of action with mesh damping; of a roller, on it [F]
-    ("largest_force_time", REAL),  # [tau]
-    ("smallest_force", REAL),  # likewise [F]
-    ("smallest_force_time", REAL),  # [tau]
-    ("separation", REAL),  # least distance of the flanks, deflection included [sigma]
+EXTREMES_FIELDS: Final = (  # at accepted times and located extrema
+    flag("begun", "1 once the run has begun"),
+    *SPEED_EXTREMES,
+    Quantity("top", "highest speed since start-up", SPEED),
+    Quantity("bottom", "lowest speed since start-up", SPEED),
+    Quantity("part", "parts of the run", kind=_PART_FIELDS, shape=(len(RUN_PARTS),)),
+    flag("is_stuck", "1 while the gear has not turned on by half a pitch since a reversal"),
+    Quantity("stuck_time", "time of the first such reversal", TIME),
+    Quantity("stuck_position", "how far the gear had turned by then", PITCHES),
+    count("stuck_exits", "mesh exits until then"),
+    count("turn_backs", "how often the drive flank's adhesion has turned the gear back there"),
+    Quantity("turn_back_time", "when it last did", TIME),
+    Quantity("adhering", "all times from one such to the next in the same place", TIME),
+    *FORCE_EXTREMES,
 )
 
 MOST_ZEROS: Final = 12
@@ -106,103 +116,120 @@ SPARE: Final = MOST_ZEROS + 1
 MOST_SLOW: Final = 32
 MOST_STANDSTILLS: Final = 64
 
-ZERO: Final = (
-    record_type(  # of the gear's speed; free gears start there at rest. Units stay with a change of torques
-        ("time", REAL),  # [s]
-        ("position", REAL),  # how far the gear had turned by then [pb]
-        ("lead", REAL),  # of the pinion's base circle over the gear's, from the start of a chain [sigma]
-        ("exits", INT),  # mesh exits until then
-        ("lowest", REAL),  # position of the gear since then, at zeros of its speed [pb]
-        ("highest", REAL),  # [pb]
-        ("start", INT),  # 1 for a start at rest
-        ("spent", INT),  # 1 if a standstill that has ended lies behind it
-        ("rest_time", REAL),  # time at rest until then [s]
-        ("free_time", REAL),  # up to which free gears are followed [s]
-        ("free_travel", REAL),  # of free gears [pb]
-        ("free_speed", REAL),  # of free gears [pb/s]
-        ("free_farthest", REAL),  # largest size of `free_travel` [pb]
-        ("free_before", REAL),  # that at the end of the run before [pb]
-        ("onset", REAL),  # when free gears have begun to move; 0 before [s]
-        ("excess", REAL),  # largest torque of the drive at the gear beyond the dry load [N m]
-        ("driven_time", REAL),  # for which there was any [s]
-    )
+# units of standing stay with a change of torques
+_ZERO_FIELDS: Final = (
+    Quantity("time", "of a zero of the gear's speed; free gears start there at rest", SECONDS),
+    Quantity("position", "how far the gear had turned by then", PITCHES),
+    Quantity("lead", "of the pinion's base circle over the gear's, from the start of a chain", LENGTH),
+    count("exits", "mesh exits until then"),
+    Quantity("lowest", "position of the gear since then, at zeros of its speed", PITCHES),
+    Quantity("highest", "position of the gear since then, at zeros of its speed", PITCHES),
+    flag("start", "1 for a start at rest"),
+    flag("spent", "1 if a standstill that has ended lies behind it"),
+    Quantity("rest_time", "time at rest until then", SECONDS),
+    Quantity("free_time", "up to which free gears are followed", SECONDS),
+    Quantity("free_travel", "of free gears", PITCHES),
+    Quantity("free_speed", "of free gears", Unit("pb/s")),
+    Quantity("free_farthest", "largest size of `free_travel`", PITCHES),
+    Quantity("free_before", "that at the end of the run before", PITCHES),
+    Quantity("onset", "when free gears have begun to move; 0 before", SECONDS),
+    Quantity("excess", "largest torque of the drive at the gear beyond the dry load", TORQUE),
+    Quantity("driven_time", "for which there was any", SECONDS),
 )
 
-SLOW: Final = record_type(  # an accepted time after which the gear has been faster
-    ("time", REAL),  # [s]
-    ("speed", REAL),  # [pb/s]
-    ("position", REAL),  # [pb]
+_SLOW_FIELDS: Final = (
+    Quantity("time", "of an accepted time after which the gear has been faster", SECONDS),
+    Quantity("speed", "of the gear then", Unit("pb/s")),
+    Quantity("position", "of the gear then", PITCHES),
 )
 
-STANDSTILL: Final = record_type(  # that has ended
-    ("begin", REAL),  # [s]
-    ("end", REAL),  # [s]
-    ("advance", REAL),  # of the gear [pb]
-    ("free_advance", REAL),  # of free gears [pb]
-    ("excess", REAL),  # as of a zero [N m]
-    ("driven_time", REAL),  # as of a zero [s]
-    ("rest_time", REAL),  # at rest [s]
+_STANDSTILL_FIELDS: Final = (
+    Quantity("begin", "of a standstill that has ended", SECONDS),
+    Quantity("end", "of the standstill", SECONDS),
+    Quantity("advance", "of the gear", PITCHES),
+    Quantity("free_advance", "of free gears", PITCHES),
+    Quantity("excess", "as of a zero", TORQUE),
+    Quantity("driven_time", "as of a zero", SECONDS),
+    Quantity("rest_time", "at rest", SECONDS),
 )
 
-STANDING: Final = record_type(
-    ("zero_count", INT),  # zeros in use, from which on the gear has stayed within half a pitch
-    ("zero", ZERO, (MOST_ZEROS + 2,)),  # in the order of time, then `HIGH` and `SPARE`
-    ("slow_count", INT),  # entries in use
-    ("slow", SLOW, (MOST_SLOW,)),  # in the order of time, each faster than the one before
-    ("direction", INT),  # of the last movement of more than half a pitch; 0 before the first
-    ("turn_time", REAL),  # when that became so [s]
-    ("high_known", INT),  # 1 if `HIGH` is the zero farthest forward since the gear last went forward
-    ("low", REAL),  # position farthest back since it last went back [pb]
-    ("left", INT),  # 1 once the gear has left half a pitch from the start of a chain
-    ("rest_time", REAL),  # for which all that is dry has held the gear [s]
-    ("stand_count", INT),  # standstills that are kept
-    ("standstill", STANDSTILL, (MOST_STANDSTILLS,)),  # in the order of time; of more the longest are kept
-    ("standstills", INT),  # that have ended
-    ("standing_time", REAL),  # of all of these [s]
-    ("standing_rest", REAL),  # at rest in all of these [s]
-    ("last_end", REAL),  # end of the last of them [s]
-    ("breakaway", REAL),  # drive torque then, or at the start [N m]
+_STANDING_FIELDS: Final = (
+    count(
+        "zero_count", "zeros in use, from which on the gear has stayed within half a pitch", high=MOST_ZEROS
+    ),
+    Quantity(
+        "zero", "in the order of time, then `HIGH` and `SPARE`", kind=_ZERO_FIELDS, shape=(MOST_ZEROS + 2,)
+    ),
+    count("slow_count", "entries in use", high=MOST_SLOW),
+    Quantity(
+        "slow", "in the order of time, each faster than the one before", kind=_SLOW_FIELDS, shape=(MOST_SLOW,)
+    ),
+    count("direction", "of the last movement of more than half a pitch; 0 before the first", low=-1, high=1),
+    Quantity("turn_time", "when that became so", SECONDS),
+    flag("high_known", "1 if `HIGH` is the zero farthest forward since the gear last went forward"),
+    Quantity("low", "position farthest back since it last went back", PITCHES),
+    flag("left", "1 once the gear has left half a pitch from the start of a chain"),
+    Quantity("rest_time", "for which all that is dry has held the gear", SECONDS),
+    count("stand_count", "standstills that are kept", high=MOST_STANDSTILLS),
+    Quantity(
+        "standstill",
+        "in the order of time; of more the longest are kept",
+        kind=_STANDSTILL_FIELDS,
+        shape=(MOST_STANDSTILLS,),
+    ),
+    count("standstills", "that have ended"),
+    Quantity("standing_time", "of all of these", SECONDS),
+    Quantity("standing_rest", "at rest in all of these", SECONDS),
+    Quantity("last_end", "end of the last of them", SECONDS),
+    Quantity("breakaway", "drive torque then, or at the start", TORQUE),
 )
 
-STATE: Final = record_type(
-    ("time", REAL),  # last accepted time [tau]
-    ("turns", REAL),  # whole pitches taken out of the phase [pb]
-    (
-        "first_place",
-        REAL,
-    ),  # position of the gear where a chain of runs began, where shafts' angles are 0 [pb]
-    ("first_lead", REAL),  # u + e there: lead of the pinion's base circle over the gear's [sigma]
-    ("mark_low", REAL),  # phase of the nearest mesh entry or exit below the present one [pb]
-    ("mark_high", REAL),  # phase of the nearest one above [pb]
-    ("slip", REAL),  # direction of the gear's slip against dry resistance, -1 or +1; 0 while it is stuck
-    ("slipping", INT),  # 1 once a slip has become faster than `rest_speed`
-    ("near", INT, (2,)),  # 1 for a flank close enough for any pair to touch
-    ("last_flank", INT),  # flank of the last onset, -1 before the first
-    ("bound_exceeded", INT),  # 1 once a pair has been below the lowest gap
-    ("deep_exits", INT),  # mesh exits when elastic contacts were last too deep for rigid ones, -1 before
-    ("light", INT),  # 1 once that has been long ago
-    ("last_root", REAL),  # time of the last root [tau]
-    ("roots", INT),  # how many have come in close succession
-    ("next_knot", INT),  # index of the coming knot among all knots
-    ("segment", INT, (SCHEDULES,)),  # the schedules' current segments: set at knots, never inside a step
-    ("energy", ENERGY),  # energy balance
-    ("progress", PROGRESS),  # counters of the driver
-    ("extremes", EXTREMES),  # extremes of the run
-    ("standing", STANDING),  # where the gear stands, and what free gears would do
-    ("history", HISTORY, (2 * SLOTS_HIGH,)),  # of the tooth pairs
-    ("asperity_onsets", INT),  # asperities of a population that have joined so far [1]
-    ("asperity_detachments", INT),  # those that have detached [1]
-    ("cycle_events", INT),  # both since the last mesh mark [1]
-    ("hold", INT),  # what friction holds at rest: see `record_types`
-    ("held_pair", INT),  # history of the pair that rolls, if that is held [index]
-    ("pinion_slip", REAL),  # direction in which the pinion turns in its hub, -1 or +1; 0 while it is held
-    (
-        "reversals",
-        INT,
-    ),  # changes of sliding of the flanks since the last mesh mark, or in a share of the run [1]
-    ("counted_from", REAL),  # when they have last been counted from zero [tau]
-    (
+STATE_FIELDS: Final = (
+    Quantity("time", "last accepted time", TIME),
+    Quantity("turns", "whole pitches taken out of the phase", PITCHES, high=COUNT_HIGH),
+    Quantity(
+        "first_place", "position of the gear where a chain of runs began, where shafts' angles are 0", PITCHES
+    ),
+    Quantity("first_lead", "u + e there: lead of the pinion's base circle over the gear's", LENGTH),
+    Quantity(
+        "mark_low", "phase of the nearest mesh entry or exit below the present one", PITCHES, high=COUNT_HIGH
+    ),
+    Quantity("mark_high", "phase of the nearest one above", PITCHES, high=COUNT_HIGH),
+    Quantity("slip", "direction of the gear's slip against dry resistance, -1 or +1; 0 while it is stuck"),
+    flag("slipping", "1 once a slip has become faster than `rest_speed`"),
+    flag("near", "1 for a flank close enough for any pair to touch", shape=(2,)),
+    count("last_flank", "flank of the last onset, -1 before the first", low=-1, high=1),
+    flag("bound_exceeded", "1 once a pair has been below the lowest gap"),
+    count(
+        "deep_exits", "mesh exits when elastic contacts were last too deep for rigid ones, -1 before", low=-1
+    ),
+    flag("light", "1 once that has been long ago"),
+    Quantity("last_root", "time of the last root", TIME),
+    count("roots", "how many have come in close succession", high=lambda scene: scene.root_limit),
+    count("next_knot", "index of the coming knot among all knots", high=lambda scene: scene.knot_count),
+    count(
+        "segment", "the schedules' current segments: set at knots, never inside a step", shape=(SCHEDULES,)
+    ),
+    Quantity("energy", "energy balance", kind=ENERGY_SUMS),
+    Quantity("progress", "counters of the driver", kind=PROGRESS_FIELDS),
+    Quantity("extremes", "extremes of the run", kind=EXTREMES_FIELDS),
+    Quantity("standing", "where the gear stands, and what free gears would do", kind=_STANDING_FIELDS),
+    Quantity("history", "histories of the tooth pairs", kind=HISTORY_FIELDS, shape=(2 * SLOTS_HIGH,)),
+    *ASPERITY_COUNTS,
+    count("cycle_events", "both since the last mesh mark"),
+    count("hold", "what friction holds at rest: see `record_types`", low=FREE, high=AT_REST),
+    count(
+        "held_pair", "history of the pair that rolls, if that is held", high=lambda scene: scene.histories - 1
+    ),
+    Quantity("pinion_slip", "direction in which the pinion turns in its hub, -1 or +1; 0 while it is held"),
+    count("reversals", "changes of sliding of the flanks since the last mesh mark, or in a share of the run"),
+    Quantity("counted_from", "when they have last been counted from zero", TIME),
+    Quantity(
         "load_sign",
-        REAL,
-    ),  # +1 where the vector sum of the mesh forces points forward, -1 behind its passage of zero
+        "+1 where the vector sum of the mesh forces points forward, -1 behind its passage of zero",
+    ),
 )
+
+HISTORY: Final = record_type(*HISTORY_FIELDS)
+EXTREMES: Final = record_type(*EXTREMES_FIELDS)
+STATE: Final = record_type(*STATE_FIELDS)

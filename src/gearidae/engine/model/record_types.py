@@ -6,6 +6,9 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from gearidae.records.quantity import INT as INT
+from gearidae.records.quantity import REAL as REAL
+from gearidae.records.quantity import Quantity
 from gearidae.scene.coating import MATERIAL_NAMES
 from gearidae.scene.limits import MOST_PAIRS
 
@@ -57,14 +60,16 @@ W: Final = 3  # gear's surface velocity at the base circle
 MOTION: Final = 4  # states of a motion at most
 # then, for an elastic contact, the deflection of both bodies / sigma at every node of every history's pair
 
-REAL: Final = "f8"
-INT: Final = "i8"
-"""Kinds of the fields."""
 
-
-def record_type(*fields: tuple[Any, ...]) -> np.dtype[Any]:
+def record_type(*fields: tuple[Any, ...] | Quantity) -> np.dtype[Any]:
     """Record type whose fields are attributes, in compiled code and in Python alike."""
-    return np.dtype((_Fields, np.dtype(list(fields), align=True)))
+    plain = [_plain(each) if isinstance(each, Quantity) else each for each in fields]
+    return np.dtype((_Fields, np.dtype(plain, align=True)))
+
+
+def _plain(field: Quantity) -> tuple[Any, ...]:
+    kind = record_type(*field.kind) if isinstance(field.kind, tuple) else field.kind
+    return field.name, kind, field.shape
 
 
 class _Fields(np.void):  # type: ignore[misc]  # final in numpy's stubs; numpy.record is another such class

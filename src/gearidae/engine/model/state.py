@@ -16,7 +16,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.compiled import name_type
-from gearidae.engine.model.checkpoint_record import ENERGY, EXTREMES, HISTORY, PROGRESS, STATE, STOPS
+from gearidae.engine.model.checkpoint_record import EXTREMES, HISTORY, STATE, STATE_FIELDS, STOPS
 from gearidae.engine.model.record_types import (
     COAST,
     DRIVE,
@@ -44,7 +44,6 @@ __all__ = [
     "COAST",
     "DRIVE",
     "EMPTY",
-    "ENERGY",
     "EXTREMES",
     "GEARS",
     "HISTORY",
@@ -54,13 +53,13 @@ __all__ = [
     "MOST_ORDERS",
     "MOTION",
     "PHASE",
-    "PROGRESS",
     "ROLLER",
     "SCENE",
     "SCHEDULES",
     "SLOTS_HIGH",
     "SPEED",
     "STATE",
+    "STATE_FIELDS",
     "STOPS",
     "TORQUE",
     "WORK",

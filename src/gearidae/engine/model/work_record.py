@@ -17,6 +17,7 @@ from gearidae.engine.model.record_types import (
     SLOTS_HIGH,
     record_type,
 )
+from gearidae.records.energy import ENERGY_NOW
 
 QUADRATURE: Final = record_type(  # inputs of the powers at the last sample of the energy balance
     ("time", REAL),  # [tau]
@@ -250,6 +251,7 @@ CONTACT: Final = record_type(  # of a population: the candidates of a pair
 WORK: Final = record_type(
     ("quadrature", QUADRATURE),  # of the energy balance
     ("resistance", RESISTANCE),  # of the energy balance
+    ("energy_now", record_type(*ENERGY_NOW)),  # of a look at the energy balance
     ("track", TRACK),  # of the extremes
     ("lag_time", REAL),  # time to which the lags of joining are followed [tau]
     ("exposing", EXPOSING),  # of the exposures

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gearidae.engine.followers.balance import ENERGIES, energies_at
 from gearidae.engine.followers.exposures.bins import exposures_of
 from gearidae.engine.followers.extremes.units import extremes_in_si
 from gearidae.engine.followers.in_turn import look_at
@@ -26,7 +25,6 @@ from gearidae.engine.model.state import (
     assign,
     blank_work,
     copied,
-    plain,
 )
 from gearidae.engine.pairs.tooth_pairs import set_branches
 from gearidae.engine.setup import checkpoint as checkpoints
@@ -35,6 +33,8 @@ from gearidae.engine.torques.harmonic import fastest_harmonic
 from gearidae.engine.torques.schedule import fastest_schedule
 from gearidae.errors import SceneError
 from gearidae.records import EnergyBalance, Extremes, first_sample
+from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS
+from gearidae.records.quantity import in_si
 
 ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
 PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
@@ -182,61 +182,16 @@ class Problem:
         before, exposed = (copied(m.state), copied(m.work)), exposures.copy()
         look_at(self.located.place, time, state, rates)
         if m.scene.follow.balance:
-            now = np.empty(ENERGIES)
-            energies_at(self.located.place, time, state, now)
-            balance = self._in_joules(time, *now.tolist())
+            energies = in_si(ENERGY_SUMS, m.state.energy, m.scene) | in_si(
+                ENERGY_NOW, m.work.energy_now, m.scene
+            )
+            balance = EnergyBalance(energies, time=time * self.time_unit)
         if m.scene.follow.extremes:
             extremes = extremes_in_si(m, self.located.place, time, state)
         for record, one in zip((m.state, m.work), before, strict=True):
             assign(record, one)
         exposures[:] = exposed
         return balance, extremes
-
-    def _in_joules(
-        self, time: float, stored: float, pending: float, kinetic: float, lag: float, slope: float
-    ) -> EnergyBalance:
-        e, scene = plain(self.model.state.energy), self.model.scene
-        unit = float(scene.force_unit * scene.length_unit)
-        return EnergyBalance(
-            time=time * self.time_unit,
-            drive_work=unit * e.drive_work,
-            radius_work=unit * (e.radius_work - (lag if scene.radius_force == 0 else 0.0)),
-            model_change=unit * e.model_change,
-            drag_loss=unit * e.drag_loss,
-            dry_loss=unit * e.dry_loss,
-            damping_loss=unit * e.damping_loss,
-            drive_friction_loss=unit * float(e.flank_loss[0]),
-            coast_friction_loss=unit * float(e.flank_loss[1]),
-            pinion_hub_loss=unit * float(e.hub_loss[0]),
-            gear_hub_loss=unit * float(e.hub_loss[1]),
-            adhesion_loss=unit * (e.adhesion_loss + pending - lag),
-            stored_change=unit * (stored - pending - e.start_stored),
-            kinetic_change=unit * (kinetic - e.start_kinetic),
-            throughput=unit * e.throughput,
-            quadrature_error=unit * (e.quadrature_error + e.loss_error),
-            largest=unit * (e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)),
-            # both shafts' torques are at most the unit of force
-            pitch_work=unit * float(2.0 / scene.phase_rate) if scene.kind == GEARS else 0.0,
-            speed_work=unit * self._momenta(e.peak_kinetic),
-            torque_work=unit * slope * self._top_speed(e.peak_kinetic) * time,
-        )
-
-    def _momenta(self, kinetic: float) -> float:
-        """Sum of what the momenta of both gears can be at a kinetic energy, scaled; 0 of a roller."""
-        s = self.model.scene
-        if s.kind != GEARS:
-            return 0.0
-        return sum(
-            math.sqrt(2.0 * kinetic / float(one)) for one in (s.pinion_inverse_mass, s.gear_inverse_mass)
-        )
-
-    def _top_speed(self, kinetic: float) -> float:
-        """Speed of both base circles at a kinetic energy, scaled; 0 of a roller."""
-        s = self.model.scene
-        if s.kind != GEARS:
-            return 0.0
-        mass = 1.0 / float(s.pinion_inverse_mass) + 1.0 / float(s.gear_inverse_mass)
-        return math.sqrt(2.0 * kinetic / mass)
 
     def checkpoint(self, time: float, state: Floats) -> Floats:
         """Everything that changes in a run, as one vector.

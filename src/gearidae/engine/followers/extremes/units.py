@@ -8,9 +8,12 @@ from types import SimpleNamespace
 from typing import Any
 
 from gearidae.engine.followers.exposures.bins import ROWS, exposure_table
-from gearidae.engine.followers.standing.units import standing_in_si
+from gearidae.engine.followers.standing.units import standing_now
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, V, W, plain
 from gearidae.records import Extremes
+from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES, SPEEDS_NOW
+from gearidae.records.quantity import in_si
+from gearidae.records.standing import STANDING_NOW
 
 
 def extremes_in_si(m: Model, place: int, time: float, y: Floats) -> Extremes:
@@ -28,42 +31,16 @@ def extremes_in_si(m: Model, place: int, time: float, y: Floats) -> Extremes:
         Scaled state there.
     """
     s, e = m.scene, plain(m.state.extremes)
-    force, tau = float(s.force_unit), float(s.time_unit)
-    forces: dict[str, Any] = {
-        "asperity_onsets": int(m.state.asperity_onsets),
-        "asperity_detachments": int(m.state.asperity_detachments),
-        "largest_mesh_force": force * e.largest_force,
-        "largest_mesh_force_time": tau * e.largest_force_time,
-        "smallest_mesh_force": force * e.smallest_force,
-        "smallest_mesh_force_time": tau * e.smallest_force_time,
-        "smallest_separation": float(s.length_unit) * e.separation,
-    }
+    numbers = in_si(FORCE_EXTREMES, m.state.extremes, s) | in_si(ASPERITY_COUNTS, m.state, s)
     if s.kind == ROLLER:
-        return Extremes(**forces, final_speed=float(y[V] * s.length_unit / s.time_unit))
-    speed = float(s.length_unit / (s.time_unit * s.gear_radius))
-    position = float(y[PHASE] + m.state.turns)
-    rate, part = float(s.phase_rate), [plain(one) for one in e.part]
-    means = [_mean(one, rate, time, position) for one in part]
-    spreads = [speed * (one.highest - one.lowest) if one.begun else math.nan for one in part]
-    settled = bool(part[0].begun)
-    return Extremes(
-        **forces,
-        min_gear_speed=speed * e.lowest_speed,
-        max_gear_speed=speed * e.highest_speed,
-        settled_gear_speed=speed * means[0],
-        settled_spread=spreads[0],
-        speed_fall=speed * e.fall if settled else math.nan,
-        speed_rise=speed * e.rise if settled else math.nan,
-        late_gear_speed=speed * means[1],
-        late_spread=spreads[1],
-        last_min_gear_speed=speed * part[2].lowest if part[2].begun else math.nan,
-        final_speed=speed * float(y[W]),
-        **_time_adhering(e, tau, time),
-        **standing_in_si(m, place, time, y),
-        mesh_exits=e.mesh_exits,
-        reversals=e.reversals,
-        exposures=_exposures(m),
-    )
+        return Extremes(numbers, final_speed=float(y[V] * s.length_unit / s.time_unit))
+    numbers |= in_si(SPEED_EXTREMES, m.state.extremes, s)
+    speeds = _speeds(e, float(s.phase_rate), time, float(y[PHASE] + m.state.turns))
+    numbers |= in_si(SPEEDS_NOW, speeds | {"final_speed": float(y[W])}, s)
+    numbers |= in_si(STANDING_NOW, standing := standing_now(m, place, time, y), s)
+    if not e.part[0]["begun"]:
+        numbers["speed_fall"] = numbers["speed_rise"] = math.nan
+    return Extremes(numbers, standstill_list=standing["standstill_list"], exposures=_exposures(m))
 
 
 def _exposures(m: Model) -> array[float]:
@@ -78,12 +55,20 @@ def _exposures(m: Model) -> array[float]:
     return array("d", table.tobytes())
 
 
-def _time_adhering(e: SimpleNamespace, tau: float, time: float) -> dict[str, Any]:
-    """How often adhesion has turned the gear back where it is, and how long it has held it."""
+def _speeds(e: SimpleNamespace, rate: float, time: float, position: float) -> dict[str, Any]:
+    """Means and spreads of the speed, and how long adhesion has held the gear, scaled; see `SPEEDS_NOW`."""
+    part = [plain(one) for one in e.part]
+    means = [_mean(one, rate, time, position) for one in part]
+    spreads = [one.highest - one.lowest if one.begun else math.nan for one in part]
     turns = e.turn_backs if e.is_stuck else 0
     return {
+        "settled_gear_speed": means[0],
+        "settled_spread": spreads[0],
+        "late_gear_speed": means[1],
+        "late_spread": spreads[1],
+        "last_min_gear_speed": part[2].lowest if part[2].begun else math.nan,
         "turn_backs": turns,
-        "time_adhering": tau * (e.adhering + (time - e.turn_back_time if turns > 1 else 0.0)),
+        "time_adhering": e.adhering + (time - e.turn_back_time if turns > 1 else 0.0),
     }
 
 

@@ -13,8 +13,8 @@ from gearidae.engine.model.state import Floats, Model, plain
 from gearidae.records.standing import Holding
 
 
-def standing_in_si(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]:
-    """Return those fields of `Extremes` that say where the gear stands.
+def standing_now(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]:
+    """Return the numbers of `STANDING_NOW`, and the list of standstills.
 
     Parameters
     ----------
