@@ -26,8 +26,6 @@ HISTORY: Final = record_type(
     ("lag", REAL),  # what joining has taken less than at the present contact length [F sigma]
     ("lag_power", REAL),  # rate of `lag` at the last accepted time [F sigma/tau]
     ("lag_rate", REAL),  # rate of `lag_power` there [F sigma/tau^2]
-    ("length", REAL),  # contact length of an elastic contact at its last evaluation [sqrt(pb)]
-    ("loaded", INT),  # 1 if that evaluation found it within reach
     ("stretched", INT),  # 1 if asperities of it were stretched at the last turning point
     ("slide", INT),  # direction of sliding, -1 or 1; `STUCK`, or 0 while nothing rubs: see `record_types`
 )

@@ -24,7 +24,7 @@ _HEIGHT_HIGH: Final = 1e6
 _FLAGS: Final = (
     *("slipping", "near", "bound_exceeded", "light", "begun", "is_stuck"),
     *("start", "spent", "high_known", "left"),
-    *("in_contact", "fully_stretched", "loaded", "stretched"),
+    *("in_contact", "fully_stretched", "stretched"),
 )
 _PITCHES: Final = ("turns", "mark_low", "mark_high")
 
