@@ -23,7 +23,8 @@ from gearidae.engine.motion.block_jacobian import (
     solve_blocks,
     store_size,
 )
-from gearidae.engine.motion.residual import mesh_forces, residual
+from gearidae.engine.motion.pair_forces import mesh_forces
+from gearidae.engine.motion.residual import residual
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.pairs.tooth_pairs import history_of
 from gearidae.engine.setup import build_contact

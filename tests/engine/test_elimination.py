@@ -11,9 +11,9 @@ from gearidae.engine.elastic.newton_step import FOLLOW, STEP, equation_space, in
 from gearidae.engine.elastic.nodes import influence, node_force, stiffness_matrix
 from gearidae.engine.elastic.rows import JOINED, PRESSURE, first_unknown, row_of
 from gearidae.engine.model.state import U, V
-from gearidae.engine.motion.residual import finish_deflections, mesh_forces, set_deflections
+from gearidae.engine.motion.pair_forces import finish_deflections, mesh_forces, set_deflections
 from gearidae.engine.motion.static_solve import settle_nodes
-from gearidae.engine.pairs.tooth_pairs import history_of
+from gearidae.engine.pairs.tooth_pairs import contact_length, history_of
 from gearidae.engine.setup.build import make_problem
 
 RTOL = 1e-6
@@ -77,9 +77,14 @@ def test_slopes_are_those_along_which_the_bodies_follow(softness):
     assert abs(at_rest - by_u) > 1e-3 * abs(by_u)  # bodies that do not follow are stiffer
 
 
+def length_of(m):
+    """Contact length of pair 0 of the drive flank at the start."""
+    return float(contact_length(m, 0.05))
+
+
 def linear(m, k, y, gap):
     """Equations of a pair's nodes as full matrices, at given deflections."""
-    n, length = int(m.scene.nodes), float(m.state.history[k].length)
+    n, length = int(m.scene.nodes), length_of(m)
     slopes, kappa = np.empty((n, n)), np.empty((n, n))
     node_force(m, k, True, 0.0, y, gap, 0.1, length)
     stiffness_matrix(m, k, slopes)
@@ -99,7 +104,7 @@ def test_a_step_solves_newtons_equations(monkeypatch, softness, mild):
     y[4:] += 1e-3 * np.sin(np.arange(y.size - 4))
     matrix, left, follow = linear(m, k, y, gap)
     assert mild or softness == 1.0 or np.abs(follow).max() > newton.MILD  # the series is not tried
-    influence(m, float(m.state.history[k].length), influence_space(m))
+    influence(m, length_of(m), influence_space(m))
     if mild:
         assert newton_step(m, k, y)
     else:
@@ -132,7 +137,7 @@ def test_where_the_determinant_is_not_positive_nothing_is_stable():
     m.tables[powers] *= 1.5 / lowest
     y[first : first + n] = 0.0
     m.work.unsettled = 0
-    settle_pair(m, k, True, 0.0, y, gap, 0.1, float(m.state.history[k].length))
+    settle_pair(m, k, True, 0.0, y, gap, 0.1, length_of(m))
     assert m.work.unsettled == 1
 
 

@@ -19,8 +19,9 @@ from gearidae.engine.events.asperity_events import (
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.model.state import EMPTY
-from gearidae.engine.motion.residual import mesh_forces
-from gearidae.engine.population.forces import pair_load
+from gearidae.engine.motion.pair_forces import mesh_forces
+from gearidae.engine.population.forces import asperity_force
+from gearidae.engine.population.spots import pair_now
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.problem import Problem
 from gearidae.scene import preset
@@ -171,7 +172,7 @@ def test_forces_of_many_pairs_scatter_about_the_mean_law(fraction, gap, kappa):
                 scale = (
                     scene.surface.asperity_density * scene.gears.face_width * np.sqrt(2.0 * radius * sigma)
                 )
-                force = pair_load(m, y, 0, tooth)[0] * float(m.scene.force_unit)
+                force = asperity_force(m, pair_now(m, 0, tooth, y)).load * float(m.scene.force_unit)
                 sums.append(force / (scale * mean))
                 squares.append(scale * number * (sums[-1] - 1.0) ** 2)
     assert np.mean(sums) == pytest.approx(1.0, abs=0.03)

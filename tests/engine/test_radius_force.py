@@ -7,7 +7,8 @@ import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.model.state import PHASE, U, V, W
-from gearidae.engine.motion.residual import jacobian, mesh_forces, residual
+from gearidae.engine.motion.pair_forces import mesh_forces
+from gearidae.engine.motion.residual import jacobian, residual
 from gearidae.engine.pairs.tooth_pairs import history_of, set_joined
 from gearidae.engine.setup.build import make_problem
 

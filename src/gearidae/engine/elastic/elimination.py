@@ -40,6 +40,7 @@ from gearidae.engine.elastic.rows import (
     row,
 )
 from gearidae.engine.model.state import EMPTY, Floats, Model
+from gearidae.engine.pairs.tooth_pairs import PairState
 
 SETTLE: Final = 0  # what to do with a pair's deflections: solve for them,
 PREDICT: Final = 1  # only interpolate or extrapolate them,
@@ -68,14 +69,9 @@ def begin_deflections(m: Model, t: float, y: Floats) -> None:
 
 
 @compiled_once(ELASTIC, makes_arrays=True)
-def pair_deflections(
-    m: Model, kind: int, k: int, known: bool, t: float, y: Floats, gap: float, rate: float
-) -> None:
-    """Do what `kind` says with a pair's deflections, at the contact length that its history has.
-
-    `SETTLE`, `PREDICT` or `FINISH`; the other parameters are those of `settle_pair`.
-    """
-    length = m.state.history[k].length
+def pair_deflections(m: Model, kind: int, t: float, y: Floats, pair: PairState, length: float) -> None:
+    """Do what `kind` says with a pair's deflections: `SETTLE`, `PREDICT` or `FINISH`; see `settle_pair`."""
+    k, known, gap, rate = pair.k, pair.known, pair.gap, pair.rate
     if kind == SETTLE:
         settle_pair(m, k, known, t, y, gap, rate, length)
     elif kind == PREDICT:

@@ -68,6 +68,7 @@ from gearidae.engine.elastic.rows import (
 )
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 from gearidae.engine.pairs.coverage import loading_of, noted_shares
+from gearidae.engine.pairs.tooth_pairs import contact_length
 
 _CLOSING, _OPENING, _TURNED = 0, 1, 2
 _BEGUN = 1e-9  # roughnesses of stretch
@@ -84,13 +85,6 @@ def farthest_joined(middle: float, offset: float) -> float:
 def middle_gap(m: Model, k: int, y: Floats, gap: float) -> float:
     """Gap in the middle of a contact: the pair's own, opened by the deflection of an elastic one."""
     return gap if m.scene.nodes == 0 else gap + y[first_unknown(m, k)]
-
-
-@compiled
-def mark_out_of_reach(m: Model) -> None:
-    """Mark every pair as out of reach, before those within reach are evaluated."""
-    for k in range(m.scene.histories):
-        m.state.history[k].loaded = 0
 
 
 @compiled_once(ELASTIC, makes_arrays=True)
@@ -140,8 +134,6 @@ def force_of_nodes(
     finer = point_weights(m)
     for i in range(m.scene.points):
         stiffness += finer[i] * stiff[i]
-    m.state.history[k].loaded = 1
-    m.state.history[k].length = length
     return force * length, stiffness * length
 
 
@@ -296,25 +288,23 @@ def influence(m: Model, length: float, out: Floats) -> None:
 
 @compiled_once(ELASTIC, makes_arrays=True)
 def node_residual(m: Model, y: Floats, out: Floats) -> None:
-    """Equations of the nodes, from the pressures that the forces have just left: deflections are those they cause."""
+    """Equations of the nodes, for the pairs whose forces have just been noted: deflections are those they cause."""
     n, orders = m.scene.nodes, m.scene.orders
     kappa = influence_powers(m)
-    for history in range(m.scene.histories):
-        first = first_unknown(m, history)
-        own = out[first : first + n]
-        for i in range(n):
-            own[i] = y[first + i]
-        if m.state.history[history].loaded == 0:
-            continue
-        pressure = row(m, history, PRESSURE)
-        x = (m.state.history[history].length - m.scene.length_middle) / m.scene.length_half_range
+    for i in range(first_unknown(m, 0), first_unknown(m, m.scene.histories)):
+        out[i] = y[i]
+    for j in range(m.work.notes.count):
+        noted = m.work.notes.pair[j]
+        first, pressure = first_unknown(m, noted.history), row(m, noted.history, PRESSURE)
+        deviation = out[first : first + n]
+        x = (contact_length(m, noted.position) - m.scene.length_middle) / m.scene.length_half_range
         power = 1.0
         for order in range(orders):
             for k in range(n):
                 p = power * pressure[k]
                 if p != 0.0:
                     for i in range(n):
-                        own[i] -= kappa[order, k, i] * p
+                        deviation[i] -= kappa[order, k, i] * p
             power *= x
 
 

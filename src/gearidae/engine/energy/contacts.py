@@ -10,18 +10,19 @@ from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import B_PIECES, branch_length, branch_value, loading_value, set_branch
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_losses, nodes_stored
-from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.pairs.attraction_force import attraction_energy
 from gearidae.engine.pairs.coverage import NONE, Shares, note_shares, potentials_of, shares_of, weighed
 from gearidae.engine.pairs.tooth_pairs import (
-    all_pairs,
+    PairState,
+    acts,
     contact_length,
     energy_branch,
-    history_of,
-    pair_at,
-    pair_gap,
+    flank_of_history,
+    list_known,
 )
-from gearidae.engine.population.attraction import attraction_energy
-from gearidae.engine.population.forces import population_energy
+from gearidae.engine.population.forces import asperities_energy
+from gearidae.engine.population.spots import state_of_pair
 
 
 @compiled_once(SOLVER)
@@ -40,28 +41,33 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
     stored, pending : float
         Scaled; the true stored energy is their difference.
     """
-    if m.scene.population.flanks != 0:
-        stored = population_energy(m, y)
-        return (stored + attraction_energy(m, y) if m.scene.attracts != 0 else stored), 0.0
     stored = pending = 0.0
-    reach = all_pairs(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        gap, rate, length, inside = y[U], y[V], 1.0, 0.0
-        if m.scene.kind == GEARS:
-            gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-            length = contact_length(m, inside)
-        if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
-            continue
-        shares = shares_of(m, coast, pair, inside)
-        if m.scene.nodes > 0:
-            note_shares(m, k, coast, pair, inside)
-            stored += length * nodes_stored(m, k, m.state.time, y, gap, rate, length)
-        else:
-            stored += length * weighed(shares, stored_energies(m, k, gap)[0])
-        pending += length * weighed(shares, joining_losses(m, k, y, gap)[0])
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        pair = state_of_pair(m, flank_of_history(m, k), m.state.history[k].pair, y)
+        if acts(m, pair):
+            energy, lost = _pair_energies(m, y, pair)
+            stored += energy
+            pending += lost
     return stored, pending
+
+
+@compiled
+def _pair_energies(m: Model, y: Floats, pair: PairState) -> tuple[float, float]:
+    """Stored energy of a pair, and the part lost by asperities in contact since its last turning point."""
+    stored = pending = 0.0
+    if m.scene.population.flanks != 0:
+        stored = asperities_energy(m, pair)
+    else:
+        k, gap, length = pair.k, pair.gap, contact_length(m, pair.place)
+        shares = shares_of(m, pair.coast, pair.number, pair.place)
+        if m.scene.nodes > 0:
+            note_shares(m, k, pair.coast, pair.number, pair.place)
+            stored = length * nodes_stored(m, k, m.state.time, y, gap, pair.rate, length)
+        else:
+            stored = length * weighed(shares, stored_energies(m, k, gap)[0])
+        pending = length * weighed(shares, joining_losses(m, k, y, gap)[0])
+    return (stored + attraction_energy(m, pair) if m.scene.attracts != 0 else stored), pending
 
 
 # -- of a rigid pair, by material ------------------------------------------------------------------------------------

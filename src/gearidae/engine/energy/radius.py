@@ -14,13 +14,23 @@ elastic bodies store besides, B per length, adds :math:`-B\,d\ell/dx_2`.
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.energy import nodes_energies, nodes_length_force, nodes_losses
 from gearidae.engine.energy.contacts import free_energies, stored_energies
-from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import NONE, Shares, note_shares, noted_shares, path_position, weighed
-from gearidae.engine.pairs.lengths import length_and_rates, weighed_length
-from gearidae.engine.pairs.tooth_pairs import history_of, pairs_on_path
+from gearidae.engine.model.state import PHASE, Floats, Model, V, W
+from gearidae.engine.pairs.coverage import (
+    NONE,
+    Shares,
+    attraction_energies,
+    note_shares,
+    noted_shares,
+    path_position,
+    weighed,
+)
+from gearidae.engine.pairs.lengths import length_and_rates, slopes_along_path, weighed_length
+from gearidae.engine.pairs.pair_force import NO_PAIR_FORCE, PairForce, of_path
+from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, is_on_path, list_known, nearest_gap
 
 
 @compiled
@@ -29,17 +39,14 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
     power = rate = 0.0
     if m.scene.radius_force != 0:  # it is the work of a force then, which motion and contacts exchange
         return power, rate
-    for coast in range(2):
-        gap = m.scene.half_backlash - (1.0 - 2.0 * coast) * y[U]
-        if m.state.near[coast] == 0 or gap >= m.scene.cutoff:
-            continue
-        first, last = pairs_on_path(m, coast)
-        for pair in range(first, last + 1):
-            k = history_of(m, coast, pair)
-            if m.state.history[k].pair == pair:
-                more, change = _pair_power(m, coast, pair, k, gap, t, y, w_rate)
-                power += more
-                rate += change
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        coast, pair = flank_of_history(m, k), m.state.history[k].pair
+        gap = nearest_gap(m, coast, y)
+        if gap < m.scene.cutoff and is_on_path(m, coast, pair):
+            more, change = _pair_power(m, coast, pair, k, gap, t, y, w_rate)
+            power += more
+            rate += change
     return power, rate
 
 
@@ -56,8 +63,14 @@ def _pair_power(
     else:
         energies, slopes = stored_energies(m, k, gap)
     own = weighed_length(m, (coast, pair, phase), w, w_rate, energies, slopes)
+    power = bodies * stretch + own.rate
     rate = bodies_rate * stretch + bodies * bend + own.bend + opening * own.by_gap
-    return bodies * stretch + own.rate, rate
+    if m.scene.attracts != 0:
+        energies, slopes = attraction_energies(m, gap)
+        own = weighed_length(m, (coast, pair, phase), w, w_rate, energies, slopes)
+        power += own.rate
+        rate += own.bend + opening * own.by_gap
+    return power, rate
 
 
 @compiled
@@ -77,11 +90,11 @@ def _elastic(
     return bodies - weighed(shares, energies), change - rate * weighed(shares, slopes), energies, slopes
 
 
-@compiled
-def radius_force(
-    m: Model, t: float, y: Floats, coast: int, pair: int, k: int, gap: float, rate: float
-) -> tuple[float, float, float]:
-    """Force on the gear that pays for the changing length of a pair's contact, with its slopes.
+@compiled_once(SOLVER)
+def curvature_force(m: Model, t: float, y: Floats, pair: PairState) -> PairForce:
+    """Force along the path of contact that pays for the changing length of a pair's contact.
+
+    Of an elastic contact its slope in the gap is left out, which only steers Newton's iteration.
 
     Parameters
     ----------
@@ -89,31 +102,23 @@ def radius_force(
         Time over tau.
     y : ndarray
         State.
-    coast, pair : int
-        Flank and number of the pair.
-    k : int
-        Index of its history, if that is about this pair.
-    gap, rate : float
-        The pair's gap and gap rate.
-
-    Returns
-    -------
-    force, force_u, force_phase : float
-        Along the gear's motion, and its partial derivatives in u and phase; of an elastic contact the first is left
-        out, which only steers Newton's iteration.
+    pair : PairState
+        The pair there.
     """
-    first, last = pairs_on_path(m, coast)
-    known, phase = m.state.history[k].pair == pair, y[PHASE]
-    if not first <= pair <= last or (m.scene.nodes > 0 and not known):  # it has just come within reach
-        return 0.0, 0.0, 0.0
-    bodies, slopes = 0.0, NONE
-    length, stretch, bend = length_and_rates(m, coast, pair, phase, 1.0, 0.0)
+    if not is_on_path(m, pair.coast, pair.number) or (
+        m.scene.nodes > 0 and not pair.known
+    ):  # just within reach
+        return NO_PAIR_FORCE
+    coast, number, k = pair.coast, pair.number, pair.k
+    bodies = stretch = bend = 0.0
+    slopes = NONE
     if m.scene.nodes > 0:
-        bodies, _, (a, b, c), _ = _elastic(m, coast, pair, k, gap, rate, t, y, length)
-        a1, b1, c1 = nodes_losses(m, k, y, gap)
+        pitch = (1.0 - 2.0 * coast) / m.scene.phase_rate
+        length, stretch, bend = length_and_rates(m, coast, number, y[PHASE], pitch, 0.0)
+        bodies, _, (a, b, c), _ = _elastic(m, coast, number, k, pair.gap, pair.rate, t, y, length)
+        a1, b1, c1 = nodes_losses(m, k, y, pair.gap)
         energies = (a - a1, b - b1, c - c1)
     else:
-        energies, slopes = free_energies(m, k, known, t, gap, rate)
-    own = weighed_length(m, (coast, pair, phase), 1.0, 0.0, energies, slopes)
-    force, change = -(bodies * stretch + own.rate), -(bodies * bend + own.bend)
-    return force, (1.0 - 2.0 * coast) * own.by_gap, change / m.scene.phase_rate
+        energies, slopes = free_energies(m, k, pair.known, t, pair.gap, pair.rate)
+    along, by_gap, by_place = slopes_along_path(m, coast, number, y[PHASE], energies, slopes)
+    return of_path(-(bodies * stretch + along), -by_gap, -(bodies * bend + by_place))

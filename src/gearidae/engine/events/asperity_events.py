@@ -15,7 +15,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import POPULATION
 from gearidae.engine.events.record import EVENTS_AT_ONCE, record, record_asperity
 from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.pairs.tooth_pairs import flank_of_history, history_of, pair_at, pairs_near
+from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, list_known
 from gearidae.engine.population.candidates import choose, covers, list_joined
 from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import (
@@ -31,7 +31,7 @@ from gearidae.engine.population.layout import (
     column,
     flank_of,
 )
-from gearidae.engine.population.spots import Pair, overlap_slopes, pair_now, spot_at
+from gearidae.engine.population.spots import overlap_slopes, pair_of, spot_at
 from gearidae.records import EventKind
 
 _ONSET, _DETACHMENT = float(EventKind.ASPERITY_ONSET), float(EventKind.ASPERITY_DETACHMENT)
@@ -49,13 +49,9 @@ FAR: Final = 1.0
 def asperity_guard(m: Model, y: Floats) -> float:
     """Least guard of all candidates of the pairs that are near, `FAR` at most; chooses candidates where it must."""
     least = FAR
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair != pair:
-            continue
-        now = pair_now(m, coast, pair, y)
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        now = pair_of(m, k, y)
         if not covers(m, k, now.gap, now.place):
             own, gap, low, high = m.work.contact[k], now.gap, now.place, now.place
             if own.started != 0:
@@ -64,7 +60,7 @@ def asperity_guard(m: Model, y: Floats) -> float:
                     min(low, own.start_place),
                     max(high, own.start_place),
                 )
-            choose(m, k, coast, pair, gap, low, high)
+            choose(m, k, now.coast, now.number, gap, low, high)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
         for j in range(m.work.contact[k].count):
@@ -73,7 +69,7 @@ def asperity_guard(m: Model, y: Floats) -> float:
 
 
 @compiled(inline=True)
-def _guard(m: Model, k: int, j: int, now: Pair, arc: float, bend: float) -> float:
+def _guard(m: Model, k: int, j: int, now: PairState, arc: float, bend: float) -> float:
     """Guard of a candidate of the k-th history."""
     x = m.rows[column(m, k, ARC) + j] - arc
     overlap = m.rows[column(m, k, HEIGHT) + j] - now.gap - bend * x * x
@@ -96,14 +92,12 @@ def flip_asperities(m: Model, y: Floats) -> bool:
     flips = 0
     for k in range(m.scene.histories):
         m.work.contact[k].flips = 0
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
         own = m.work.contact[k]
-        if m.state.history[k].pair != pair or own.count == 0:
+        if own.count == 0:
             continue
-        now, flipped = pair_now(m, coast, pair, y), column(m, k, REMEMBERED)
+        now, flipped = pair_of(m, k, y), column(m, k, REMEMBERED)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
         for j in range(own.count):
@@ -186,14 +180,10 @@ def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, b
 @compiled_once(POPULATION)
 def join_at_start(m: Model, y: Floats) -> None:
     """Join asperities that overlap at a start, and detach those that a new material does not hold."""
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair != pair:
-            continue
-        now = pair_now(m, coast, pair, y)
-        choose(m, k, coast, pair, now.gap, now.place, now.place)
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        now = pair_of(m, k, y)
+        choose(m, k, now.coast, now.number, now.gap, now.place, now.place)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
         for j in range(m.work.contact[k].count):
@@ -208,15 +198,11 @@ def note_step_start(m: Model, y: Floats) -> None:
     """Note the pairs at a state from which the next step goes on; `asperity_guard` has been asked there."""
     for k in range(m.scene.histories):
         m.work.contact[k].started = 0
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair == pair:
-            own, now = m.work.contact[k], pair_now(m, coast, pair, y)
-            own.started, own.start_moves = 1, 1 if now.moves else 0
-            own.start_gap, own.start_rate = now.gap, now.rate
-            own.start_place, own.start_place_rate = now.place, now.place_rate
+    for i in range(list_known(m, y)):
+        own, now = m.work.contact[m.work.known[i]], pair_of(m, m.work.known[i], y)
+        own.started, own.start_moves = 1, 1 if now.moves else 0
+        own.start_gap, own.start_rate = now.gap, now.rate
+        own.start_place, own.start_place_rate = now.place, now.place_rate
 
 
 @compiled_once(POPULATION)
@@ -236,23 +222,30 @@ def first_dip(m: Model, y: Floats, h: float) -> float:
         The earliest such share, or -1.
     """
     first = 2.0
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
         own = m.work.contact[k]
-        if m.state.history[k].pair != pair or own.started == 0:
+        if own.started == 0:
             continue
-        now = pair_now(m, coast, pair, y)
-        before = Pair(
-            own.start_gap, own.start_rate, 0.0, own.start_place, own.start_place_rate, own.start_moves != 0
+        now = pair_of(m, k, y)
+        before = PairState(
+            now.coast,
+            now.number,
+            k,
+            True,
+            own.start_gap,
+            own.start_rate,
+            0.0,
+            own.start_place,
+            own.start_place_rate,
+            own.start_moves != 0,
         )
         first = min(first, _first_dip_of(m, k, before, now, h))
     return first if first < 1.0 else -1.0
 
 
 @compiled
-def _first_dip_of(m: Model, k: int, before: Pair, now: Pair, h: float) -> float:
+def _first_dip_of(m: Model, k: int, before: PairState, now: PairState, h: float) -> float:
     """Earliest dip of the candidates of a pair between two states; 2 if there is none."""
     first = 2.0
     at0, at1 = spot_at(m, before.place, before.moves), spot_at(m, now.place, now.moves)

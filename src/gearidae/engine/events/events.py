@@ -21,12 +21,11 @@ from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.sliding import REVERSALS_HIGH, sliding_guard
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
+    flank_of_history,
     gap_and_rate,
-    history_of,
     in_flight,
+    list_known,
     nearest_gap,
-    pair_at,
-    pairs_near,
 )
 
 PROGRESS = 1e-6
@@ -64,13 +63,10 @@ def guard(m: Model, t: float, y: Floats) -> float:
     if m.scene.population.flanks != 0:
         least = min(least, asperity_guard(m, y))
         return least if least != 0.0 else _TINY
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair == pair:
-            gap, rate = gap_and_rate(m, coast, pair, y)
-            least = min(least, pair_guard(m, k, gap, rate, middle_gap(m, k, y, gap)))
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        gap, rate = gap_and_rate(m, flank_of_history(m, k), m.state.history[k].pair, y)
+        least = min(least, pair_guard(m, k, gap, rate, middle_gap(m, k, y, gap)))
     # a guard that stays at exactly zero just after its root would be an error to the root finder; zero counts as
     # not yet fallen
     return least if least != 0.0 else _TINY

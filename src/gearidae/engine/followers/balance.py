@@ -53,11 +53,10 @@ from gearidae.engine.formulas.quadrature import (
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
+    flank_of_history,
     gap_and_rate,
-    history_of,
     in_flight,
-    pair_at,
-    pairs_near,
+    list_known,
     static_error,
 )
 from gearidae.engine.torques.torque import is_constant, torque_force, torque_rate
@@ -148,15 +147,12 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
         return False
     if crossed_mark(m, y) or (m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0):
         return False
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair == pair:
-            gap, _ = gap_and_rate(m, coast, pair, y)
-            for material in range(MATERIALS):
-                if newly_stretched(m, k, material, gap):
-                    return False
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        gap, _ = gap_and_rate(m, flank_of_history(m, k), m.state.history[k].pair, y)
+        for material in range(MATERIALS):
+            if newly_stretched(m, k, material, gap):
+                return False
     return True
 
 

@@ -15,10 +15,17 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import joining_losses
 from gearidae.engine.formulas.quadrature import integral
-from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import NONE, WHOLE, Shares, path_position, shares_of, weighed
 from gearidae.engine.pairs.lengths import weighed_length
-from gearidae.engine.pairs.tooth_pairs import contact_length, history_of, pairs_on_path
+from gearidae.engine.pairs.tooth_pairs import (
+    contact_length,
+    flank_of_history,
+    is_on_path,
+    list_known,
+    nearest_gap,
+    pairs_on_path,
+)
 
 
 @compiled(inline=True)
@@ -45,9 +52,7 @@ def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
     h = t - m.work.lag_time
     if m.scene.kind == GEARS and h > 0.0:
         m.work.lag_time = t
-        for coast in range(2):
-            if m.state.near[coast] != 0:
-                _follow_flank(m, coast, h, y, w_rate)
+        _follow_pairs(m, h, y, w_rate)
 
 
 @compiled_once(SOLVER)
@@ -89,29 +94,23 @@ def _book_before(m: Model, coast: int, pair: int, phase: float, losses: Shares) 
 @compiled
 def resume(m: Model, y: Floats) -> None:
     """Look again at the rates of the lags, which jump at a mesh mark."""
-    for coast in range(2):
-        if m.state.near[coast] != 0:
-            _follow_flank(m, coast, 0.0, y, m.work.quadrature.gear_acceleration)
+    _follow_pairs(m, 0.0, y, m.work.quadrature.gear_acceleration)
 
 
 @compiled
-def _follow_flank(m: Model, coast: int, span: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of a flank whose contacts close over a span of time."""
-    sign = 1.0 - 2.0 * coast
-    gap = m.scene.half_backlash - sign * y[U]
-    if gap >= m.scene.cutoff:
-        return
-    first, last = pairs_on_path(m, coast)
-    for pair in range(first, last + 1):
-        k = history_of(m, coast, pair)
-        h = m.state.history[k]
-        if h.pair != pair or h.direction >= 0.0:
+def _follow_pairs(m: Model, span: float, y: Floats, w_rate: float) -> None:
+    """Follow the lags of contacts that close over a span of time."""
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        coast, h = flank_of_history(m, k), m.state.history[k]
+        gap = nearest_gap(m, coast, y)
+        if h.direction >= 0.0 or gap >= m.scene.cutoff or not is_on_path(m, coast, h.pair):
             continue
         power = rate = 0.0
         losses, slopes = joining_losses(m, k, y, gap)
         if losses[0] != 0.0 or losses[1] != 0.0 or losses[2] != 0.0:
-            own = weighed_length(m, (coast, pair, y[PHASE]), y[W], w_rate, losses, slopes)
-            power, rate = own.rate, own.bend - sign * y[V] * own.by_gap
+            own = weighed_length(m, (coast, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
+            power, rate = own.rate, own.bend - (1.0 - 2.0 * coast) * y[V] * own.by_gap
         h.lag += integral(span, h.lag_power, power, h.lag_rate, rate)
         h.lag_power, h.lag_rate = power, rate
 

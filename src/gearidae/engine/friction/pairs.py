@@ -61,14 +61,15 @@ def set_limits(m: Model, t: float, w: float) -> None:
         Surface velocity of the gear, which carries a pair along the path of contact.
     """
     own = m.scene.friction
-    if m.scene.population.flanks != 0:
-        return
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
+        if m.scene.population.flanks != 0:
+            noted.force_rate = noted.slope * noted.gap_rate + noted.drift
+            continue
         longer = _length_rate(m, noted, w)
         noted.force_rate = noted.slope * noted.gap_rate + longer * noted.force
         if own.even > 0.0 or own.flanks == 0:
-            noted.limit, noted.limit_slope = own.even * noted.force, own.even * noted.slope
+            noted.limit, noted.limit_slope = own.even * noted.contact, own.even * noted.contact_slope
         else:
             noted.limit, noted.limit_slope = _limit_of_materials(m, t, i)
         noted.limit_rate = noted.limit_slope * noted.gap_rate + longer * noted.limit

@@ -20,7 +20,7 @@ from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
-from gearidae.engine.pairs.tooth_pairs import NO_PAIRS, history_of, in_flight, pair_at, pairs_near
+from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_known
 
 
 @compiled
@@ -96,16 +96,13 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
     """
     driver, joined = m.work.driver, False
     count, crossed, restart = handle_mesh(m, t, y, events, driver.events)
-    reach = pairs_near(m, y) if m.scene.population.flanks == 0 else NO_PAIRS
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.state.history[k].pair == pair:
-            found = find_event(m, y, coast, pair, k)
-            if found.touches or found.stretches or found.turns:
-                joined |= found.turns and m.state.history[k].direction < 0.0
-                followers.event(m, t, y, yp, found)
-                count = take_event(m, t, y, found, events, count)
+    for i in range(list_known(m, y) if m.scene.population.flanks == 0 else 0):
+        k = m.work.known[i]
+        found = find_event(m, y, flank_of_history(m, k), m.state.history[k].pair, k)
+        if found.touches or found.stretches or found.turns:
+            joined |= found.turns and m.state.history[k].direction < 0.0
+            followers.event(m, t, y, yp, found)
+            count = take_event(m, t, y, found, events, count)
     if m.scene.population.flanks != 0:
         if flip_asperities(m, y):
             restart = True

@@ -40,7 +40,7 @@ from gearidae.engine.integrate.step_control import configure_ida
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.motion.observe import observe
-from gearidae.engine.motion.residual import is_eliminated, set_deflections
+from gearidae.engine.motion.pair_forces import is_eliminated, set_deflections
 from gearidae.engine.motion.static_solve import fold_gap
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.sundials import names as sun
@@ -269,7 +269,7 @@ def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) ->
         update_statistics(statistics, m.state.progress)
         statistics.ending = ending_of_flag(int(driver.error), elastic or m.scene.population.flanks > 0)
         if driver.error < 0 and elastic:
-            statistics.note_fold(fold_gap(m, m.state.time) * m.scene.length_unit)
+            statistics.note_fold(fold_gap(m, m.state.time, s.y) * m.scene.length_unit)
         if driver.error in MODEL_CHANGES:  # the run that continues from here restarts
             driver.error, driver.pending = 0, -1
             m.state.progress.restarts += 1

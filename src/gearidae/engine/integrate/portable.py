@@ -112,7 +112,7 @@ def run(
         int(driver.error), bool(m.scene.nodes > 0 or m.scene.population.flanks > 0)
     )
     if driver.error < 0 and m.scene.nodes > 0:
-        statistics.note_fold(fold_gap(m, driver.time) * m.scene.length_unit)
+        statistics.note_fold(fold_gap(m, driver.time, y) * m.scene.length_unit)
     if driver.done != 0 or driver.error in MODEL_CHANGES:
         yield _ready(problem, m, out, statistics, y, yp)
     else:

@@ -18,7 +18,7 @@ from gearidae.engine.events.rest_search import rest_until
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import mesh_forces
+from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import static_error
 from gearidae.engine.torques.torque import is_steady, torque_force
@@ -90,13 +90,13 @@ def _settle(m: Model, t: float, y: Floats) -> bool:
 @compiled
 def _step_to_equilibrium(m: Model, t: float, y: Floats, v: float) -> float:
     """Newton step of a stopped pinion that has moved at `v`; infinite without an equilibrium that draws it back."""
-    force, _, stiffness, _, _, _ = mesh_forces(m, t, y, False)
+    mesh = forces_at(m, t, y)
     share = 1.0
     if m.scene.error_count != 0:
         share -= static_error(m, y[U], y[PHASE])[2]
-    push = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), 0.0) - share * force
-    if stiffness > 0.0:
-        return push / (share * stiffness)
+    push = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), 0.0) - share * mesh.force
+    if mesh.force_u > 0.0:
+        return push / (share * mesh.force_u)
     return 0.0 if push == 0.0 == v else np.inf
 
 

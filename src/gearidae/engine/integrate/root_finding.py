@@ -22,7 +22,7 @@ from gearidae.engine.events.asperity_events import first_dip, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.formulas import adams
 from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.motion.residual import finish_deflections, is_eliminated, set_deflections
+from gearidae.engine.motion.pair_forces import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import IDA, YP, Y

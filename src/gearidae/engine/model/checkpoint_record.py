@@ -65,8 +65,6 @@ HISTORY_FIELDS: Final = (
     Quantity("lag", "what joining has taken less than at the present contact length", ENERGY),
     Quantity("lag_power", "rate of `lag` at the last accepted time", POWER),
     Quantity("lag_rate", "rate of `lag_power` there", POWER_RATE),
-    Quantity("length", "contact length of an elastic contact at its last evaluation", Unit("sqrt(pb)")),
-    flag("loaded", "1 if that evaluation found it within reach"),
     flag("stretched", "1 if asperities of it were stretched at the last turning point"),
     count(
         "slide",

@@ -219,5 +219,5 @@ SCENE: Final = record_type(
     ("attracts", INT),  # 1 if flanks attract each other across the gap
     ("attraction_floor", REAL),  # gap below which the attraction grows no further [sigma]
     ("friction", FRICTION),  # of flanks and hubs
-    ("noting", INT),  # 1 where the forces of single pairs are noted, for exposures or friction
+    ("noting", INT),  # 1 where the forces of single pairs are noted, for exposures, friction or nodes
 )

@@ -174,18 +174,19 @@ NOTED: Final = record_type(  # a pair where its force was evaluated
     ("position", REAL),  # along the path of contact [pb]
     ("gap", REAL),  # [sigma]
     ("gap_rate", REAL),  # [sigma/tau]
+    ("relief", REAL),  # slope of the tip relief along the path [1]
     ("force", REAL),  # [F]
     ("slope", REAL),  # of the force in the gap [F/sigma]
-    ("drift", REAL),  # rate of the force at that gap, of a population [F/tau]
+    ("drift", REAL),  # rate of the force at that gap, where its law has it [F/tau]
+    ("contact", REAL),  # what asperities in contact carry of the force [F]
+    ("contact_slope", REAL),  # of that in the gap [F/sigma]
     ("limit", REAL),  # of its friction; below zero where nothing rubs [F]
     ("limit_slope", REAL),  # in the gap [F/sigma]
     ("limit_rate", REAL),  # [F/tau]
     ("force_rate", REAL),  # [F/tau]
 )
 
-NOTES: Final = record_type(  # the last evaluation of all forces, in a run that keeps exposures
-    ("time", REAL),  # [tau]
-    ("travel", REAL),  # transmission error [sigma]
+NOTES: Final = record_type(  # the last evaluation of all forces
     ("count", INT),  # pairs
     ("pair", NOTED, (2 * SLOTS_HIGH,)),
 )
@@ -203,6 +204,7 @@ SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminat
     ("before_time", REAL),  # [tau]
     ("before_gap", REAL),  # [sigma]
     ("before_rate", REAL),  # of the gap [sigma/tau]
+    ("reached", INT),  # 1 if the pair is within reach at the end of the step
 )
 
 ELEMENT: Final = record_type(  # that dry friction may hold at rest
@@ -255,7 +257,8 @@ WORK: Final = record_type(
     ("track", TRACK),  # of the extremes
     ("lag_time", REAL),  # time to which the lags of joining are followed [tau]
     ("exposing", EXPOSING),  # of the exposures
-    ("notes", NOTES),  # of the exposures
+    ("known", INT, (2 * SLOTS_HIGH,)),  # histories of the pairs that have been listed last [index]
+    ("notes", NOTES),  # forces of single pairs
     (
         "shares",
         REAL,

@@ -24,8 +24,8 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import influence, stiffness_matrix
 from gearidae.engine.elastic.rows import node_weights
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import is_stuck, jacobian
-from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pair_gap, pairs_touching
+from gearidae.engine.motion.residual import motion_slopes, write_jacobian
+from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
 
 _MOTION: Final = 0  # sizes: states of motion, nodes, blocks
 _NODES: Final = 1
@@ -69,43 +69,36 @@ def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
     n = m.scene.nodes
     store[_MOTION], store[_NODES], store[_BLOCKS] = motion, n, m.scene.histories
     small = np.empty(motion * motion)
-    jacobian(m, t, cj, y, small)
+    slopes = motion_slopes(m, t, y)
+    write_jacobian(m, cj, slopes, small)
     for i in range(motion):
         for j in range(motion):
             store[_SMALL + motion * i + j] = small[i + motion * j]
     size = _RHO + 2 * n + n * n
     for block in range(m.scene.histories):
         store[_FIRST + size * block] = 0.0
-    if roller:
-        if m.state.history[0].loaded != 0:
-            _assemble_pair(m, 0, store)
-            store[_FIRST + _BETA + V] = -m.scene.gear_inverse_mass
-            store[_FIRST + _GAMMA + U] = 1.0
-        return
-    reach = pairs_touching(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        sign = 1.0 - 2.0 * coast
-        gap, _, slope, _ = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-        if gap >= m.scene.cutoff:
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        start = _assemble_pair(m, noted.history, contact_length(m, noted.position), store)
+        if roller:
+            store[start + _BETA + V], store[start + _GAMMA + U] = -slopes.by_pinion, 1.0
             continue
-        start = _assemble_pair(m, history_of(m, coast, pair), store)
-        store[start + _BETA + V] = sign * m.scene.pinion_inverse_mass
-        if not is_stuck(m):
-            store[start + _BETA + W] = -sign * m.scene.gear_inverse_mass * (1.0 + slope)
+        sign, on_gear = 1.0 - 2.0 * flank_of_history(m, noted.history), 1.0 + noted.relief
+        store[start + _BETA + V] = sign * (slopes.by_pinion - on_gear * slopes.by_both)
+        store[start + _BETA + W] = sign * (slopes.by_both - on_gear * slopes.by_gear)
         store[start + _GAMMA + U] = -sign
-        store[start + _GAMMA + PHASE] = sign * slope / m.scene.phase_rate
+        store[start + _GAMMA + PHASE] = sign * noted.relief / m.scene.phase_rate
 
 
 @compiled(makes_arrays=True)
-def _assemble_pair(m: Model, history: int, store: Floats) -> int:
+def _assemble_pair(m: Model, history: int, length: float, store: Floats) -> int:
     """Fill a pair's block but for beta and gamma, which are set to zero; its offset."""
     n = m.scene.nodes
     size = _RHO + 2 * n + n * n
     start = _FIRST + size * history
     store[start : start + _RHO] = 0.0
     store[start] = 1.0
-    weights, length = node_weights(m), m.state.history[history].length
+    weights = node_weights(m)
     rho = store[start + _RHO : start + _RHO + n]
     c = store[start + _RHO + n : start + _RHO + 2 * n]
     block = store[start + _RHO + 2 * n : start + size].reshape(n, n)  # column by column

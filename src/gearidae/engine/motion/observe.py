@@ -7,9 +7,9 @@ import math
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import is_stuck, mesh_forces, resisting_force, roller_force
+from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.motion.separation import separation
-from gearidae.engine.motion.shafts import friction_at_gear
+from gearidae.engine.motion.shafts import friction_at_gear, is_stuck, resisting_force
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
 from gearidae.engine.population.forces import asperities_joined
@@ -34,8 +34,9 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     """
     length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
     u, v = y[U], y[V]
+    mesh = forces_at(m, t, y)
+    force = mesh.force + m.scene.damping * v
     if m.scene.kind != GEARS:
-        force, _ = roller_force(m, t, y, False)
         row[ROLLER.height] = u * length
         row[ROLLER.speed] = v * speed
         row[ROLLER.force] = force * m.scene.force_unit
@@ -45,8 +46,6 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
             row[ROLLER.min_separation] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
-    force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
-    force += m.scene.damping * v
     e1 = 0.0
     if m.scene.error_count != 0:
         _, _, e1, _ = static_error(m, u, phase)
@@ -56,7 +55,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.gear_angle] = (m.state.turns + phase) * m.scene.base_pitch / radius
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
-    contact, resistance = force + relief, 0.0
+    contact, resistance = force + mesh.relief, 0.0
     if m.scene.friction.on != 0:
         friction, resistance = friction_at_gear(m, t, y)
         contact += friction
@@ -77,7 +76,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
     drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
     if m.scene.friction.on == 0:
-        resistance = force + relief if is_stuck(m) else resisting_force(m, t, u, phase, w)
+        resistance = force + mesh.relief if is_stuck(m) else resisting_force(m, t, u, phase, w)
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)

@@ -1,17 +1,61 @@
-"""Forces at both shafts of a scene with friction, at any state."""
+"""Forces at both shafts and what follows of them: one assembly, and one set of slopes for all that solves equations."""
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled, compiled_once
+from typing import NamedTuple
+
+from gearidae.compiled import compiled, compiled_once, name_type
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.friction.forces import dry_force, solve_shafts, without_drag
+from gearidae.engine.friction.forces import (
+    Slopes,
+    dry_force,
+    friction_slopes,
+    rubbed_accelerations,
+    solve_shafts,
+    without_drag,
+)
 from gearidae.engine.friction.pairs import direction, levers, set_limits
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR
-from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.residual import mesh_forces
+from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.motion.pair_forces import forces_at
+from gearidae.engine.pairs.pair_force import MeshForces
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import static_error
 from gearidae.engine.torques.torque import torque_force
+
+name_type(Slopes(*(0.0,) * 11), "Slopes")
+
+
+class Shafts(NamedTuple):
+    """Both shafts at a state, without friction and resistance at the gear.
+
+    Attributes
+    ----------
+    turn : float
+        Surface velocity of the pinion.
+    pinion, gear : float
+        Forces at the base circles.
+    e1, e2 : float
+        Derivatives of the static error, as `static_error` has them.
+    """
+
+    turn: float
+    pinion: float
+    gear: float
+    e1: float
+    e2: float
+
+
+@compiled(inline=True)
+def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
+    """Put the forces of the mesh, its damping and the drive on both shafts."""
+    force = mesh.force + m.scene.damping * y[V]
+    turn, e1, e2 = y[V] + y[W], 0.0, 0.0
+    if m.scene.error_count != 0:
+        _, _, e1, e2 = static_error(m, y[U], y[PHASE])
+        turn /= 1.0 - e1
+    drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
+    return Shafts(turn, drive - (1.0 - e1) * force, force + mesh.relief, e1, e2)
 
 
 @compiled
@@ -24,17 +68,134 @@ def pinion_speed(m: Model, y: Floats) -> tuple[float, float]:
 
 
 @compiled
+def resisting_force(m: Model, t: float, u: float, phase: float, w: float) -> float:
+    """Resistance at the gear over R2, scaled: dry in the direction of slip, and both drags (Eq. 2)."""
+    force = m.scene.drag * w * abs(w) + m.scene.viscous * w
+    if m.scene.dry != 0 and m.state.slip != 0.0:
+        angle = torque_angle(m, LOAD, u, phase)
+        force += m.state.slip * max(torque_force(m, LOAD, t, angle, w), 0.0)
+    return force
+
+
+@compiled
+def is_stuck(m: Model) -> bool:
+    """Whether dry resistance holds the gear at rest."""
+    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
+
+
+@compiled(inline=True)
+def accelerations(m: Model, t: float, y: Floats, s: Shafts) -> tuple[float, float]:
+    """Accelerations of both base circles, with friction and the resistance at the gear."""
+    if m.scene.friction.on != 0:
+        return rubbed_accelerations(m, t, y, s.turn, s.pinion, s.gear)
+    gear = 0.0
+    if not is_stuck(m):
+        gear = m.scene.gear_inverse_mass * (s.gear - resisting_force(m, t, y[U], y[PHASE], y[W]))
+    return m.scene.pinion_inverse_mass * s.pinion, gear
+
+
+# -- slopes ----------------------------------------------------------------------------------------------------------
+
+
+class AccelerationSlopes(NamedTuple):
+    """Partial derivatives of the accelerations of both base circles in u, v, phase and w, and in forces on them.
+
+    Of a roller, those of its own acceleration are the pinion's.
+
+    Attributes
+    ----------
+    by_pinion, by_both, by_gear : float
+        Inverse mass matrix of what is free to move: entries of the pinion, off the diagonal, and of the gear.
+    """
+
+    pinion_u: float
+    pinion_v: float
+    pinion_phase: float
+    pinion_w: float
+    gear_u: float
+    gear_v: float
+    gear_phase: float
+    gear_w: float
+    by_pinion: float
+    by_both: float
+    by_gear: float
+
+
+@compiled_once(FRICTION)
+def _friction_slopes(m: Model, y: Floats) -> Slopes:
+    """Slopes of the friction of the forces that have been noted last, whose limits have been set."""
+    return friction_slopes(m, y)
+
+
+@compiled_once(FRICTION)
+def note_limits(m: Model, t: float, y: Floats) -> None:
+    """Set the limits of friction of the forces that have been noted last."""
+    set_limits(m, t, y[W])
+
+
+@compiled(inline=True)
+def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSlopes:
+    """Slopes of the accelerations, from those of the forces that `mesh_forces` has just summed.
+
+    The static error's own slopes are left out: it is small, and these only steer Newton's iteration. So are the slopes
+    of a torque in angle and speed: a shaft takes many steps to follow a mild law, and each iteration reduces what is
+    left by the ratio of a step to that time. A drive that holds a speed is not mild, and its slope is there.
+    """
+    a2 = m.scene.gear_inverse_mass
+    if m.scene.kind == ROLLER:
+        return AccelerationSlopes(
+            -a2 * mesh.force_u, -a2 * mesh.force_v, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, a2, 0.0, 0.0
+        )
+    f = Slopes(
+        m.scene.pinion_inverse_mass,
+        0.0,
+        0.0 if is_stuck(m) else a2,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+    if m.scene.friction.on != 0:
+        f = _friction_slopes(m, y)
+    drag = 2.0 * m.scene.drag * abs(y[W]) + m.scene.viscous
+    gain, damping = m.scene.speed_gain, m.scene.damping
+    pinion_u, pinion_phase = f.pinion_u - mesh.force_u, f.pinion_phase - mesh.force_phase
+    pinion_v, pinion_w = -(damping + mesh.force_v + gain), -(mesh.force_w + gain)
+    gear_u = f.gear_u + mesh.force_u + mesh.relief_u
+    gear_phase = f.gear_phase + mesh.force_phase + mesh.relief_phase
+    gear_v, gear_w = damping + mesh.force_v + mesh.relief_v, mesh.force_w + mesh.relief_w - drag
+    a, b, c = f.by_pinion, f.by_both, f.by_gear
+    return AccelerationSlopes(
+        a * pinion_u + b * gear_u,
+        a * pinion_v + b * gear_v + f.pinion_v,
+        a * pinion_phase + b * gear_phase,
+        a * pinion_w + b * gear_w + f.pinion_w,
+        b * pinion_u + c * gear_u,
+        b * pinion_v + c * gear_v + f.gear_v,
+        b * pinion_phase + c * gear_phase,
+        b * pinion_w + c * gear_w + f.gear_w,
+        a,
+        b,
+        c,
+    )
+
+
+# -- with friction ---------------------------------------------------------------------------------------------------
+
+
+@compiled
 def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float]:
     """Surface velocity of the pinion, and the forces at both base circles without friction and dry resistance.
 
     The forces of the pairs are noted, with the limits of their friction.
     """
-    force, relief, _, _, _, _ = mesh_forces(m, t, y, False)
+    s = shafts_at(m, t, y, forces_at(m, t, y))
     set_limits(m, t, y[W])
-    force += m.scene.damping * y[V]
-    turn, e1 = pinion_speed(m, y)
-    drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
-    return turn, drive - (1.0 - e1) * force, without_drag(m, force + relief, y[W])
+    return s.turn, s.pinion, without_drag(m, s.gear, y[W])
 
 
 @compiled_once(FRICTION)

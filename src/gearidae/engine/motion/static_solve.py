@@ -8,8 +8,10 @@ import numpy as np
 
 from gearidae.engine.elastic.nodes import influence, node_force, stiffness_matrix
 from gearidae.engine.elastic.rows import GAP, PRESSURE, first_unknown, profile_of, row_of
-from gearidae.engine.model.state import EMPTY, Floats, Model
+from gearidae.engine.model.state import EMPTY, PHASE, ROLLER, Floats, Model
 from gearidae.engine.motion.residual import residual
+from gearidae.engine.pairs.coverage import path_position
+from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
 
 SETTLED = 1e-12  # roughnesses
 _TRIES = 60
@@ -66,7 +68,7 @@ def settle_nodes(m: Model, t: float, y: Floats) -> bool:
     return False
 
 
-def fold_gap(m: Model, t: float) -> float:
+def fold_gap(m: Model, t: float, y: Floats) -> float:
     """Gap of a pair whose static contact does not go on the way it was going, at the last accepted time; NaN if none.
 
     A pair is moved on a little with the bodies' deflections following. Where these no longer do, or move many times as
@@ -77,6 +79,8 @@ def fold_gap(m: Model, t: float) -> float:
     ----------
     t : float
         Time over tau.
+    y : ndarray
+        State there.
 
     Returns
     -------
@@ -87,22 +91,24 @@ def fold_gap(m: Model, t: float) -> float:
     for k in range(m.scene.histories):
         h = m.state.history[k]
         gap, direction = float(h.gap), float(h.direction)
-        if h.pair == EMPTY or gap >= m.scene.cutoff or h.length == 0.0:
+        if h.pair == EMPTY or gap >= m.scene.cutoff:
             continue
+        phase = 0.0 if m.scene.kind == ROLLER else float(y[PHASE])
+        length = contact_length(m, path_position(m, flank_of_history(m, k), int(h.pair), phase))
         kept = row_of(m, k, GAP) - gap - profile
-        here = _follow(m, t, k, kept, gap)
+        here = _follow(m, t, k, length, kept, gap)
         if here is not None and np.max(np.abs(here - kept)) > _ASIDE:
             return gap
         for ahead in _AHEAD:
-            there = None if here is None else _follow(m, t, k, here, gap + direction * ahead)
+            there = None if here is None else _follow(m, t, k, length, here, gap + direction * ahead)
             if here is None or there is None or np.max(np.abs(there - here)) > _FOLD_SHARE * ahead:
                 return gap
     return math.nan
 
 
-def _follow(m: Model, t: float, k: int, deflection: Floats, gap: float) -> Floats | None:
+def _follow(m: Model, t: float, k: int, length: float, deflection: Floats, gap: float) -> Floats | None:
     """Deflections of one pair at a gap, on the stable branch next to given ones; None if there are none."""
-    n, length = m.scene.nodes, float(m.state.history[k].length)
+    n = m.scene.nodes
     first, pressure = first_unknown(m, k), row_of(m, k, PRESSURE)
     y, slopes, kappa = np.zeros(m.scene.states), np.empty((n, n)), np.empty((n, n))
     influence(m, length, kappa)

@@ -108,15 +108,10 @@ def weighed(shares: Shares, values: Shares) -> float:
 
 @compiled(inline=True)
 def loading_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
-    """Loading branch of all materials, with their attraction, and its slope, scaled, for a contact of unit length."""
+    """Loading branch of all materials and its slope, scaled, for a contact of unit length."""
     if m.scene.by_place == 0:
-        force, slope = loading_value(m.tables, m.scene.loading_at, gap)
-    else:
-        force, slope = mixed_value(m.tables, m.scene.loading_at, gap, shares)
-    if m.scene.attracts != 0:
-        pull, change = attraction_of(m, gap, shares)
-        return force + pull, slope + change
-    return force, slope
+        return loading_value(m.tables, m.scene.loading_at, gap)
+    return mixed_value(m.tables, m.scene.loading_at, gap, shares)
 
 
 @compiled
@@ -143,7 +138,7 @@ def potential_of(m: Model, gap: float, shares: Shares) -> float:
 
 @compiled
 def potentials_of(m: Model, gap: float) -> tuple[Shares, Shares]:
-    """Potential of each material's loading branch and attraction, scaled, per length and share, and its slopes.
+    """Potential of each material's loading branch, scaled, per length and share, and its slopes.
 
     Without tables the first is that of the loading branches of all materials together.
     """
@@ -153,9 +148,6 @@ def potentials_of(m: Model, gap: float) -> tuple[Shares, Shares]:
     if m.scene.by_place != 0:
         b, b1 = loading_value(m.tables, first + 8 * N_LOADING, gap)
         c, c1 = loading_value(m.tables, first + 16 * N_LOADING, gap)
-    if m.scene.attracts != 0:
-        (e, f, g), (e1, f1, g1) = attraction_energies(m, gap)
-        return (a + e, b + f, c + g), (a1 + e1, b1 + f1, c1 + g1)
     return (a, b, c), (a1, b1, c1)
 
 

@@ -73,6 +73,30 @@ def weighed_length(
     return WeighedLength(a * length, a * rate, a * bend, weighed(WHOLE, slopes) * rate)
 
 
+@compiled(inline=True)
+def slopes_along_path(
+    m: Model, coast: int, pair: int, phase: float, values: Shares, slopes: Shares
+) -> tuple[float, float, float]:
+    """Slope along the path of a pair's contact length times what its materials have, per pitch, and slopes of that.
+
+    Parameters
+    ----------
+    coast, pair : int
+        Flank and number of the pair.
+    phase : float
+        Phase of the gear.
+    values, slopes : tuple of three floats
+        As for `weighed_length`.
+
+    Returns
+    -------
+    along, by_gap, by_place : float
+    """
+    pitch = (1.0 - 2.0 * coast) / m.scene.phase_rate  # speed at which the pair goes a pitch in a unit of time
+    length = weighed_length(m, (coast, pair, phase), pitch, 0.0, values, slopes)
+    return length.rate, length.by_gap, length.bend
+
+
 @compiled
 def _by_place(
     m: Model,

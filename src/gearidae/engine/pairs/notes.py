@@ -1,27 +1,22 @@
-"""Forces of single pairs, noted where they are evaluated: for exposures and friction."""
+"""Forces of single pairs at the state that `mesh_forces` has been asked for last, for what needs more than sums."""
 
 from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
+from gearidae.engine.pairs.pair_force import PairForce
+from gearidae.engine.pairs.tooth_pairs import PairState
 
 
 @compiled(inline=True)
-def begin_notes(m: Model, t: float, travel: float) -> None:
-    """Note that all forces are evaluated at a time and a transmission error; so far of no pair."""
-    notes = m.work.notes
-    notes.time, notes.travel, notes.count = t, travel, 0
-
-
-@compiled(inline=True)
-def note_force(
-    m: Model, k: int, pair: int, position: float, gap: tuple[float, float], force: tuple[float, float]
-) -> None:
-    """Note a pair with the k-th history: path position, gap with its rate, force with its slope in the gap."""
+def note_force(m: Model, pair: PairState, f: PairForce) -> None:
+    """Note a pair and its force."""
     notes = m.work.notes
     noted = notes.pair[notes.count]
-    noted.history, noted.pair, noted.position = k, pair, position
-    noted.gap, noted.gap_rate = gap
-    noted.force, noted.slope = force
-    noted.drift = 0.0
+    noted.history, noted.pair, noted.position = pair.k, pair.number, pair.place
+    noted.gap, noted.gap_rate, noted.relief = pair.gap, pair.rate, pair.slope
+    noted.force, noted.slope, noted.drift = f.load, f.by_gap, f.by_place * pair.place_rate
+    noted.contact, noted.contact_slope = f.contact, f.contact_by_gap
+    noted.limit, noted.limit_slope = f.limit, f.limit_by_gap
+    noted.limit_rate = f.limit_by_place * pair.place_rate + f.limit_by_gap * pair.rate
     notes.count += 1

@@ -12,9 +12,9 @@ tables are read, and nowhere else.
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
-from gearidae.compiled import compiled, compiled_once
+from gearidae.compiled import compiled, compiled_once, name_type
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import (
     B_PIECES,
@@ -61,9 +61,6 @@ class Reach(NamedTuple):
     total: int
 
 
-NO_PAIRS: Final = Reach(0, 0, 0, 0)
-
-
 @compiled(inline=True)
 def _reach(m: Model, phase: float, drive: bool, coast: bool) -> Reach:
     """Pairs within reach of the given flanks."""
@@ -107,11 +104,36 @@ def pairs_near(m: Model, y: Floats) -> Reach:
 
 
 @compiled(inline=True)
+def pairs_felt(m: Model, y: Floats) -> Reach:
+    """Pairs of the flanks that touch at a state or were near at the last accepted time: any may have a force."""
+    cutoff = m.scene.cutoff
+    drive = m.state.near[DRIVE] != 0 or nearest_gap(m, DRIVE, y) < cutoff
+    coast = m.state.near[COAST] != 0 or nearest_gap(m, COAST, y) < cutoff
+    return _reach(m, _phase(m, y), drive, coast)
+
+
+@compiled(inline=True)
 def pair_at(reach: Reach, k: int) -> tuple[int, int]:
     """Flank and number of the k-th pair of a walk."""
     if k < reach.drive_count:
         return DRIVE, reach.drive_first + k
     return COAST, reach.coast_first + (k - reach.drive_count)
+
+
+@compiled(inline=True)
+def list_known(m: Model, y: Floats) -> int:
+    """List the pairs that are near and whose histories are about them; how many there are.
+
+    ``for i in range(list_known(m, y)): k = m.work.known[i]`` goes through their histories.
+    """
+    count, reach = 0, pairs_near(m, y)
+    for i in range(reach.total):
+        coast, number = pair_at(reach, i)
+        k = history_of(m, coast, number)
+        if m.state.history[k].pair == number:
+            m.work.known[count] = k
+            count += 1
+    return count
 
 
 @compiled(inline=True)
@@ -138,7 +160,63 @@ def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
+@compiled
+def is_on_path(m: Model, coast: int, pair: int) -> bool:
+    """Whether a pair is one of `pairs_on_path`."""
+    first, last = pairs_on_path(m, coast)
+    return bool(first <= pair <= last)
+
+
 # -- kinematics ------------------------------------------------------------------------------------------------------
+
+
+class PairState(NamedTuple):
+    """A pair at a state.
+
+    Attributes
+    ----------
+    coast, number : int
+        Its flank and number.
+    k : int
+        Index of its history.
+    known : bool
+        Whether that is about this pair.
+    gap, rate : float
+        Its gap and gap rate, tip relief included.
+    slope : float
+        Of the tip relief along the path.
+    place, place_rate : float
+        Along the path of contact, and its rate; clipped to the path, and 0, beyond it.
+    moves : bool
+        Whether it is on the path.
+    """
+
+    coast: int
+    number: int
+    k: int
+    known: bool
+    gap: float
+    rate: float
+    slope: float
+    place: float
+    place_rate: float
+    moves: bool
+
+
+name_type(PairState(0, 0, 0, True, 0.0, 0.0, 0.0, 0.0, 0.0, True), "PairState")
+
+
+@compiled(inline=True)
+def pair_state(m: Model, coast: int, number: int, y: Floats) -> PairState:
+    """Return a pair, or the roller, at a state."""
+    k = history_of(m, coast, number)
+    known = m.state.history[k].pair == number
+    if m.scene.kind == ROLLER:
+        return PairState(coast, number, k, known, y[U], y[V], 0.0, 0.0, 0.0, False)
+    gap, rate, slope, inside = pair_gap(m, coast, number, y[U], y[V], y[PHASE], y[W])
+    moves = 0.0 < inside < m.scene.contact_ratio
+    place_rate = (1.0 - 2.0 * coast) * m.scene.phase_rate * y[W] if moves else 0.0
+    return PairState(coast, number, k, known, gap, rate, slope, inside, place_rate, moves)
 
 
 @compiled
@@ -169,9 +247,32 @@ def gap_and_rate(m: Model, coast: int, pair: int, y: Floats) -> tuple[float, flo
     return gap, rate
 
 
+@compiled(inline=True)
+def on_path(pair: PairState, place: float, place_rate: float, moves: bool) -> PairState:
+    """Return the same pair with another place along the path of contact."""
+    return PairState(
+        pair.coast,
+        pair.number,
+        pair.k,
+        pair.known,
+        pair.gap,
+        pair.rate,
+        pair.slope,
+        place,
+        place_rate,
+        moves,
+    )
+
+
+@compiled(inline=True)
+def acts(m: Model, pair: PairState) -> bool:
+    """Whether a pair may have a force: within the cut-off; with real asperities as long as it has a history."""
+    return bool(pair.known) if m.scene.population.flanks != 0 else bool(pair.gap < m.scene.cutoff)
+
+
 @compiled
 def contact_length(m: Model, inside: float) -> float:
-    """Length of a contact of given gap, ``sqrt(R / pb)``: R is the reduced radius of the two involutes."""
+    """Length of a contact of given gap, ``sqrt(R / pb)`` with R the reduced radius of two involutes; 1 of a roller."""
     pinion = m.scene.start_radius + inside
     return math.sqrt(pinion - pinion * pinion * m.scene.sum_curvature)
 
@@ -197,7 +298,7 @@ def in_flight(m: Model) -> bool:
 def pair_force(
     m: Model, k: int, known: bool, t: float, gap: float, rate: float, inside: float, shares: Shares
 ) -> tuple[float, float]:
-    """Force of one pair and its slope in the gap, scaled, with the pair's own history, the k-th.
+    """Force of the mean law for one pair and its slope in the gap, scaled, with the pair's own history, the k-th.
 
     `shares` are those of the materials there, from `gearidae.engine.pairs.coverage.shares_of`. Within a step that has
     turned the pair round, the history first goes through the turning point.
@@ -230,8 +331,6 @@ def pair_force(
             scale = own.force_scale * shares[material]
             force += scale * q
             slope += scale * dq
-    if m.scene.kind == ROLLER:
-        return force, slope
     length = contact_length(m, inside)
     return force * length, slope * length
 

@@ -1,4 +1,4 @@
-r"""Forces and energy of a population: sums over the joined asperities of all pairs.
+r"""Forces and energy of a population: sums over the joined asperities of a pair.
 
 A pair's asperities push with :math:`W = \sum P` along the line of action, and with :math:`T = -\sum P D` along the path
 of contact, since the overlaps change with it: that of a stretched asperity behind the contact holds the rolling back.
@@ -12,10 +12,9 @@ from typing import NamedTuple
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.single import asperity_energy, asperity_value
 from gearidae.engine.compiling import POPULATION
-from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.pairs.notes import note_force
-from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pairs_near
-from gearidae.engine.population.attraction import attraction_sums, pair_attraction, roller_attraction
+from gearidae.engine.model.state import Model
+from gearidae.engine.pairs.pair_force import NO_PAIR_FORCE, PairForce
+from gearidae.engine.pairs.tooth_pairs import PairState
 from gearidae.engine.population.layout import (
     ARC,
     HEIGHT,
@@ -29,7 +28,7 @@ from gearidae.engine.population.layout import (
     KIND,
     column,
 )
-from gearidae.engine.population.spots import Pair, overlap_slopes, pair_now, spot_at
+from gearidae.engine.population.spots import overlap_slopes, spot_at
 
 
 class Sums(NamedTuple):
@@ -66,7 +65,7 @@ def candidate_energy(m: Model, kind: int, overlap: float) -> float:
 
 
 @compiled(inline=True)
-def _sums(m: Model, k: int, now: Pair) -> Sums:
+def _sums(m: Model, k: int, now: PairState) -> Sums:
     """Sum over the joined asperities of the pair with the k-th history."""
     load = load_d = load_slope = stiffness = stiffness_d = stiffness_dd = 0.0
     limit = limit_stiffness = limit_stiffness_d = d = 0.0
@@ -119,97 +118,39 @@ def candidate_limit(
     return share * load, share * stiffness
 
 
-@compiled(inline=True)
-def _note_sums(m: Model, k: int, pair: int, now: Pair, sums: Sums) -> None:
-    """Note force and limit of friction of a pair, with their rates."""
-    noted = m.work.notes.pair[m.work.notes.count]
-    note_force(m, k, pair, now.place, (now.gap, now.rate), (sums.load, -sums.stiffness))
-    noted.force_rate = sums.stiffness_d * now.place_rate - sums.stiffness * now.rate
-    noted.limit, noted.limit_slope = sums.limit, -sums.limit_stiffness
-    noted.limit_rate = sums.limit_stiffness_d * now.place_rate - sums.limit_stiffness * now.rate
+@compiled_once(POPULATION)
+def asperity_force(m: Model, pair: PairState) -> PairForce:
+    """Force of a pair's joined asperities, with the limit of their friction, scaled."""
+    if m.work.contact[pair.k].joined == 0:
+        return NO_PAIR_FORCE
+    s = _sums(m, pair.k, pair)
+    return PairForce(
+        s.load,
+        -s.stiffness,
+        0.0,
+        s.stiffness_d,
+        s.load,
+        -s.stiffness,
+        -s.load_d,
+        s.stiffness_d,
+        -(s.stiffness_dd + s.load_slope),
+        s.limit,
+        -s.limit_stiffness,
+        s.limit_stiffness_d,
+    )
 
 
 @compiled_once(POPULATION)
-def mesh_sums(m: Model, y: Floats) -> tuple[float, float, float, float, float, float]:
-    """Forces F and Fs of a population and its attraction, with their slopes; see `mesh_forces` of the residual."""
-    force = relief = force_u = force_phase = relief_u = relief_phase = 0.0
-    turn = m.scene.phase_rate
-    if m.scene.friction.on != 0:  # no notes of a time that exposures might take for their own
-        m.work.notes.count, m.work.notes.time = 0, -1.0
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.work.contact[k].joined == 0 or m.state.history[k].pair != pair:
-            continue
-        sign, now = 1.0 - 2.0 * coast, pair_now(m, coast, pair, y)
-        sums, slope = _sums(m, k, now), now.slope
-        if m.scene.friction.on != 0:
-            _note_sums(m, k, pair, now, sums)
-        force += sign * sums.load
-        force_u += sums.stiffness
-        force_phase += sums.stiffness_d - sums.stiffness * slope / turn
-        relief += sign * (sums.load * slope - turn * sums.load_d)
-        relief_u += sums.stiffness * slope - turn * sums.stiffness_d
-        relief_phase += 2.0 * slope * sums.stiffness_d - sums.stiffness * slope * slope / turn
-        relief_phase -= turn * (sums.stiffness_dd + sums.load_slope)
-        if slope != 0.0:
-            relief_phase += sums.load * m.scene.relief_slope
-    if m.scene.attracts != 0:
-        a, b, a_u, a_phase, b_u, b_phase = attraction_sums(m, y)
-        return (
-            force + a,
-            relief + b,
-            force_u + a_u,
-            force_phase + a_phase,
-            relief_u + b_u,
-            relief_phase + b_phase,
-        )
-    return force, relief, force_u, force_phase, relief_u, relief_phase
-
-
-@compiled_once(POPULATION)
-def roller_sum(m: Model, y: Floats) -> tuple[float, float]:
-    """Force of a population on a roller, its attraction included, and its slope in the height, scaled."""
-    load = slope = 0.0
-    if m.work.contact[0].joined != 0:
-        sums = _sums(m, 0, pair_now(m, 0, 0, y))
-        load, slope = sums.load, -sums.stiffness
-    if m.scene.attracts != 0:
-        pull, change = roller_attraction(m, y)
-        return load + pull, slope + change
-    return load, slope
-
-
-@compiled_once(POPULATION)
-def pair_load(m: Model, y: Floats, coast: int, pair: int) -> tuple[float, float, float]:
-    """Force of a pair along the line of action, its slope in the gap, and its rate at that gap, scaled."""
-    now = pair_now(m, coast, pair, y)
-    sums = _sums(m, history_of(m, coast, pair), now)
-    load, slope, rate = sums.load, -sums.stiffness, sums.stiffness_d * now.place_rate
-    if m.scene.attracts != 0:
-        pull, change, growth = pair_attraction(m, y, coast, pair, now)
-        return load + pull, slope + change, rate + growth
-    return load, slope, rate
-
-
-@compiled_once(POPULATION)
-def population_energy(m: Model, y: Floats) -> float:
-    """Energy that all joined asperities store at a state, from free surfaces, scaled."""
-    energy, reach = 0.0, pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        if m.work.contact[k].joined == 0 or m.state.history[k].pair != pair:
-            continue
-        now, joined = pair_now(m, coast, pair, y), column(m, k, JOINED)
-        at = spot_at(m, now.place, now.moves)
-        for n in range(m.work.contact[k].joined):
-            j = int(m.rows[joined + n])
-            x = m.rows[column(m, k, ARC) + j] - at.arc
-            overlap = m.rows[column(m, k, HEIGHT) + j] - now.gap
-            overlap -= 0.5 * m.scene.population.steepness / at.radius * x * x
-            energy += candidate_energy(m, int(m.rows[column(m, k, KIND) + j]), overlap)
+def asperities_energy(m: Model, pair: PairState) -> float:
+    """Energy that a pair's joined asperities store, from free surfaces, scaled."""
+    energy, k, joined = 0.0, pair.k, column(m, pair.k, JOINED)
+    at = spot_at(m, pair.place, pair.moves)
+    for n in range(m.work.contact[k].joined):
+        j = int(m.rows[joined + n])
+        x = m.rows[column(m, k, ARC) + j] - at.arc
+        overlap = m.rows[column(m, k, HEIGHT) + j] - pair.gap
+        overlap -= 0.5 * m.scene.population.steepness / at.radius * x * x
+        energy += candidate_energy(m, int(m.rows[column(m, k, KIND) + j]), overlap)
     return energy
 
 

@@ -15,8 +15,8 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
-from gearidae.engine.pairs.tooth_pairs import pair_gap, pairs_on_path
+from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, W
+from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, is_on_path, on_path, pair_state
 
 
 class Spot(NamedTuple):
@@ -38,51 +38,40 @@ class Spot(NamedTuple):
     radius_bend: float
 
 
-class Pair(NamedTuple):
-    """A pair at a state.
+@compiled(inline=True)
+def pair_now(m: Model, coast: int, number: int, y: Floats) -> PairState:
+    """Return a pair, or the roller, at a state.
 
-    Attributes
-    ----------
-    gap, rate : float
-        Its gap and gap rate, tip relief included.
-    slope : float
-        Of the tip relief along the path.
-    place, place_rate : float
-        Along the path of contact, and its rate; clipped to the path, and 0, beyond it.
-    moves : bool
-        Whether it is on the path.
+    The last two mesh marks tell whether it is on the path, so that a step that ends at a mark sees the side it comes
+    from, beyond which its place is not clipped.
     """
-
-    gap: float
-    rate: float
-    slope: float
-    place: float
-    place_rate: float
-    moves: bool
+    pair = pair_state(m, coast, number, y)
+    if m.scene.kind == ROLLER:
+        return pair
+    if not is_on_path(m, coast, number):
+        return on_path(pair, pair.place, 0.0, False)
+    along = m.scene.coast_phase + number - y[PHASE] if coast else y[PHASE] - number
+    rate = (1.0 - 2.0 * coast) * m.scene.phase_rate * y[W]
+    return on_path(pair, along, rate, True)
 
 
 @compiled(inline=True)
-def pair_now(m: Model, coast: int, pair: int, y: Floats) -> Pair:
-    """Gap and place of a pair, or of the roller.
+def pair_of(m: Model, k: int, y: Floats) -> PairState:
+    """Return the pair that the k-th history is about, at a state."""
+    return pair_now(m, flank_of_history(m, k), m.state.history[k].pair, y)
 
-    The last two mesh marks tell whether it is on the path, so that a step that ends at a mark sees the side it comes
-    from.
-    """
-    if m.scene.kind == ROLLER:
-        return Pair(y[U], y[V], 0.0, 0.0, 0.0, False)
-    gap, rate, slope, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-    first, last = pairs_on_path(m, coast)
-    if not first <= pair <= last:
-        return Pair(gap, rate, slope, inside, 0.0, False)
-    along = m.scene.coast_phase + pair - y[PHASE] if coast else y[PHASE] - pair
-    return Pair(gap, rate, slope, along, (1.0 - 2.0 * coast) * m.scene.phase_rate * y[W], True)
+
+@compiled(inline=True)
+def state_of_pair(m: Model, coast: int, number: int, y: Floats) -> PairState:
+    """Return a pair at a state, as the law of its contacts wants it."""
+    if m.scene.population.flanks != 0:
+        return pair_now(m, coast, number, y)
+    return pair_state(m, coast, number, y)
 
 
 @compiled(inline=True)
 def spot_at(m: Model, place: float, moves: bool) -> Spot:
     """Where a pair touches at a place along the path; `moves` says whether it would change along it."""
-    if m.scene.kind == ROLLER:
-        return Spot(0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
     scale, curvature = m.scene.population.arc_scale, m.scene.sum_curvature
     pinion = m.scene.start_radius + place
     arc, radius = scale * pinion * pinion, pinion - pinion * pinion * curvature

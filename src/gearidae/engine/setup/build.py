@@ -173,7 +173,7 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     s, tables = np.zeros(1, SCENE)[0], Tables()
     s.kind, s.length_unit = ROLLER, sigma
     s.time_unit, s.force_unit = sigma / abs(speed), roller.mass * speed**2 / sigma
-    s.gear_inverse_mass = 1.0
+    s.gear_inverse_mass = s.start_radius = 1.0  # so that its contact has the length 1
     energy = 0.5 * roller.mass * roller.speed**2
     bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
     grid = choose_model(s, scene, bounds, nodes)

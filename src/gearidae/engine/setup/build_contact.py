@@ -70,6 +70,7 @@ def add_nodes(s: Record, tables: Tables, grid: NodeGrid | None) -> None:
     """Lay out the constants of the nodes, and note how many numbers of them change."""
     if grid is None:
         return
+    s.noting = 1
     n, points = grid.nodes, int(s.points)
     start = tables.add(grid.body)
     sizes = (n, n, grid.orders * n * n, points, points)

@@ -9,23 +9,19 @@ from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.followers.exposures.bins import ROWS, bin_at, row_of
 from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.pairs.tooth_pairs import history_of, pair_at, pairs_near
+from gearidae.engine.pairs.tooth_pairs import list_known
 from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import ARC, HEIGHT, K_MATERIAL, KIND, REMEMBERED, SIGN, column
-from gearidae.engine.population.spots import pair_now, place_of_arc, spot_at
+from gearidae.engine.population.spots import pair_of, place_of_arc, spot_at
 
 
 @compiled_once(EXPOSURES)
 def add_flips(m: Model, y: Floats) -> None:
     """Add what has joined or detached at a root, after `flip_asperities` has found it and before it is recorded."""
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        own = m.work.contact[k]
-        if m.state.history[k].pair != pair or own.flips == 0:
-            continue
-        now, row = pair_now(m, coast, pair, y), row_of(m, coast, pair)
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        own, now = m.work.contact[k], pair_of(m, k, y)
+        row = row_of(m, now.coast, now.number)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
         for n in range(own.flips):

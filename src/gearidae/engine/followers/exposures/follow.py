@@ -9,8 +9,7 @@ For both flanks of every tooth of the pinion and every place along the path of c
   place, as if the material covered everything);
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
   times the distance from the pitch point. It is integrated over one to six steps at once
-  (`gearidae.engine.followers.exposures.sliding`), and to every onset and separation; the forces are those of
-  Newton's iteration (`gearidae.engine.motion.residual`);
+  (`gearidae.engine.followers.exposures.sliding`), and to every onset and separation;
 - the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times, at turning points, and where a contact
   passes from one place to the next.
 
@@ -29,7 +28,6 @@ import math
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import EXPOSURES
-from gearidae.engine.elastic.nodes import node_force
 from gearidae.engine.events.pair_events import PairEvent
 from gearidae.engine.followers.exposures.bins import bin_at, row_of, way_to_edge
 from gearidae.engine.followers.exposures.contacts import (
@@ -51,18 +49,9 @@ from gearidae.engine.followers.exposures.sliding import (
     time_to_zero,
 )
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import note_shares, path_position, shares_of
-from gearidae.engine.pairs.notes import begin_notes, note_force
-from gearidae.engine.pairs.tooth_pairs import (
-    contact_length,
-    flank_of_history,
-    history_of,
-    pair_at,
-    pair_force,
-    pair_gap,
-    pairs_near,
-)
-from gearidae.engine.population.forces import pair_load
+from gearidae.engine.motion.pair_forces import force_of_pair, forces_at
+from gearidae.engine.pairs.coverage import path_position
+from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, pair_gap
 
 
 @compiled_once(EXPOSURES)
@@ -73,10 +62,12 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     begin_intervals(m)
     for k in range(m.scene.histories):
         m.work.exposing.pair[k].known = 0
-    _note_forces(m, t, y)
+    forces_at(m, t, y)
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         k = noted.history
+        if m.state.history[k].pair != noted.pair:
+            continue
         _begin_pair(m, t, k, noted.pair, noted.position)
         begin_contacts(m, y, k, noted.position, noted.gap)
         sliding = sliding_speeds(m, y, yp[V], yp[W])
@@ -103,10 +94,9 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
     exposing = m.work.exposing
     if exposing.begun == 0 or (t <= exposing.time and not whole):
         return
-    if whole or m.work.notes.time != t or m.scene.nodes > 0:
-        _note_forces(m, t, y)
+    forces_at(m, t, y)
     sliding = sliding_speeds(m, y, yp[V], yp[W])
-    moved, to_zero, way = y[U] - m.work.notes.travel, math.inf, math.inf
+    to_zero, way = math.inf, math.inf
     ends = whole or m.scene.nodes > 0 or exposing.steps >= exposing.steps_per_interval
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
@@ -114,9 +104,7 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
         if m.state.history[k].pair != noted.pair:
             continue
         _begin_new(m, k, noted.pair, noted.position)
-        widened = -moved if k < m.scene.slots else moved
-        gap = noted.gap + widened
-        push, rate = noted.force + noted.slope * widened, noted.slope * noted.gap_rate + noted.drift
+        gap, push, rate = noted.gap, noted.force, noted.slope * noted.gap_rate + noted.drift
         if ends:
             if joins_here(m, k, noted.position, gap) or (whole and m.state.history[k].direction <= 0.0):
                 join(m, t, y, k, noted.position, (gap, noted.gap_rate))
@@ -241,32 +229,11 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
 
 
 @compiled
-def _note_forces(m: Model, t: float, y: Floats) -> None:
-    """Evaluate the forces of all pairs that are near, where the last step did not end."""
-    begin_notes(m, t, y[U])
-    reach = pairs_near(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
-        if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
-            continue
-        if m.scene.population.flanks != 0:
-            load, slope, drift = pair_load(m, y, coast, pair)
-            note_force(m, k, pair, inside, (gap, rate), (load, slope))
-            m.work.notes.pair[m.work.notes.count - 1].drift = drift
-        else:
-            force = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
-            note_force(m, k, pair, inside, (gap, rate), force)
-
-
-@compiled
 def _force(
     m: Model, t: float, y: Floats, which: tuple[int, int, int], there: tuple[float, float, float]
 ) -> tuple[float, float]:
     """Force of a pair, given by flank, number and history, with a gap, a gap rate and a place; slope in the gap."""
-    (coast, pair, k), (gap, rate, inside) = which, there
-    if m.scene.nodes > 0:
-        note_shares(m, k, coast, pair, inside)
-        return node_force(m, k, True, t, y, gap, rate, contact_length(m, inside))
-    return pair_force(m, k, True, t, gap, rate, inside, shares_of(m, coast, pair, inside))
+    (coast, number, k), (gap, rate, inside) = which, there
+    pair = PairState(coast, number, k, True, gap, rate, 0.0, inside, 0.0, False)
+    force = force_of_pair(m, t, y, pair, False)
+    return force.load, force.by_gap

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from gearidae.compiled import compiled, compiled_once
-from gearidae.engine.compiling import SOLVER
+from gearidae.compiled import compiled
 from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
 from gearidae.engine.model.state import DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
-from gearidae.engine.motion.residual import mesh_forces, roller_force
+from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
 from gearidae.engine.torques.torque import torque_force
@@ -133,12 +132,10 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
     return float(_force_of_law(m, t, y))
 
 
-@compiled_once(SOLVER)
+@compiled
 def _force_of_law(m: Model, t: float, y: Floats) -> float:
     """Force at a state, by the contact law, mesh damping included."""
-    if m.scene.kind == ROLLER:
-        return roller_force(m, t, y, False)[0]
-    return mesh_forces(m, t, y, False)[0] + m.scene.damping * y[V]
+    return float(forces_at(m, t, y).force + m.scene.damping * y[V])
 
 
 @compiled

@@ -1,0 +1,155 @@
+"""Forces of all pairs at a state: the one walk over the pairs that sums them, whatever law they have.
+
+Laws are additive. The asperities of a pair have one of three: that of many surfaces on average
+(`gearidae.engine.pairs.tooth_pairs.pair_force`), the nodes of elastic bodies (`gearidae.engine.elastic`), or asperities
+one by one (`gearidae.engine.population.forces`). The curvature of the flanks and their attraction are added to it.
+"""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.elastic.elimination import FINISH, PREDICT, SETTLE, pair_deflections, settle_pair
+from gearidae.engine.elastic.nodes import node_force
+from gearidae.engine.elastic.rows import first_unknown
+from gearidae.engine.energy.radius import curvature_force
+from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.pairs.attraction_force import attraction_force
+from gearidae.engine.pairs.coverage import note_shares, shares_of
+from gearidae.engine.pairs.notes import note_force
+from gearidae.engine.pairs.pair_force import (
+    NO_MESH_FORCES,
+    MeshForces,
+    PairForce,
+    add_pair,
+    both_forces,
+    of_contact,
+)
+from gearidae.engine.pairs.tooth_pairs import (
+    PairState,
+    acts,
+    contact_length,
+    pair_at,
+    pair_force,
+    pair_state,
+    pairs_felt,
+    pairs_touching,
+)
+from gearidae.engine.population.forces import asperity_force
+from gearidae.engine.population.spots import state_of_pair
+
+
+@compiled(inline=True)
+def contact_force(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
+    """Force of the asperities of a pair; `settling` as for `mesh_forces`."""
+    if m.scene.population.flanks != 0:
+        return asperity_force(m, pair)
+    if m.scene.nodes == 0:
+        shares = shares_of(m, pair.coast, pair.number, pair.place)
+        load, slope = pair_force(m, pair.k, pair.known, t, pair.gap, pair.rate, pair.place, shares)
+        return of_contact(load, slope)
+    note_shares(m, pair.k, pair.coast, pair.number, pair.place)
+    length = contact_length(m, pair.place)
+    if settling:
+        load, slope = settle_pair(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
+    else:
+        load, slope = node_force(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
+    return of_contact(load, slope)
+
+
+@compiled(inline=True)
+def force_of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
+    """Force of a pair by all laws of the scene; `settling` as for `mesh_forces`."""
+    force = contact_force(m, t, y, pair, settling)
+    if m.scene.radius_force != 0 and m.scene.population.flanks == 0:
+        force = both_forces(force, curvature_force(m, t, y, pair))
+    if m.scene.attracts != 0:
+        force = both_forces(force, attraction_force(m, y, pair))
+    return force
+
+
+@compiled(inline=True)
+def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
+    """Sum the forces of all pairs, or that of the roller, with their slopes; the state of the run stays as it is.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau.
+    y : ndarray
+        State.
+    settling : bool
+        Whether the deflections of elastic contacts are solved for, with slopes along which they follow; otherwise they
+        are those of the state, and the slopes are at fixed deflection.
+    """
+    total = NO_MESH_FORCES
+    m.work.notes.count = 0
+    full = with_deflections(m, y) if m.scene.nodes > 0 and settling else y
+    reach = pairs_felt(m, y)
+    for i in range(reach.total):
+        coast, number = pair_at(reach, i)
+        pair = state_of_pair(m, coast, number, y)
+        if acts(m, pair):
+            force = force_of_pair(m, t, full, pair, settling)
+            if m.scene.noting != 0:
+                note_force(m, pair, force)
+            total = add_pair(m, total, pair, force)
+    return total
+
+
+@compiled_once(SOLVER)
+def forces_at(m: Model, t: float, y: Floats) -> MeshForces:
+    """`mesh_forces` at the deflections of the state, for what asks now and then."""
+    return mesh_forces(m, t, y, False)
+
+
+# -- deflections that are eliminated ---------------------------------------------------------------------------------
+
+
+@compiled(makes_arrays=True)
+def with_deflections(m: Model, y: Floats) -> Floats:
+    """Whole state to which deflections can be put: the same, or a copy if it is that of the motion alone."""
+    if y.size == m.scene.states:
+        return y
+    whole = m.rows[m.scene.trial_at : m.scene.trial_at + m.scene.states]
+    for j in range(y.size):
+        whole[j] = y[j]
+    return whole
+
+
+@compiled
+def is_eliminated(m: Model) -> bool:
+    """Whether there are nodes that the integrator does not see."""
+    return bool(m.scene.nodes > 0 and m.work.adams.own != 0)
+
+
+@compiled
+def set_deflections(m: Model, t: float, y: Floats, roughly: bool) -> None:
+    """Solve for the deflections that go with the motion of a whole state, or only interpolate them, in place."""
+    _ask_for_deflections(m, t, y, PREDICT if roughly else SETTLE)
+
+
+@compiled
+def finish_deflections(m: Model, t: float, y: Floats) -> None:
+    """Put the deflections to the state at the end of a step, and note them for the prediction of the next ones."""
+    for k in range(m.scene.histories):
+        m.work.settling[k].reached = 0
+    _ask_for_deflections(m, t, y, FINISH)
+    for k in range(m.scene.histories):
+        if m.work.settling[k].reached == 0:
+            m.work.settling[k].last_known = m.work.settling[k].before_known = 0
+
+
+@compiled_once(SOLVER)
+def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
+    """Ask for the deflections of all pairs within reach, in one of the ways of `pair_deflections`."""
+    for j in range(first_unknown(m, 0), y.size):  # those of pairs out of reach are zero
+        y[j] = 0.0
+    reach = pairs_touching(m, y)
+    for i in range(reach.total):
+        coast, number = pair_at(reach, i)
+        pair = pair_state(m, coast, number, y)
+        if acts(m, pair):
+            m.work.settling[pair.k].reached = 1
+            note_shares(m, pair.k, coast, number, pair.place)
+            pair_deflections(m, kind, t, y, pair, contact_length(m, pair.place))
