@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
+from gearidae.cli.case import default_output
 from gearidae.cli.request import Request
 from gearidae.cli.studies import conduct
-from gearidae.cli.values import default_output, texts
 from gearidae.errors import SceneError
 from gearidae.scene.literal import literal
+from gearidae.scene.pairs import texts
 from gearidae.studies.observation_files import observation_of
 from gearidae.studies.products import calibrated_keys
 

@@ -8,14 +8,15 @@ from pathlib import Path
 import gearidae as gd
 from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import run_value, runs
-from gearidae.cli.case import check_dask, read_scene
+from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
-from gearidae.cli.outset import begin, grid_words
+from gearidae.cli.studies import begin
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
-from gearidae.cli.values import default_output, sweep_values
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
+from gearidae.scene.pairs import sweep_values
+from gearidae.studies.announcement import grid_words
 
 
 def run_case(

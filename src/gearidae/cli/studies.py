@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
+from gearidae.archive import check_target
 from gearidae.archive.specimen import SEED
-from gearidae.cli.case import check_dask, read_scene
+from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
-from gearidae.cli.outset import begin, draw_words, grid_words
 from gearidae.cli.request import Request
 from gearidae.cli.tables import name_failures
-from gearidae.cli.values import assignments, default_output, quantity, sweep_values, texts
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
+from gearidae.runs.kept_runs import folder_beside
+from gearidae.scene.pairs import assignments, quantity, sweep_values, texts
+from gearidae.studies.announcement import draw_words, grid_words
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
 
@@ -27,6 +30,31 @@ if TYPE_CHECKING:
 
 _FRACTION: Final = "coating.sam_fraction"
 _TORQUE: Final = "drive.torque"
+
+
+def begin(
+    title: str, scene: Scene, words: str, target: Path, *, resume: bool = False, overwrite: bool = False
+) -> None:
+    """Say what will be run, unless a file is in the way.
+
+    Where runs of an unfinished study are kept, the study itself says what to do with its file.
+
+    Parameters
+    ----------
+    title, words : str
+        What is made, and of which runs.
+    target : Path
+        File to be written.
+
+    Raises
+    ------
+    SceneError
+        If `target` cannot be written.
+    """
+    if not resume and not folder_beside(target).exists():
+        check_target(target, overwrite=overwrite)
+    if words:
+        say(f"{title} of {scene.name}: {words}")
 
 
 def conduct(

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter, StrMethodFormatter
 
 from gearidae.analysis.map_model import require_map
+from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
 from gearidae.studies.products import require
 
 if TYPE_CHECKING:

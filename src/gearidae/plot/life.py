@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearidae.drawing.style import new_axes
 from gearidae.errors import SceneError
-from gearidae.plot.style import new_axes
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearidae.plot.style import POSITIVE, new_axes, tidy
+from gearidae.drawing.style import POSITIVE, new_axes, tidy
 from gearidae.studies._surviving_share import surviving_share
 
 if TYPE_CHECKING:

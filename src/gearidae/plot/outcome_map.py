@@ -10,9 +10,9 @@ from matplotlib.patches import Patch
 
 from gearidae.analysis.verdict.codes import Outcome
 from gearidae.arrays import Floats
+from gearidae.drawing.parameter_axis import parameter_axis
+from gearidae.drawing.style import new_axes
 from gearidae.errors import SceneError
-from gearidae.plot.parameter_axis import parameter_axis
-from gearidae.plot.style import new_axes
 
 _LOOKS = {
     Outcome.UNFINISHED: ("0.8", "not finished"),

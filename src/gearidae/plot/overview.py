@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.specimen import has_seeds, specimen_label
 from gearidae.archive.variables import columns
+from gearidae.drawing.picture import new_picture
+from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
-from gearidae.plot.picture import new_picture
 from gearidae.plot.roller import roller_force, roller_gap
-from gearidae.plot.style import runs_of
 from gearidae.plot.torque import contact_torque
 
 _PICTURES: Final = {

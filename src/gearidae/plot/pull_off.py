@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.plot.style import COLOURS, new_axes, scale_for, tidy
+from gearidae.drawing.style import COLOURS, new_axes, scale_for, tidy
 from gearidae.studies.products import require
 
 

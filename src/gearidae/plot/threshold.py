@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from gearidae.drawing.parameter_axis import parameter_axis
+from gearidae.drawing.style import NEGATIVE, POSITIVE, new_axes, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.parameter_axis import parameter_axis
-from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, tidy
 from gearidae.studies.products import require
 
 

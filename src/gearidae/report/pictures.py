@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from gearidae import plot
 from gearidae.archive.select import is_roller, swept_dims
+from gearidae.drawing.picture import usual_style
 from gearidae.errors import SceneError
-from gearidae.plot.picture import usual_style
 from gearidae.report import html
 from gearidae.report.svg import colour_rules, drawing
 

@@ -8,17 +8,17 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
 
 import xarray as xr
 
 from gearidae.archive import open_archive, save
 from gearidae.archive.provenance import provenance
 from gearidae.archive.target import check_target, claims_output
-from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import prepare
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -41,9 +41,21 @@ class Store(Protocol):
 Kept = TypeVar("Kept", bound=Store)
 
 
+class RunOptions(TypedDict, total=False):
+    """Keyword arguments of every study, as those of `gearidae.sweep`: where its runs are computed and kept."""
+
+    executor: Executor | None
+    jobs: int | None
+    backend: str
+    progress: bool | SweepProgress
+    archive: str | os.PathLike[str] | None
+    overwrite: bool
+    resume: bool
+
+
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """How runs are computed and kept; each field is an argument of `gearidae.sweep`.
+    """How runs are computed and kept: the `RunOptions`, and the formulas of the solver.
 
     Raises
     ------
@@ -68,6 +80,8 @@ class Execution:
     @property
     def driver(self) -> str:
         """Driver of the solver that computes the runs."""
+        from gearidae.engine import choose_backend  # what reads results does without the engine
+
         return choose_backend(self.backend, self.method)
 
     def threads(self) -> int:
@@ -90,6 +104,29 @@ class Execution:
         workers = self.threads() or (1 if self.jobs is None else self.jobs)
         with own_executor(workers, calls, releases_gil=self.threads() > 0) as own:
             yield own
+
+
+def prepared(
+    scene: Scene, options: RunOptions, *, samples: int | str | None = None
+) -> tuple[Scene, Execution]:
+    """Check the scene and the options of a study, before anything is run.
+
+    Parameters
+    ----------
+    samples : int or str, optional
+        In place of ``run.samples``.
+
+    Returns
+    -------
+    Scene, Execution
+
+    Raises
+    ------
+    SceneError
+        If one of them is not allowed.
+    """
+    base = prepare(scene, rtol=None, samples=samples, backend=options.get("backend", "auto"))
+    return base, Execution(**options, method=base.run.method)
 
 
 def run_kept(
