@@ -1,6 +1,8 @@
-"""Examples below the help of each command; the tests parse every one of them."""
+"""Examples below the help of each command but those of studies, which declare theirs; the tests parse every one."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 EXAMPLES: dict[str, tuple[str, ...]] = {
     "run": (
@@ -20,7 +22,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
     "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
-    "threshold": ("gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",),
     "starting-torque": (
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
@@ -58,3 +59,8 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "schema": ("gearidae schema -o gearidae.schema.json",),
     "info": ("gearidae info mine.nc", "gearidae info mine.nc --json"),
 }
+
+
+def epilogue(examples: Sequence[str]) -> str:
+    """Write command lines below the help of a command."""
+    return "Examples:\n\n" + "\n\n".join(f"    {line}" for line in examples)

@@ -11,7 +11,7 @@ from gearidae.archive.select import run_value, runs
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
-from gearidae.cli.studies import begin
+from gearidae.cli.studies import announce
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
@@ -127,7 +127,7 @@ def sweep_case(
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
     words = grid_words(scene, values, workers if dask is None else None, zipped=zipped)
-    begin("Sweep", scene, words, target, resume=resume, overwrite=overwrite)
+    announce("Sweep", scene, words, target, resume=resume, overwrite=overwrite)
     with dask_executor(dask) as executor:
         ds = gd.sweep(
             scene,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
@@ -21,18 +22,65 @@ from gearidae.scene.pairs import assignments, quantity, sweep_values, texts
 from gearidae.studies.announcement import draw_words, grid_words
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
+from gearidae.studies.study import Call
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from gearidae.scene import Scene
+    from gearidae.studies.study import Study
     from gearidae.wear import LossLaw
 
 _FRACTION: Final = "coating.sam_fraction"
 _TORQUE: Final = "drive.torque"
 
 
-def begin(
+def run_study(study: Study, case: str, request: Request, call: Call) -> int:
+    """Run a study of a case, keep it, show its answer.
+
+    Parameters
+    ----------
+    case : str
+        Path of a case file, or name of a preset.
+    call : Call
+        From the command of the study.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    assert study.run is not None
+    suffix = study.suffix or study.title.lower().replace(" ", "_")
+    target = request.output or default_output(case, f"_{suffix}.nc")
+    check_dask(request.dask, request.jobs)
+    workers = check_jobs(request.jobs)
+    scene = read_scene(case, request.settings or ())
+    words = call.announcement
+    if not isinstance(words, str):
+        words = words(scene, workers if request.dask is None else None)
+    announce(study.title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
+    with request.executor(call.keys, call.members) as executor:
+        ds = study.run(
+            scene,
+            *call.arguments,
+            **call.options,
+            executor=executor,
+            jobs=workers,
+            progress=not is_quiet(),
+            archive=target,
+            overwrite=request.overwrite,
+            resume=request.resume,
+        )
+    found = answer(ds, kind_of(ds))
+    show_rows(found.rows)
+    say(f"{study.title}: {target}")
+    code = _code(ds)
+    say(found.sentence)
+    return code
+
+
+def announce(
     title: str, scene: Scene, words: str, target: Path, *, resume: bool = False, overwrite: bool = False
 ) -> None:
     """Say what will be run, unless a file is in the way.
@@ -68,54 +116,9 @@ def conduct(
     outset: str | Callable[[Scene, int | None], str] = "",
     **options: Any,
 ) -> int:
-    """Conduct a study of a case, keep it, show what it has found.
-
-    Parameters
-    ----------
-    case : str
-        Path of a case file, or name of a preset.
-    title : str
-        How it is called; the file is named after it.
-    study : callable
-        Function of `gearidae.studies`.
-    *arguments
-        Of the function, after the scene.
-    keys, members
-        What differs between the members of an ensemble, and how many they are.
-    outset : str or callable, optional
-        What will be run, in words; a callable gets the scene and the number of simultaneous runs (None on a cluster).
-    **options
-        Of the function.
-
-    Returns
-    -------
-    int
-        Exit code.
-    """
-    target = request.output or default_output(case, f"_{title.lower().replace(' ', '_')}.nc")
-    check_dask(request.dask, request.jobs)
-    workers = check_jobs(request.jobs)
-    scene = read_scene(case, request.settings or ())
-    words = outset if isinstance(outset, str) else outset(scene, workers if request.dask is None else None)
-    begin(title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
-    with request.executor(keys, members) as executor:
-        ds = study(
-            scene,
-            *arguments,
-            **options,
-            executor=executor,
-            jobs=workers,
-            progress=not is_quiet(),
-            archive=target,
-            overwrite=request.overwrite,
-            resume=request.resume,
-        )
-    found = answer(ds, kind_of(ds))
-    show_rows(found.rows)
-    say(f"{title}: {target}")
-    code = _code(ds)
-    say(found.sentence)
-    return code
+    """Run a study that has no declaration yet."""
+    made: Any = SimpleNamespace(run=study, title=title, suffix="")
+    return run_study(made, case, request, Call(arguments, options, outset, keys, members))
 
 
 def _code(ds: xr.Dataset) -> int:
@@ -128,25 +131,6 @@ def _code(ds: xr.Dataset) -> int:
     if failed:
         complain(f"{failed} runs could not be finished: their status and message are in the file")
     return UNFINISHED if failed else DONE
-
-
-def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
-    """Search the sticking threshold of a case between two values of a key, ``key=value,value``."""
-    ((key, ends),) = sweep_values([over]).items()
-    if len(ends) != 2 or ends[0] == ends[1]:
-        raise SceneError(
-            "--over", over, f"needs two different values, at one of which the gear sticks: {key}=0.4,0.7"
-        )
-    return conduct(
-        case,
-        request,
-        "Threshold",
-        gd.studies.sticking_threshold,
-        key,
-        (ends[0], ends[1]),
-        exits,
-        outset=f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits",
-    )
 
 
 def search_starting_torque(case: str, request: Request, over: str | None, **options: Any) -> int:

@@ -53,23 +53,6 @@ def coating_map(
     return map_coating(str(case), request, over or [])
 
 
-@app.command
-def threshold(
-    case: Case,
-    *,
-    over: Annotated[
-        str,
-        Parameter(help="Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7."),
-    ],
-    exits: Annotated[int, Parameter(help="Mesh exits to wait for.")] = 100,
-    request: Usual = USUAL,
-) -> int:
-    """Search where the gear begins to stick, against the number of mesh exits waited for."""
-    from gearidae.cli.studies import search_threshold
-
-    return search_threshold(str(case), request, over, exits)
-
-
 @app.command(name="starting-torque")
 def starting_torque(
     case: Case,

@@ -1,6 +1,7 @@
 """Pictures of datasets: one function each, takes a dataset, returns matplotlib axes or a figure.
 
-Those of the teeth are loaded on first use, because they need the contact laws, compiled.
+A study may bring its picture with it, see `gearidae.studies.study.Picture`. Those of the teeth are loaded on first use,
+because they need the contact laws, compiled.
 """
 
 from __future__ import annotations
@@ -34,11 +35,16 @@ from gearidae.plot.spectra import impact_spectrum as impact_spectrum
 from gearidae.plot.spectra import power_spectrum as power_spectrum
 from gearidae.plot.spectra import spectrogram as spectrogram
 from gearidae.plot.surface import surface as surface
-from gearidae.plot.threshold import sticking_threshold as sticking_threshold
 from gearidae.plot.torque import contact_torque as contact_torque
+from gearidae.studies.declared import studies
 
 if TYPE_CHECKING:
     from gearidae.plot.animation import animate_teeth as animate_teeth
     from gearidae.plot.teeth_view import teeth as teeth
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)
+_of_studies = {
+    one.name: one.draw for each in studies().values() for one in each.pictures if one.draw is not None
+}
+globals().update(_of_studies)
+__all__ = sorted({*__all__, *_of_studies})

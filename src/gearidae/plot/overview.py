@@ -15,6 +15,7 @@ from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.torque import contact_torque
+from gearidae.studies.declared import studies
 
 _PICTURES: Final = {
     "coating_map": {"coating_map": "Frequency of the impact response against the coverage"},
@@ -33,7 +34,6 @@ _PICTURES: Final = {
     "pull_off": {"pull_off": "Share of drawn pairs that part below a force"},
     "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
     "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
-    "sticking_threshold": {"sticking_threshold": "Sticking limit against the mesh exits waited for"},
 }
 """Pictures of what studies have written, and their captions: the one that says most first."""
 
@@ -54,6 +54,8 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
     if kind == "runs":
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
+    if kind in studies():
+        return {each.name: each.caption for each in studies()[kind].pictures if each.needs(ds)}
     needed = {"sobol_indices": "total_order", "coverage_along_flank": "coverage_by_place"}
     found = {
         name: words for name, words in _PICTURES[kind].items() if name not in needed or needed[name] in ds

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearidae import plot
 from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import scene_of
 from gearidae.archive.specimen import specimen_note
@@ -82,8 +81,7 @@ def _specimen(ds: xr.Dataset) -> str:
 def _study_page(ds: xr.Dataset, kind: str) -> str:
     """Make the page about what a study has found."""
     found = answer(ds, kind)
-    drawn = [(getattr(plot, name), words) for name, words in usual_pictures(ds, kind).items()]
-    shown = html.section("pictures", "Pictures", figures(ds, drawn))
+    shown = html.section("pictures", "Pictures", figures(ds, usual_pictures(ds, kind)))
     sections: tuple[str, ...]
     if kind == "life":
         viewer = html.section("life", "Over passages", life_viewer(ds))

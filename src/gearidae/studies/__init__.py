@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from gearidae.studies._starting_torque import starting_torque as starting_torque
     from gearidae.studies._starting_torque import static_starting_torque as static_starting_torque
     from gearidae.studies._sticking_probability import sticking_probability as sticking_probability
-    from gearidae.studies._sticking_threshold import sticking_threshold as sticking_threshold
     from gearidae.studies._surviving_share import surviving_share as surviving_share
     from gearidae.studies._tooth_contacts import tooth_contacts as tooth_contacts
+    from gearidae.studies.declared.threshold import sticking_threshold as sticking_threshold
     from gearidae.studies.equilibrium import contact_resonance as contact_resonance
     from gearidae.studies.equilibrium import natural_frequency as natural_frequency
     from gearidae.studies.life_signals import assess_life as assess_life

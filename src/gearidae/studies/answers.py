@@ -20,6 +20,7 @@ from gearidae.archive.select import scene_of
 from gearidae.archive.specimen import has_seeds
 from gearidae.scene import describe_key
 from gearidae.scene.prefixes import with_prefix
+from gearidae.studies.declared import studies
 from gearidae.studies.gear_answers import FIGURES, Rows, mean_rows, starts_rows, starts_sentence
 
 _SHARES: Final = (0.9, 0.5, 0.1)
@@ -66,46 +67,11 @@ def answer(ds: xr.Dataset, kind: str) -> Answer:
     kind : str
         From `gearidae.studies.products.open_product`, other than ``runs``.
     """
+    if kind in studies():
+        study = studies()[kind]
+        return Answer(study.sentence(ds), tuple(study.rows(ds)))
     sentence, rows = _ANSWERS[kind]
     return Answer(sentence(ds), tuple(rows(ds)))
-
-
-def _threshold_sentence(ds: xr.Dataset) -> str:
-    key, one = _threshold_key(ds), ds.isel(exits=-1)
-    exits = int(ds["exits"][-1])
-    if np.isnan(one["limit"]):
-        return f"No run has stuck within {exits} mesh exits so far."
-    sticks, passes = _ends(one)
-    return f"Within {exits} mesh exits the gear sticks at {key} = {sticks} and not at {passes}."
-
-
-def _threshold_rows(ds: xr.Dataset) -> Rows:
-    """Limit and bracket for each number of exits."""
-    yield f"Sticking limit of {_threshold_key(ds)}", "", ""
-    for exits in ds["exits"].values:
-        one = ds.sel(exits=exits)
-        waited = f"within {exits} mesh exit{'s' if exits > 1 else ''}"
-        if np.isnan(one["limit"]):
-            yield waited, "-", "no run has stuck so early"
-            continue
-        sticks, passes = _ends(one)
-        yield waited, _number(float(one["limit"]), one), f"sticks at {sticks}, passes at {passes}"
-    yield "runs", str(ds.sizes["run"]), ""
-
-
-def _threshold_key(ds: xr.Dataset) -> str:
-    return str(ds["limit"].attrs["long_name"]).removeprefix("sticking limit of ")
-
-
-def _ends(one: xr.Dataset) -> tuple[str, str]:
-    return _number(float(one["sticks"]), one), _number(float(one["passes"]), one)
-
-
-def _number(value: float, one: xr.Dataset) -> str:
-    """Write a value of a bracket with as many digits as distinguish its ends, four at least."""
-    sticks, passes, unit = float(one["sticks"]), float(one["passes"]), str(one["limit"].attrs["units"])
-    digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
-    return f"{value:.{digits}g}" + ("" if unit == "1" else f" {unit}")
 
 
 def _ensemble_sentence(ds: xr.Dataset) -> str:
@@ -397,5 +363,4 @@ _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Datase
     "posterior": (_posterior_sentence, _posterior_rows),
     "starting_torque": (_starting_sentence, _starting_rows),
     "starting_torques": (starts_sentence, starts_rows),
-    "sticking_threshold": (_threshold_sentence, _threshold_rows),
 }

@@ -15,6 +15,7 @@ from gearidae.archive import open_archive
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
+from gearidae.studies.declared import studies
 
 _HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
 """How netCDF files begin, those of version 4 and the older ones."""
@@ -107,9 +108,6 @@ _KINDS: Final = {
             "sam_fraction",
         ),
     ),
-    "sticking_threshold": _Kind(
-        "sticking threshold", "threshold", dict.fromkeys(("limit", "sticks", "passes"), "exits")
-    ),
 }
 
 
@@ -127,6 +125,8 @@ def require(ds: xr.Dataset, kind: str) -> xr.Dataset:
     SceneError
         If it is something else.
     """
+    if kind in studies():
+        return studies()[kind].require(ds)
     about = _KINDS[kind]
     lacking = [
         name
@@ -190,7 +190,7 @@ def kind_of(ds: xr.Dataset) -> str:
     str
         As from `open_product`; ``runs`` if it is nothing else.
     """
-    for kind in _KINDS:
+    for kind in (*studies(), *_KINDS):
         try:
             require(ds, kind)
             return kind
@@ -207,7 +207,7 @@ def _last(kind: str) -> str:
 
 
 def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
-    source, about = Path(path), _KINDS[kind]
+    source, about = Path(path), studies().get(kind) or _KINDS[kind]
     if not source.is_file():
         raise SceneError(_last(kind), path, "there is no such file")
     try:

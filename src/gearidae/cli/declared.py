@@ -1,0 +1,68 @@
+"""The commands of studies, made from their declarations when the command line asks for one by its name."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Annotated, Any, get_args
+
+from cyclopts import App, Parameter
+
+from gearidae.cli import completing
+from gearidae.cli.app import Case
+from gearidae.cli.examples import epilogue
+from gearidae.cli.request import Request
+from gearidae.studies.declared import study_of_command
+from gearidae.studies.study import Option, Study
+
+_USUAL = Request()
+_IN_LINE = inspect.Parameter.KEYWORD_ONLY
+
+
+def __getattr__(name: str) -> App:
+    """Make the command of a study; ``-`` in its name is ``_`` here."""
+    if name.startswith("__"):
+        raise AttributeError(name)
+    command = name.replace("_", "-")
+    study = study_of_command(command)
+    app = App(name=command, help_epilogue=epilogue(study.examples))
+    app.default(_function(study))
+    return app
+
+
+def _function(study: Study) -> Any:
+    """Make the function of a command: its options are the parameters of the study's, and those of all studies."""
+    assert study.command is not None
+    made = study.command
+
+    def run(case: Any, *, request: Request = _USUAL, **given: Any) -> int:
+        from gearidae.cli.studies import run_study
+
+        return run_study(study, str(case), request, made(**given))
+
+    parameters = [
+        inspect.Parameter("case", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=Case),
+        *(
+            each.replace(kind=_IN_LINE, annotation=_annotation(each.annotation))
+            for each in inspect.signature(made, eval_str=True).parameters.values()
+        ),
+        inspect.Parameter(
+            "request", _IN_LINE, default=_USUAL, annotation=Annotated[Request, Parameter(name="*")]
+        ),
+    ]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {each.name: each.annotation for each in parameters}
+    return run
+
+
+def _annotation(declared: Any) -> Any:
+    """Turn the annotation of a parameter with its `Option` into one that cyclopts reads."""
+    kind, option = get_args(declared)
+    assert isinstance(option, Option)
+    about: dict[str, Any] = {"help": option.help}
+    if option.name:
+        about["name"] = option.name
+    if option.repeatable:
+        about["consume_multiple"] = False
+    if option.completes:
+        about["completer"] = getattr(completing, option.completes)
+    return Annotated[kind, Parameter(**about)]
