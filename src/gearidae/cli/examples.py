@@ -31,9 +31,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',
         'gearidae ensemble mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.8)" --size 256 --of min_gear_speed',
     ),
-    "operating-map": (
-        "gearidae operating-map mine.toml --over drive.torque=4e-18:5e-18:2e-19 coating.sam_fraction=1:0.4:-0.1",
-    ),
     "calibrate": (
         'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
         'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',

@@ -50,18 +50,18 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
     int
         Exit code.
     """
-    assert study.run is not None
     suffix = study.suffix or study.title.lower().replace(" ", "_")
     target = request.output or default_output(case, f"_{suffix}.nc")
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
+    function = getattr(gd.studies, study.run) if isinstance(study.run, str) else study.run
     words = call.announcement
     if not isinstance(words, str):
         words = words(scene, workers if request.dask is None else None)
     announce(study.title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
     with request.executor(call.keys, call.members) as executor:
-        ds = study.run(
+        ds = function(
             scene,
             *call.arguments,
             **call.options,
@@ -166,22 +166,6 @@ def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int
         seeds,
         load=force,
         outset=f"{seeds} drawn pairs",
-    )
-
-
-def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
-    """Map what the gears of a case do over two keys."""
-    values = sweep_values(over)
-    if len(values) != 2:
-        example = "drive.torque=4e-18,5e-18 coating.sam_fraction=1:0.4:-0.1"
-        raise SceneError("--over", " ".join(over), f"must be two keys and their values: {example}")
-    return conduct(
-        case,
-        request,
-        "Operating map",
-        gd.studies.operating_map,
-        values,
-        outset=lambda scene, workers: grid_words(scene, values, workers),
     )
 
 

@@ -101,29 +101,6 @@ def pull_off(
     return part_pairs(str(case), request, seeds, load)
 
 
-@app.command(name="operating-map")
-def operating_map(
-    case: Case,
-    *,
-    over: Annotated[
-        list[str],
-        Parameter(
-            help="Two keys and their values, drive.torque=4e-18:5e-18:1e-19 coating.sam_fraction=1:0.4:-0.1.",
-            consume_multiple=False,
-            completer=completing.keys,
-        ),
-    ],
-    request: Usual = USUAL,
-) -> int:
-    """Map over two keys where the gear turns, where it sticks, and where its teeth cross the backlash.
-
-    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
-    """
-    from gearidae.cli.studies import map_outcomes
-
-    return map_outcomes(str(case), request, over)
-
-
 @app.command
 def ensemble(
     case: Case,

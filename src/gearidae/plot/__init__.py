@@ -24,7 +24,6 @@ from gearidae.plot.life import coverage_along_flank as coverage_along_flank
 from gearidae.plot.life import life as life
 from gearidae.plot.lives import lives as lives
 from gearidae.plot.outcome import outcome as outcome
-from gearidae.plot.outcome_map import outcome_map as outcome_map
 from gearidae.plot.overview import overview as overview
 from gearidae.plot.posterior import posterior as posterior
 from gearidae.plot.pull_off import pull_off as pull_off

@@ -29,7 +29,6 @@ _PICTURES: Final = {
         "coverage_along_flank": "Coverage along the path of contact",
     },
     "lives": {"lives": "Share of the gears that still turn"},
-    "operating_map": {"outcome_map": "What the gears do over two keys"},
     "posterior": {"posterior": "Posterior of each key, and of each two"},
     "pull_off": {"pull_off": "Share of drawn pairs that part below a force"},
     "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},

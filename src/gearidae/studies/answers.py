@@ -8,14 +8,13 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis.verdict.codes import Outcome
 from gearidae.archive.select import scene_of
 from gearidae.archive.specimen import has_seeds
 from gearidae.scene import describe_key
@@ -25,14 +24,6 @@ from gearidae.studies.gear_answers import FIGURES, Rows, mean_rows, starts_rows,
 
 _SHARES: Final = (0.9, 0.5, 0.1)
 """Of the gears that still turn, for which the passages are given."""
-_SIGNS: Final = {
-    Outcome.TURNS: ".",
-    Outcome.CROSSES_BACKLASH: "x",
-    Outcome.STICKS: "#",
-    Outcome.UNFINISHED: "?",
-}
-_WIDEST: Final = 80
-"""Values of the second key of an operating map that stand in a line."""
 _MOST_FRACTIONS: Final = 13
 _STEPS_WANTED: Final = 50
 """Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
@@ -131,34 +122,6 @@ def _uncertain(one: xr.Dataset, name: str) -> str:
 def _counts(words: xr.DataArray) -> Rows:
     for word, count in Counter(words.values.tolist()).most_common():
         yield str(word), str(count), f"{100.0 * count / words.size:.3g} % of the members"
-
-
-def _map_sentence(ds: xr.Dataset) -> str:
-    legend = ", ".join(f"{count} {words}" for _, words, count in _legend(ds))
-    return f"{ds['outcome'].size} runs: {legend}."
-
-
-def _legend(ds: xr.Dataset) -> Iterator[tuple[str, str, int]]:
-    for code, sign in _SIGNS.items():
-        if count := int((ds["outcome"].values == code).sum()):
-            yield sign, code.name.lower().replace("_", " "), count
-
-
-def _map_rows(ds: xr.Dataset) -> Rows:
-    """A line for each value of the first key, a sign for each of the second."""
-    down, across = map(str, ds["outcome"].dims)
-    yield str(ds.attrs["title"]), "", ""
-    ends = [_short(value) for value in ds[across].values[[0, -1]]]
-    yield f"{down}, downwards", f"{across}, from {ends[0]} to {ends[1]}", ""
-    for row in range(ds.sizes[down]):
-        codes = ds["outcome"].values[row, :_WIDEST].tolist()
-        signs = "".join(_SIGNS[Outcome(code)] for code in codes)
-        yield _short(ds[down].values[row]), signs + ("..." if ds.sizes[across] > _WIDEST else ""), ""
-    yield ", ".join(f"{sign} {words}: {count}" for sign, words, count in _legend(ds)), "", ""
-
-
-def _short(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float | int | np.number) else str(value)
 
 
 def _life_sentence(ds: xr.Dataset) -> str:
@@ -358,7 +321,6 @@ _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Datase
     "ensemble": (_ensemble_sentence, _ensemble_rows),
     "life": (_life_sentence, _life_rows),
     "lives": (_lives_sentence, _lives_rows),
-    "operating_map": (_map_sentence, _map_rows),
     "pull_off": (_pull_off_sentence, _pull_off_rows),
     "posterior": (_posterior_sentence, _posterior_rows),
     "starting_torque": (_starting_sentence, _starting_rows),

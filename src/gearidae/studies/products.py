@@ -198,7 +198,7 @@ def kind_of(ds: xr.Dataset) -> str:
             pass
     if "ensemble" in ds.attrs and "member" in ds.dims:
         return "ensemble"
-    return "operating_map" if "outcome" in ds and ds["outcome"].ndim == 2 else "runs"
+    return "runs"
 
 
 def _last(kind: str) -> str:

@@ -130,7 +130,7 @@ class Study:
         What the dataset has beside the variables of runs.
     check : callable, optional
         Raises a `SceneError` if a dataset is something else, in place of a look at the columns.
-    run : callable, optional
+    run : str, optional
         The function of `gearidae.studies`; without one, another study's makes this kind too.
     title, suffix : str, optional
         What the command calls it, and the end of the name of its file.
@@ -154,7 +154,7 @@ class Study:
     pictures: tuple[Picture, ...]
     columns: Mapping[str, Column] = field(default_factory=dict)
     check: Callable[[xr.Dataset], object] | None = None
-    run: Callable[..., xr.Dataset] | None = None
+    run: str = ""
     title: str = ""
     suffix: str = ""
     command: Callable[..., Call] | None = None
