@@ -26,7 +26,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
     ),
-    "pull-off": ('gearidae pull-off mine.toml --seeds 1000 --load "1 uN"',),
     "ensemble": (
         'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',
         'gearidae ensemble mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.8)" --size 256 --of min_gear_speed',

@@ -18,7 +18,7 @@ from gearidae.cli.tables import name_failures
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.runs.kept_runs import folder_beside
-from gearidae.scene.pairs import assignments, quantity, sweep_values, texts
+from gearidae.scene.pairs import assignments, sweep_values, texts
 from gearidae.studies.announcement import draw_words, grid_words
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
@@ -152,20 +152,6 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
 
     return conduct(
         case, request, "Starting torque", gd.studies.starting_torque, fractions, outset=outset, **options
-    )
-
-
-def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int:
-    """Part drawn pairs of a case, pressed with a force."""
-    force = None if load is None else quantity("--load", load, "N")
-    return conduct(
-        case,
-        request,
-        "Pull-off",
-        gd.studies.pull_off,
-        seeds,
-        load=force,
-        outset=f"{seeds} drawn pairs",
     )
 
 

@@ -85,22 +85,6 @@ def starting_torque(
     )
 
 
-@app.command(name="pull-off")
-def pull_off(
-    case: Case,
-    *,
-    seeds: Annotated[int, Parameter(help="Number of drawn surfaces, from contact.seed on.")] = 100,
-    load: Annotated[
-        str | None, Parameter(help="Force that presses the pair, 1 uN. Default: of the drive's mean torque.")
-    ] = None,
-    request: Usual = USUAL,
-) -> int:
-    """Part single pairs of teeth with drawn asperities: the distribution of their pull-off force."""
-    from gearidae.cli.studies import part_pairs
-
-    return part_pairs(str(case), request, seeds, load)
-
-
 @app.command
 def ensemble(
     case: Case,

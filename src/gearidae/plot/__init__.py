@@ -26,7 +26,6 @@ from gearidae.plot.lives import lives as lives
 from gearidae.plot.outcome import outcome as outcome
 from gearidae.plot.overview import overview as overview
 from gearidae.plot.posterior import posterior as posterior
-from gearidae.plot.pull_off import pull_off as pull_off
 from gearidae.plot.roller import roller_force as roller_force
 from gearidae.plot.roller import roller_gap as roller_gap
 from gearidae.plot.spectra import cycle as cycle

@@ -30,7 +30,6 @@ _PICTURES: Final = {
     },
     "lives": {"lives": "Share of the gears that still turn"},
     "posterior": {"posterior": "Posterior of each key, and of each two"},
-    "pull_off": {"pull_off": "Share of drawn pairs that part below a force"},
     "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
     "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
 }

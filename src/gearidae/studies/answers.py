@@ -262,31 +262,6 @@ def _starting_rows(ds: xr.Dataset) -> Rows:
         yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, f"sticks at {sticks}, static {static}"
 
 
-def _pull_off_sentence(ds: xr.Dataset) -> str:
-    low, middle, high = _quantiles(ds["pull_off"])
-    return f"A drawn pair parts at {middle} (median of {ds.sizes['seed']}; 80 % between {low} and {high})."
-
-
-def _quantiles(values: xr.DataArray) -> list[str]:
-    found = np.quantile(values.values, (0.1, 0.5, 0.9))
-    unit = str(values.attrs["units"])
-    return [f"{one:.3g}" if unit == "1" else with_prefix(float(one), unit, 3) for one in found]
-
-
-def _pull_off_rows(ds: xr.Dataset) -> Rows:
-    """Quantiles of the forces and of the numbers of asperities."""
-    yield f"Pressed with {with_prefix(float(ds.attrs['load']), 'N', 3)} and parted", "median", "10 and 90 %"
-    for name, words in (
-        ("pull_off", "pull-off"),
-        ("asperities_joined", "asperities joined under the load"),
-        ("asperities_holding", "asperities that hold"),
-    ):
-        low, middle, high = _quantiles(ds[name])
-        yield words, middle, f"{low} and {high}"
-    never = int((ds["pull_off"] == 0.0).sum())
-    yield "pairs that never pull", str(never), f"of {ds.sizes['seed']}"
-
-
 def _coating_sentence(ds: xr.Dataset) -> str:
     frequency = ds["characteristic_frequency"].values
     if not np.isfinite(frequency).any():
@@ -321,7 +296,6 @@ _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Datase
     "ensemble": (_ensemble_sentence, _ensemble_rows),
     "life": (_life_sentence, _life_rows),
     "lives": (_lives_sentence, _lives_rows),
-    "pull_off": (_pull_off_sentence, _pull_off_rows),
     "posterior": (_posterior_sentence, _posterior_rows),
     "starting_torque": (_starting_sentence, _starting_rows),
     "starting_torques": (starts_sentence, starts_rows),

@@ -80,11 +80,6 @@ _KINDS: Final = {
         "lives",
         dict.fromkeys(("passages_to_sticking", "passages_turning", "sticks", "ending", "status"), "member"),
     ),
-    "pull_off": _Kind(
-        "study of pull-off forces",
-        "pull-off",
-        dict.fromkeys(("pull_off", "asperities_joined", "asperities_holding", "gap"), "seed"),
-    ),
     "posterior": _Kind("posterior", "calibrate", check=calibrated_keys),
     "starting_torque": _Kind(
         "study of starting torques",
