@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
-from gearidae.cli.case import default_output
 from gearidae.cli.request import Request
 from gearidae.cli.studies import conduct
 from gearidae.errors import SceneError
 from gearidae.scene.literal import literal
 from gearidae.scene.pairs import texts
 from gearidae.studies.observation_files import observation_of
-from gearidae.studies.products import calibrated_keys
 
 if TYPE_CHECKING:
     from gearidae.studies import Observation
@@ -70,24 +67,6 @@ def calibrate_case(
         listed,
         outset=outset,
         **options,
-    )
-
-
-def predict_case(case: str, request: Request, posterior: Path, *, size: int, seed: int) -> int:
-    """Run a case with the keys that were calibrated drawn from their posterior in a file."""
-    known = gd.studies.open_posterior(posterior)
-    target, keys = request.output or default_output(case, "_predicted.nc"), calibrated_keys(known)
-    return conduct(
-        case,
-        replace(request, output=target),
-        "Prediction",
-        gd.studies.predict,
-        known,
-        size,
-        seed=seed,
-        keys=keys,
-        members=size,
-        outset=f"{size} runs, {' and '.join(keys)} drawn from the posterior",
     )
 
 

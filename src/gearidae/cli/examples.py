@@ -26,15 +26,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
     ),
-    "ensemble": (
-        'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',
-        'gearidae ensemble mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.8)" --size 256 --of min_gear_speed',
-    ),
     "calibrate": (
         'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
         'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',
     ),
-    "predict": ("gearidae predict mine.toml --posterior known.nc --size 64 --set drive.torque=6e-18",),
     "life": (
         'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
         'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import gearidae as gd
 from gearidae.archive import check_target
-from gearidae.archive.specimen import SEED
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
@@ -19,7 +18,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.runs.kept_runs import folder_beside
 from gearidae.scene.pairs import assignments, sweep_values, texts
-from gearidae.studies.announcement import draw_words, grid_words
+from gearidae.studies.announcement import grid_words
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
 from gearidae.studies.study import Call
@@ -170,27 +169,6 @@ def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
         return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further), workers)
 
     return conduct(case, request, "Map", gd.studies.coating_map, fractions, over=further, outset=outset)
-
-
-def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any) -> int:
-    """Run an ensemble of a case."""
-    from gearidae.studies.design import check_design
-
-    keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
-    size, of = drawn["size"], drawn.get("of")
-    check_design(size, drawn["design"], drawn["seed"], indices=of is not None)
-    drawn_keys = [key for key in keys if key != SEED]
-    runs = size if of is None else size * (len(drawn_keys) + 2)  # the matrices of the Sobol' indices
-    drawn |= {"keys": keys, "members": size}
-    return conduct(
-        case,
-        request,
-        "Ensemble",
-        gd.studies.ensemble,
-        keys,
-        outset=lambda scene, workers: draw_words(scene, keys, runs, workers),
-        **drawn,
-    )
 
 
 def follow_life(

@@ -86,28 +86,6 @@ def starting_torque(
 
 
 @app.command
-def ensemble(
-    case: Case,
-    *,
-    vary: Vary,
-    size: Annotated[int, Parameter(help="Number of members; with --of, of rows, a power of 2.")],
-    of: Annotated[
-        str | None, Parameter(help="Figure whose Sobol indices are wanted: sticks, min_gear_speed and so on.")
-    ] = None,
-    design: Design = "sobol",
-    seed: Seed = 0,
-    request: Usual = USUAL,
-) -> int:
-    """Run a scene with keys drawn from distributions: how often it sticks, and what that depends on.
-
-    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
-    """
-    from gearidae.cli.studies import run_ensemble
-
-    return run_ensemble(str(case), request, vary, size=size, design=design, seed=seed, of=of)
-
-
-@app.command
 def calibrate(
     case: Case,
     *,
@@ -144,21 +122,3 @@ def calibrate(
 
     options = {"method": method, "points": points, "steps": steps, "seed": seed}
     return calibrate_case(str(case), request, vary, seen or [], observations, **options)
-
-
-@app.command
-def predict(
-    case: Case,
-    *,
-    posterior: Annotated[Path, Parameter(help="Posterior, from gearidae calibrate.")],
-    size: Annotated[int, Parameter(help="Number of runs.")],
-    seed: Annotated[int, Parameter(help="Seed of the draws.")] = 0,
-    request: Usual = USUAL,
-) -> int:
-    """Run a scene with the keys that were calibrated drawn from their posterior: how often it sticks.
-
-    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
-    """
-    from gearidae.cli.calibrate import predict_case
-
-    return predict_case(str(case), request, posterior, size=size, seed=seed)

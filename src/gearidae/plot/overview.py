@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from gearidae.archive.select import is_roller, scene_of, swept_dims
-from gearidae.archive.specimen import has_seeds, specimen_label
+from gearidae.archive.specimen import specimen_label
 from gearidae.archive.variables import columns
 from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import runs_of
@@ -19,11 +19,6 @@ from gearidae.studies.declared import studies
 
 _PICTURES: Final = {
     "coating_map": {"coating_map": "Frequency of the impact response against the coverage"},
-    "ensemble": {
-        "sobol_indices": "What the figure depends on",
-        "specimens": "Mean speeds of gears of one design",
-        "sticking_probability": "Probability of sticking against one of the keys",
-    },
     "life": {
         "life": "Coverage and frequency of the impact response over passages",
         "coverage_along_flank": "Coverage along the path of contact",
@@ -54,13 +49,10 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
     if kind in studies():
         return {each.name: each.caption for each in studies()[kind].pictures if each.needs(ds)}
-    needed = {"sobol_indices": "total_order", "coverage_along_flank": "coverage_by_place"}
-    found = {
+    needed = {"coverage_along_flank": "coverage_by_place"}
+    return {
         name: words for name, words in _PICTURES[kind].items() if name not in needed or needed[name] in ds
     }
-    if kind == "ensemble" and not has_seeds(ds):
-        del found["specimens"]
-    return found
 
 
 def overview(ds: xr.Dataset) -> Figure:

@@ -20,7 +20,7 @@ from gearidae.progress import sweep_progress
 from gearidae.runs.execution import Execution, run_kept
 from gearidae.runs.running import prepare
 from gearidae.scene import describe_key
-from gearidae.studies._ensemble import figure_names
+from gearidae.studies.declared.ensemble import figure_names
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.observations import STICKS, Observation
 from gearidae.studies.posterior import grid_posterior, sampled_posterior

@@ -16,11 +16,10 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.select import scene_of
-from gearidae.archive.specimen import has_seeds
 from gearidae.scene import describe_key
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.declared import studies
-from gearidae.studies.gear_answers import FIGURES, Rows, mean_rows, starts_rows, starts_sentence
+from gearidae.studies.gear_answers import Rows, starts_rows, starts_sentence
 
 _SHARES: Final = (0.9, 0.5, 0.1)
 """Of the gears that still turn, for which the passages are given."""
@@ -65,61 +64,8 @@ def answer(ds: xr.Dataset, kind: str) -> Answer:
     return Answer(sentence(ds), tuple(rows(ds)))
 
 
-def _ensemble_sentence(ds: xr.Dataset) -> str:
-    from gearidae.studies._sticking_probability import sticking_probability
-
-    if not np.isfinite(ds["sticks"]).any():
-        return f"None of {ds.sizes['member']} members has been finished."
-    found = sticking_probability(ds)
-    stuck, members = int(found["stuck"]), int(found["members"])
-    return f"{stuck} of {members} members stick: probability of sticking {_probability(found)}."
-
-
-def _probability(found: xr.Dataset) -> str:
-    low, high = float(found["low"]), float(found["high"])
-    return f"{float(found['probability']):.3g}, 95 % between {low:.3g} and {high:.3g}"
-
-
-def _ensemble_rows(ds: xr.Dataset) -> Rows:
-    """Probability of sticking, indices, verdicts, figures with their spread."""
-    from gearidae.studies._sticking_probability import sticking_probability
-
-    yield str(ds.attrs["title"]), "", ""
-    if np.isfinite(ds["sticks"]).any():
-        value, band = _probability(sticking_probability(ds)).split(", ")
-        yield "probability of sticking", value, band
-    if "total_order" in ds:
-        yield (
-            f"Sobol indices of {ds.attrs['index_of']}",
-            "total",
-            f"first order, {ds.attrs['index_rows']} rows",
-        )
-        for key in ds["parameter"].values:
-            one = ds.sel(parameter=key)
-            yield str(key), _uncertain(one, "total_order"), _uncertain(one, "first_order")
-    yield from _counts(ds["verdict"])
-    if has_seeds(ds):
-        yield from mean_rows(ds)
-        return
-    for name in FIGURES:
-        if name in ds and np.isfinite(ds[name]).any():
-            low, middle, high = np.nanquantile(ds[name].values, (0.05, 0.5, 0.95))
-            low, middle, high = (
-                _in_words(value, str(ds[name].attrs["units"])) for value in (low, middle, high)
-            )
-            yield name.replace("_", " "), middle, f"90 % between {low} and {high}"
-
-
-def _in_words(value: float, unit: str) -> str:
-    return f"{value:.4g} rad/s" if unit == "rad s-1" else with_prefix(value, unit, 4)
-
-
-def _uncertain(one: xr.Dataset, name: str) -> str:
-    value = float(one[name])
-    return "none" if math.isnan(value) else f"{value:.3f} +- {float(one[f'{name}_uncertainty']):.3f}"
-
-
-def _counts(words: xr.DataArray) -> Rows:
+def count_rows(words: xr.DataArray) -> Rows:
+    """Count the members of which words are true, the most frequent first."""
     for word, count in Counter(words.values.tolist()).most_common():
         yield str(word), str(count), f"{100.0 * count / words.size:.3g} % of the members"
 
@@ -173,7 +119,7 @@ def _lives_sentence(ds: xr.Dataset) -> str:
 def _lives_rows(ds: xr.Dataset) -> Rows:
     """How the lives end, and after how many passages shares of the gears still turn."""
     yield str(ds.attrs["title"]), "", ""
-    yield from _counts(ds["ending"])
+    yield from count_rows(ds["ending"])
     if (ds["sticks"] > 0.0).any():
         yield from _surviving_rows(ds)
     if np.isfinite(ds["final_coverage"]).any():
@@ -293,7 +239,6 @@ def _coating_rows(ds: xr.Dataset) -> Rows:
 
 _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Dataset], Any]]]] = {
     "coating_map": (_coating_sentence, _coating_rows),
-    "ensemble": (_ensemble_sentence, _ensemble_rows),
     "life": (_life_sentence, _life_rows),
     "lives": (_lives_sentence, _lives_rows),
     "posterior": (_posterior_sentence, _posterior_rows),

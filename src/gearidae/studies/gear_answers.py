@@ -12,64 +12,11 @@ from typing import Final, TypeAlias
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.specimen import SEED
 from gearidae.scene.prefixes import with_prefix
 
 SLOW_ENOUGH: Final = 0.1
 """Change of the median by half the rate below which a rate is slow enough."""
 Rows: TypeAlias = Iterator[tuple[str, str, str]]
-
-FIGURES: Final = (
-    "min_gear_speed",
-    "max_gear_speed",
-    "largest_mesh_force",
-    "smallest_mesh_force",
-    "stick_time",
-)
-_OF_GEARS: Final = ("settled_gear_speed", *FIGURES, "asperity_onsets")
-"""Figures whose means over the seeds are given."""
-
-
-def mean_rows(ds: xr.Dataset) -> Rows:
-    """Means over the gears with their standard errors, and how far one gear is from them."""
-    if "index_comment" in ds.attrs:
-        left = 1.0 - float(ds["first_order"].sum())
-        yield (
-            SEED,
-            "no index",
-            f"{left:.3f} is no first order of a key: scatter between seeds, and interactions",
-        )
-    yield "Means over the seeds", "", "one gear is one specimen of the design"
-    figures = {
-        name.replace("_", " "): (ds[name].values, str(ds[name].attrs["units"]).replace("rad s-1", "rad/s"))
-        for name in _OF_GEARS
-        if name in ds
-    }
-    if {"adhesion_loss", "drive_work"} <= set(map(str, ds.data_vars)):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            figures["adhesion loss over drive work"] = (
-                ds["adhesion_loss"].values / ds["drive_work"].values,
-                "1",
-            )
-    for name, (values, unit) in figures.items():
-        found = values[np.isfinite(values)]
-        if found.size > 1:
-            spread = float(np.std(found, ddof=1))
-            low, high = np.quantile(found, (0.05, 0.95))
-            yield (
-                name,
-                _with_error(float(found.mean()), spread / math.sqrt(found.size), unit),
-                f"standard deviation of one gear {spread:.2g}, 90 % between {low:.4g} and {high:.4g}",
-            )
-
-
-def _with_error(mean: float, error: float, unit: str) -> str:
-    """Write a mean to the second digit of its standard error."""
-    if not error > 0.0:
-        return f"{mean:.6g}" + ("" if unit == "1" else f" {unit}")
-    last = math.floor(math.log10(error))
-    digits = max(2, math.floor(math.log10(abs(mean))) - last + 2) if mean else 2
-    return f"{mean:.{digits}g} +- {error:.2g}" + ("" if unit == "1" else f" {unit}")
 
 
 def starts_sentence(ds: xr.Dataset) -> str:

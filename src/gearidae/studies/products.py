@@ -191,8 +191,6 @@ def kind_of(ds: xr.Dataset) -> str:
             return kind
         except SceneError:
             pass
-    if "ensemble" in ds.attrs and "member" in ds.dims:
-        return "ensemble"
     return "runs"
 
 
