@@ -26,10 +26,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
     ),
-    "calibrate": (
-        'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
-        'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',
-    ),
     "life": (
         'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
         'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',

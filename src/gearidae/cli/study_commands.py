@@ -5,8 +5,7 @@ Those on the life of a coating are in `gearidae.cli.life_commands`.
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -83,42 +82,3 @@ def starting_torque(
     return search_starting_torque(
         str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance, seeds=seeds
     )
-
-
-@app.command
-def calibrate(
-    case: Case,
-    *,
-    vary: Annotated[
-        list[str],
-        Parameter(
-            help="Key and what was known of it, key=normal(450 nm, 50 nm), as for ensemble; repeatable.",
-            consume_multiple=False,
-            completer=completing.keys,
-        ),
-    ],
-    seen: Annotated[
-        list[str] | None,
-        Parameter(
-            help="Observation and its conditions: 'sticks=true; drive.torque=4.2e-18', "
-            "'ring_frequency=5.2 kHz +- 0.1 kHz'; repeatable.",
-            consume_multiple=False,
-        ),
-    ] = None,
-    observations: Annotated[Path | None, Parameter(help="File with more of them: .toml or .csv.")] = None,
-    method: Annotated[
-        Literal["auto", "grid", "emcee"], Parameter(help="By default a grid for up to two keys, else emcee.")
-    ] = "auto",
-    points: Annotated[int, Parameter(help="Cells a key of the grid.")] = 41,
-    steps: Annotated[int, Parameter(help="Steps of each of emcee's walkers.")] = 500,
-    seed: Annotated[int, Parameter(help="Seed of emcee.")] = 0,
-    request: Usual = USUAL,
-) -> int:
-    """Find out what observations of gears say about keys that are not known: their posterior.
-
-    Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
-    """
-    from gearidae.cli.calibrate import calibrate_case
-
-    options = {"method": method, "points": points, "steps": steps, "seed": seed}
-    return calibrate_case(str(case), request, vary, seen or [], observations, **options)

@@ -24,7 +24,6 @@ _PICTURES: Final = {
         "coverage_along_flank": "Coverage along the path of contact",
     },
     "lives": {"lives": "Share of the gears that still turn"},
-    "posterior": {"posterior": "Posterior of each key, and of each two"},
     "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
     "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
 }

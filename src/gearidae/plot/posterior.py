@@ -16,7 +16,7 @@ from gearidae.arrays import Floats
 from gearidae.drawing.parameter_axis import parameter_axis
 from gearidae.drawing.picture import PictureAxes, new_picture
 from gearidae.drawing.style import POSITIVE, tidy
-from gearidae.studies.products import calibrated_keys
+from gearidae.studies.declared.calibrate import calibrated_keys
 
 _BINS: Final = 40
 """Bins of draws, along each key."""

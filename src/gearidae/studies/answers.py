@@ -5,7 +5,6 @@ The same words stand on the terminal and in the report.
 
 from __future__ import annotations
 
-import json
 import math
 from collections import Counter
 from collections.abc import Callable
@@ -16,7 +15,6 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.select import scene_of
-from gearidae.scene import describe_key
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.declared import studies
 from gearidae.studies.gear_answers import Rows, starts_rows, starts_sentence
@@ -24,8 +22,6 @@ from gearidae.studies.gear_answers import Rows, starts_rows, starts_sentence
 _SHARES: Final = (0.9, 0.5, 0.1)
 """Of the gears that still turn, for which the passages are given."""
 _MOST_FRACTIONS: Final = 13
-_STEPS_WANTED: Final = 50
-"""Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
 _ENDINGS: Final = {
     "coverage": "the requested coverage is reached",
     "passages": "the requested passages are reached",
@@ -141,40 +137,6 @@ def _surviving_rows(ds: xr.Dataset) -> Rows:
         yield f"passages until {100.0 * share:.0f} % still turn", value, "of each tooth of the pinion"
 
 
-def _posterior_sentence(ds: xr.Dataset) -> str:
-    words = []
-    for key in ds["parameter"].values.tolist():
-        low, _, middle, _, high = (
-            _in_unit(value, key) for value in ds["quantiles"].sel(parameter=key).values
-        )
-        words.append(f"{key} is {middle}, 95 % in {low} .. {high}")
-    return f"{'; '.join(words)}."
-
-
-def _posterior_rows(ds: xr.Dataset) -> Rows:
-    """Mean, deviation and quantiles of each key; of draws, how many are independent."""
-    count = len(json.loads(ds.attrs["calibration"])["observations"])
-    yield str(ds.attrs["title"]), "", f"{count} observation{'s' if count > 1 else ''}"
-    for key in ds["parameter"].values.tolist():
-        one = ds.sel(parameter=key)
-        low, inner_low, middle, inner_high, high = (_in_unit(each, key) for each in one["quantiles"].values)
-        spread = f"{_in_unit(float(one['mean']), key)} +- {_in_unit(float(one['standard_deviation']), key)}"
-        yield key, spread, f"median {middle}, 68 % in {inner_low} .. {inner_high}, 95 % in {low} .. {high}"
-    if "autocorrelation_time" in ds.attrs:
-        time, draws = float(ds.attrs["autocorrelation_time"]), ds.sizes["draw"]
-        many = f"{draws / max(time, 1.0):.2g}"
-        if ds.attrs.get("steps_kept", math.inf) < _STEPS_WANTED * time:
-            independent = f"fewer than {many} independent: few --steps"
-        else:
-            independent = f"some {many} of them independent"
-        yield "draws", str(draws), independent
-
-
-def _in_unit(value: float, key: str) -> str:
-    unit = describe_key(key).unit
-    return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
-
-
 def _starting_sentence(ds: xr.Dataset) -> str:
     if ds.sizes["sam_fraction"] > 1:
         torques = _simulated(ds).values
@@ -241,7 +203,6 @@ _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Datase
     "coating_map": (_coating_sentence, _coating_rows),
     "life": (_life_sentence, _life_rows),
     "lives": (_lives_sentence, _lives_rows),
-    "posterior": (_posterior_sentence, _posterior_rows),
     "starting_torque": (_starting_sentence, _starting_rows),
     "starting_torques": (starts_sentence, starts_rows),
 }

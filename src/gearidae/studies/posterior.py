@@ -174,6 +174,8 @@ def summary(
     Dataset
         Along ``parameter``, and ``level`` (`LEVELS`).
     """
+    from gearidae.studies.declared.calibrate import STUDY  # which imports this module
+
     mean = weight @ nodes
     # a grid says nothing finer than the spread within a cell
     within = 0.0 if widths is None else np.asarray(widths) / np.sqrt(12.0)
@@ -184,19 +186,5 @@ def summary(
         share = np.cumsum(np.bincount(place, weight))
         half = 0.5 * widths[number] if widths is not None else 0.0
         quantiles[number] = np.interp(LEVELS, np.r_[0.0, share], np.r_[values[0] - half, values + half])
-    about = {"long_name": "key", "units": "1"}
-    return xr.Dataset(
-        {
-            "mean": ("parameter", mean, {"long_name": "posterior mean, in the key's SI unit"}),
-            "standard_deviation": (
-                "parameter",
-                deviation,
-                {"long_name": "posterior standard deviation, likewise"},
-            ),
-            "quantiles": (("parameter", "level"), quantiles, {"long_name": "posterior quantiles, likewise"}),
-        },
-        coords={
-            "parameter": ("parameter", np.array(keys), about),
-            "level": ("level", np.array(LEVELS), {"long_name": "share of the posterior below", "units": "1"}),
-        },
-    )
+    columns = {"mean": mean, "standard_deviation": deviation, "quantiles": quantiles}
+    return STUDY.dataset({"parameter": np.array(keys), "level": np.array(LEVELS), **columns}, {})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,32 +11,12 @@ from typing import Final
 import xarray as xr
 
 from gearidae.archive import open_archive
-from gearidae.archive.dataset import dimension_names
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 from gearidae.studies.declared import studies
 
 _HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
 """How netCDF files begin, those of version 4 and the older ones."""
-
-
-def calibrated_keys(posterior: xr.Dataset) -> tuple[str, ...]:
-    """Return the keys that a posterior is about.
-
-    Raises
-    ------
-    SceneError
-        If the dataset is no posterior.
-    """
-    try:
-        keys = tuple(map(str, json.loads(posterior.attrs["calibration"])["priors"]))
-        names = dimension_names(keys).values()
-        whole = bool(keys) and all(name in posterior.variables for name in names)
-        if whole and ("weight" in posterior or "draw" in posterior.dims):
-            return keys
-    except (AttributeError, KeyError, TypeError, ValueError):
-        pass
-    raise SceneError("posterior", type(posterior).__name__, "must be a posterior, from studies.calibrate")
 
 
 def _check_map(ds: xr.Dataset) -> object:
@@ -80,7 +59,6 @@ _KINDS: Final = {
         "lives",
         dict.fromkeys(("passages_to_sticking", "passages_turning", "sticks", "ending", "status"), "member"),
     ),
-    "posterior": _Kind("posterior", "calibrate", check=calibrated_keys),
     "starting_torque": _Kind(
         "study of starting torques",
         "starting-torque",

@@ -33,7 +33,8 @@ class Column:
     ----------
     dims : tuple of str
     units, words : str
-        Its unit and what it is; ``{name}`` stands for what `Study.dataset` is given for that name.
+        Its unit, empty where it differs along the variable, and what it is. ``{name}`` stands for what `Study.dataset`
+        is given for that name.
     required : bool, optional
         Whether a file without it is something else.
     """
@@ -42,6 +43,11 @@ class Column:
     units: str
     words: str
     required: bool = True
+
+    def attributes(self, **named: str) -> dict[str, str]:
+        """Attributes of the variable."""
+        found = {"units": self.units.format(**named), "long_name": self.words.format(**named)}
+        return {name: text for name, text in found.items() if text}
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,11 +208,7 @@ class Study:
             What the columns' units and words name in braces.
         """
         made = {
-            name: (
-                column.dims,
-                values[name],
-                {"units": column.units.format(**named), "long_name": column.words.format(**named)},
-            )
+            name: (column.dims, values[name], column.attributes(**named))
             for name, column in self.columns.items()
             if name in values
         }

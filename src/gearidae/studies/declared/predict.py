@@ -18,9 +18,10 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweeping import run_study
 from gearidae.studies.declared import ensemble
+from gearidae.studies.declared.calibrate import calibrated_keys
 from gearidae.studies.design import check_design
 from gearidae.studies.members import along_members, member_plan
-from gearidae.studies.products import calibrated_keys, open_posterior
+from gearidae.studies.products import open_posterior
 from gearidae.studies.study import Call, Option
 
 if TYPE_CHECKING:
