@@ -21,7 +21,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae plot mine.nc --picture teeth --from "76 ms" --to "79 ms" -o teeth.gif',
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
-    "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
     "starting-torque": (
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",

@@ -18,7 +18,6 @@ from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.runs.kept_runs import folder_beside
 from gearidae.scene.pairs import assignments, sweep_values, texts
-from gearidae.studies.announcement import grid_words
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
 from gearidae.studies.study import Call
@@ -152,23 +151,6 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
     return conduct(
         case, request, "Starting torque", gd.studies.starting_torque, fractions, outset=outset, **options
     )
-
-
-def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
-    """Make a coating map of a case, over fractions, and over other keys for several lines."""
-    from gearidae.studies._coating_map import FRACTIONS, further_keys
-
-    values = sweep_values([pair for pair in over if pair.strip() != _TORQUE])
-    fractions = values.pop(_FRACTION, FRACTIONS.tolist())
-    usual_torques = any(pair.strip() == _TORQUE for pair in over)
-    if usual_torques and values:
-        raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
-    further = _TORQUE if usual_torques else values
-
-    def outset(scene: Scene, workers: int | None) -> str:
-        return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further), workers)
-
-    return conduct(case, request, "Map", gd.studies.coating_map, fractions, over=further, outset=outset)
 
 
 def follow_life(

@@ -29,29 +29,6 @@ Usual = Annotated[Request, Parameter(name="*")]
 USUAL = Request()
 
 
-@app.command(name="coating-map")
-def coating_map(
-    case: Case,
-    *,
-    over: Annotated[
-        list[str] | None,
-        Parameter(
-            help="SAM fractions, coating.sam_fraction=1:0.5:-0.01, and other keys for several lines; repeatable.",
-            consume_multiple=False,
-            completer=completing.keys,
-        ),
-    ] = None,
-    request: Usual = USUAL,
-) -> int:
-    """Map the frequency of the impact response against the SAM fraction.
-
-    Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
-    """
-    from gearidae.cli.studies import map_coating
-
-    return map_coating(str(case), request, over or [])
-
-
 @app.command(name="starting-torque")
 def starting_torque(
     case: Case,

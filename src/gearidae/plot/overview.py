@@ -18,7 +18,6 @@ from gearidae.plot.torque import contact_torque
 from gearidae.studies.declared import studies
 
 _PICTURES: Final = {
-    "coating_map": {"coating_map": "Frequency of the impact response against the coverage"},
     "life": {
         "life": "Coverage and frequency of the impact response over passages",
         "coverage_along_flank": "Coverage along the path of contact",

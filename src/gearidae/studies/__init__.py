@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from gearidae.runs.plausibility import doubts as doubts
     from gearidae.runs.run_time import run_time as run_time
     from gearidae.runs.validity import validity as validity
-    from gearidae.studies._coating_map import coating_map as coating_map
     from gearidae.studies._life import life as life
     from gearidae.studies._lives import lives as lives
     from gearidae.studies._sensitivity import sensitivity as sensitivity
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from gearidae.studies._surviving_share import surviving_share as surviving_share
     from gearidae.studies._tooth_contacts import tooth_contacts as tooth_contacts
     from gearidae.studies.declared.calibrate import calibrate as calibrate
+    from gearidae.studies.declared.coating_map import coating_map as coating_map
     from gearidae.studies.declared.ensemble import ensemble as ensemble
     from gearidae.studies.declared.operating_map import operating_map as operating_map
     from gearidae.studies.declared.predict import predict as predict

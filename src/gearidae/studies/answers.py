@@ -170,37 +170,7 @@ def _starting_rows(ds: xr.Dataset) -> Rows:
         yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, f"sticks at {sticks}, static {static}"
 
 
-def _coating_sentence(ds: xr.Dataset) -> str:
-    frequency = ds["characteristic_frequency"].values
-    if not np.isfinite(frequency).any():
-        return "Nothing rings at any coverage."
-    low, high = (with_prefix(float(f(frequency)), "Hz", 4) for f in (np.nanmin, np.nanmax))
-    ends = [f"{100.0 * float(f(ds['sam_fraction'])):.4g} %" for f in (np.max, np.min)]
-    return f"From SAM {ends[0]} to {ends[1]} the teeth ring at {low} to {high}."
-
-
-def _coating_rows(ds: xr.Dataset) -> Rows:
-    """Frequencies at some of the fractions, line by line."""
-    # without the impacts, of which there may be none
-    ds = ds[["characteristic_frequency", "uncertainty", "min_gear_speed"]]
-    further = [dim for dim in ds["characteristic_frequency"].dims if dim != "sam_fraction"]
-    lines = ds.stack(line=further) if further else ds.expand_dims("line")
-    count = ds.sizes["sam_fraction"]
-    picked = np.unique(np.linspace(0, count - 1, min(count, _MOST_FRACTIONS)).round().astype(int))
-    for number in range(lines.sizes["line"]):
-        line = lines.isel(line=number)
-        held = ", ".join(f"{dim} = {line[dim].item():g}" for dim in further)
-        yield held or "Frequency of the first impact response", "", ""
-        for place in picked:
-            one = line.isel(sam_fraction=int(place))
-            value, spread = float(one["characteristic_frequency"]), float(one["uncertainty"])
-            text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
-            stops = "" if float(one["min_gear_speed"]) > 0.0 else "the gear stops within the run"
-            yield f"SAM {100 * float(one['sam_fraction']):g} %", text, stops
-
-
 _ANSWERS: Final[dict[str, tuple[Callable[[xr.Dataset], str], Callable[[xr.Dataset], Any]]]] = {
-    "coating_map": (_coating_sentence, _coating_rows),
     "life": (_life_sentence, _life_rows),
     "lives": (_lives_sentence, _lives_rows),
     "starting_torque": (_starting_sentence, _starting_rows),

@@ -19,12 +19,6 @@ _HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
 """How netCDF files begin, those of version 4 and the older ones."""
 
 
-def _check_map(ds: xr.Dataset) -> object:
-    from gearidae.analysis.map_model import require_map  # loads what fits models
-
-    return require_map(ds)
-
-
 @dataclass(frozen=True, slots=True)
 class _Kind:
     """What a study writes other than runs.
@@ -48,7 +42,6 @@ class _Kind:
 
 
 _KINDS: Final = {
-    "coating_map": _Kind("coating map", "coating-map", check=_check_map),
     "life": _Kind(
         "life of a coating",
         "life",
