@@ -25,11 +25,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
     ),
-    "life": (
-        'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
-        'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',
-    ),
-    "lives": ("gearidae lives mine.toml --law contacts --size 64 --vary law.area=lognormal(1e-19,3)",),
     "assess": (
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',

@@ -16,7 +16,7 @@ from cyclopts import CycloptsError, Parameter
 
 import gearidae
 from gearidae.archive.target import is_input, keeps_inputs
-from gearidae.cli import life_commands, study_commands  # noqa: F401, which declare more commands
+from gearidae.cli import study_commands  # noqa: F401, which declares more commands
 from gearidae.cli.app import app
 from gearidae.cli.examples import EXAMPLES, epilogue
 from gearidae.cli.output import complain, hushed

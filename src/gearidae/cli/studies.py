@@ -17,7 +17,7 @@ from gearidae.cli.tables import name_failures
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.runs.kept_runs import folder_beside
-from gearidae.scene.pairs import assignments, sweep_values, texts
+from gearidae.scene.pairs import sweep_values
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
 from gearidae.studies.study import Call
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
     from gearidae.studies.study import Study
-    from gearidae.wear import LossLaw
 
 _FRACTION: Final = "coating.sam_fraction"
 _TORQUE: Final = "drive.torque"
@@ -151,59 +150,3 @@ def search_starting_torque(case: str, request: Request, over: str | None, **opti
     return conduct(
         case, request, "Starting torque", gd.studies.starting_torque, fractions, outset=outset, **options
     )
-
-
-def follow_life(
-    case: str, request: Request, law: str, parameters: Sequence[str], arrhenius: Sequence[str], **options: Any
-) -> int:
-    """Follow the life of a case's coating by a loss law, given its parameters and a factor of Arrhenius."""
-    found = _read_law(law, parameters, arrhenius)
-    return conduct(
-        case,
-        request,
-        "Life",
-        gd.studies.life,
-        found,
-        outset=f"{law}; at most {options['passages']:g} passages, of which few are simulated",
-        **options,
-    )
-
-
-def follow_lives(
-    case: str,
-    request: Request,
-    law: str,
-    parameters: Sequence[str],
-    arrhenius: Sequence[str],
-    vary: Sequence[str],
-    **options: Any,
-) -> int:
-    """Follow the coatings of an ensemble of gears."""
-    keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
-    found = _read_law(law, parameters, arrhenius, keys)
-    return conduct(
-        case,
-        request,
-        "Lives",
-        gd.studies.lives,
-        found,
-        keys,
-        outset=f"{options['size']} gears, {law}; at most {options['passages']:g} passages, of which few are simulated",
-        **options,
-    )
-
-
-def _read_law(
-    name: str, parameters: Sequence[str], arrhenius: Sequence[str], vary: Mapping[str, Any] | None = None
-) -> LossLaw:
-    """Make a loss law, whose parameters that are drawn may be missing."""
-    from gearidae.studies.law_draws import law_of_medians
-
-    law = law_of_medians(name, assignments(parameters, "--parameter", "energy=2 J/m^2"), vary or {})
-    if not arrhenius:
-        return law
-    given = assignments(arrhenius, "--arrhenius", "activation_energy=1 eV")
-    known = ("activation_energy", "activation_volume", "temperature")
-    if sorted(given) != sorted(known):
-        raise SceneError("--arrhenius", ", ".join(given), "needs " + ", ".join(known))
-    return gd.wear.Arrhenius(law, **given)

@@ -20,9 +20,6 @@ from gearidae.plot.files import write as write
 from gearidae.plot.gears import gap as gap
 from gearidae.plot.gears import gear_speed as gear_speed
 from gearidae.plot.gears import transmission_error as transmission_error
-from gearidae.plot.life import coverage_along_flank as coverage_along_flank
-from gearidae.plot.life import life as life
-from gearidae.plot.lives import lives as lives
 from gearidae.plot.outcome import outcome as outcome
 from gearidae.plot.overview import overview as overview
 from gearidae.plot.posterior import posterior as posterior

@@ -18,11 +18,6 @@ from gearidae.plot.torque import contact_torque
 from gearidae.studies.declared import studies
 
 _PICTURES: Final = {
-    "life": {
-        "life": "Coverage and frequency of the impact response over passages",
-        "coverage_along_flank": "Coverage along the path of contact",
-    },
-    "lives": {"lives": "Share of the gears that still turn"},
     "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
     "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
 }

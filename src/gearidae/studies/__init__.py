@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from gearidae.studies._starting_torque import starting_torque as starting_torque
     from gearidae.studies._starting_torque import static_starting_torque as static_starting_torque
     from gearidae.studies._sticking_probability import sticking_probability as sticking_probability
-    from gearidae.studies._surviving_share import surviving_share as surviving_share
     from gearidae.studies._tooth_contacts import tooth_contacts as tooth_contacts
     from gearidae.studies.declared.calibrate import calibrate as calibrate
     from gearidae.studies.declared.coating_map import coating_map as coating_map
     from gearidae.studies.declared.ensemble import ensemble as ensemble
+    from gearidae.studies.declared.lives import surviving_share as surviving_share
     from gearidae.studies.declared.operating_map import operating_map as operating_map
     from gearidae.studies.declared.predict import predict as predict
     from gearidae.studies.declared.pull_off import pull_off as pull_off

@@ -42,16 +42,6 @@ class _Kind:
 
 
 _KINDS: Final = {
-    "life": _Kind(
-        "life of a coating",
-        "life",
-        dict.fromkeys(("coverage", "verdict", "mean_gear_speed", "min_gear_speed"), "passages"),
-    ),
-    "lives": _Kind(
-        "ensemble of lives",
-        "lives",
-        dict.fromkeys(("passages_to_sticking", "passages_turning", "sticks", "ending", "status"), "member"),
-    ),
     "starting_torque": _Kind(
         "study of starting torques",
         "starting-torque",
@@ -99,8 +89,6 @@ def require(ds: xr.Dataset, kind: str) -> xr.Dataset:
         for name, dim in about.needed.items()
         if name not in ds or ds[name].dims[:1] != (dim,) or not ds.sizes[dim]
     ]
-    if kind == "life" and "side" not in ds.coords:
-        lacking.append("side")
     if lacking:
         allowed = f"is no {about.words}: it lacks {', '.join(lacking)}; make one with {about.maker}"
         raise SceneError("dataset", type(ds).__name__, allowed)
