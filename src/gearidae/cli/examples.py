@@ -21,10 +21,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae plot mine.nc --picture teeth --from "76 ms" --to "79 ms" -o teeth.gif',
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
-    "starting-torque": (
-        "gearidae starting-torque mine.toml",
-        "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
-    ),
     "assess": (
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',

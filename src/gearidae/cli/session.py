@@ -16,7 +16,6 @@ from cyclopts import CycloptsError, Parameter
 
 import gearidae
 from gearidae.archive.target import is_input, keeps_inputs
-from gearidae.cli import study_commands  # noqa: F401, which declares more commands
 from gearidae.cli.app import app
 from gearidae.cli.examples import EXAMPLES, epilogue
 from gearidae.cli.output import complain, hushed
@@ -26,10 +25,7 @@ from gearidae.studies.declared import command_help
 
 __all__ = ["app", "session"]
 
-_WRITERS = {
-    "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "pull-off",
-    "report", "run", "starting-torque", "sweep", *command_help(),
-}  # fmt: skip
+_WRITERS = {"init", "plot", "report", "run", "sweep", *command_help()}
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
 _WRITTEN = ("-o", "--output", "--picture", "--asperities")
@@ -42,7 +38,7 @@ app.register_install_completion_command()
 for _name, _lines in EXAMPLES.items():
     app[_name].help_epilogue = epilogue(_lines)
 for _name, _words in command_help().items():
-    app.command(f"gearidae.cli.declared:{_name.replace('-', '_')}", name=_name, help=_words)
+    app.command(f"gearidae.cli.study_commands:{_name.replace('-', '_')}", name=_name, help=_words)
 
 
 @app.meta.default

@@ -1,11 +1,9 @@
-"""The commands that conduct a study: it is run, kept, and what it has found is shown."""
+"""How the command line runs a study: it is announced, computed and kept, and its answer is shown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import gearidae as gd
 from gearidae.archive import check_target
@@ -14,10 +12,8 @@ from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
 from gearidae.cli.request import Request
 from gearidae.cli.tables import name_failures
-from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae.runs.kept_runs import folder_beside
-from gearidae.scene.pairs import sweep_values
 from gearidae.studies.answers import answer
 from gearidae.studies.products import kind_of
 from gearidae.studies.study import Call
@@ -52,7 +48,7 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
-    function = getattr(gd.studies, study.run) if isinstance(study.run, str) else study.run
+    function = getattr(gd.studies, study.run)
     words = call.announcement
     if not isinstance(words, str):
         words = words(scene, workers if request.dask is None else None)
@@ -102,22 +98,6 @@ def announce(
         say(f"{title} of {scene.name}: {words}")
 
 
-def conduct(
-    case: str,
-    request: Request,
-    title: str,
-    study: Callable[..., xr.Dataset],
-    *arguments: Any,
-    keys: Mapping[str, Any] | Sequence[str] = (),
-    members: int = 0,
-    outset: str | Callable[[Scene, int | None], str] = "",
-    **options: Any,
-) -> int:
-    """Run a study that has no declaration yet."""
-    made: Any = SimpleNamespace(run=study, title=title, suffix="")
-    return run_study(made, case, request, Call(arguments, options, outset, keys, members))
-
-
 def _code(ds: xr.Dataset) -> int:
     """Name what could not be finished."""
     if "status" not in ds:
@@ -128,25 +108,3 @@ def _code(ds: xr.Dataset) -> int:
     if failed:
         complain(f"{failed} runs could not be finished: their status and message are in the file")
     return UNFINISHED if failed else DONE
-
-
-def search_starting_torque(case: str, request: Request, over: str | None, **options: Any) -> int:
-    """Search the starting torque of a case at its own coating, or at fractions, ``coating.sam_fraction=1:0.4:-0.1``."""
-    fractions: Any = "own"
-    if over is not None:
-        ((key, fractions),) = sweep_values([over]).items()
-        if key != _FRACTION:
-            raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
-
-    def outset(scene: Scene, _: int | None) -> str:
-        from gearidae.studies._starting_seeds import SEEDS
-
-        coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
-        if scene.contact.model != "population":
-            return f"{coatings}; one torque is tried after the other"
-        gears = options["seeds"] or SEEDS
-        return f"{gears} gears, {coatings}; each is run several times, with a torque that rises slowly"
-
-    return conduct(
-        case, request, "Starting torque", gd.studies.starting_torque, fractions, outset=outset, **options
-    )

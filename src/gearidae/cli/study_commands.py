@@ -1,61 +1,68 @@
-"""The commands that run a study: many runs that answer one question. `gearidae.cli.app` has the others.
-
-Those on the life of a coating are in `gearidae.cli.life_commands`.
-"""
+"""The commands of studies, made from their declarations when the command line asks for one by its name."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import inspect
+from typing import Annotated, Any, get_args
 
-from cyclopts import Parameter
+from cyclopts import App, Parameter
 
 from gearidae.cli import completing
-from gearidae.cli.app import Case, app
+from gearidae.cli.app import Case
+from gearidae.cli.examples import epilogue
 from gearidae.cli.request import Request
+from gearidae.studies.declared import study_of_command
+from gearidae.studies.study import Option, Study
 
-Vary = Annotated[
-    list[str],
-    Parameter(
-        help="Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
-        "uniform(lowest, highest), lognormal(median, geometric deviation); contact.seed=seeds numbers the seeds of a "
-        "population; repeatable.",
-        consume_multiple=False,
-        completer=completing.keys,
-    ),
-]
-Design = Annotated[str, Parameter(help="sobol or random.")]
-Seed = Annotated[int, Parameter(help="Seed of the design.")]
-Usual = Annotated[Request, Parameter(name="*")]
-USUAL = Request()
+_USUAL = Request()
+_IN_LINE = inspect.Parameter.KEYWORD_ONLY
 
 
-@app.command(name="starting-torque")
-def starting_torque(
-    case: Case,
-    *,
-    over: Annotated[
-        str | None,
-        Parameter(
-            help="SAM fractions, coating.sam_fraction=1:0.4:-0.1. Default: the coating of the case as it is."
+def __getattr__(name: str) -> App:
+    """Make the command of a study; ``-`` in its name is ``_`` here."""
+    if name.startswith("__"):
+        raise AttributeError(name)
+    command = name.replace("_", "-")
+    study = study_of_command(command)
+    app = App(name=command, help_epilogue=epilogue(study.examples))
+    app.default(_function(study))
+    return app
+
+
+def _function(study: Study) -> Any:
+    """Make the function of a command: its options are the parameters of the study's, and those of all studies."""
+    assert study.command is not None
+    made = study.command
+
+    def run(case: Any, *, request: Request = _USUAL, **given: Any) -> int:
+        from gearidae.cli.studies import run_study
+
+        return run_study(study, str(case), request, made(**given))
+
+    parameters = [
+        inspect.Parameter("case", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=Case),
+        *(
+            each.replace(kind=_IN_LINE, annotation=_annotation(each.annotation))
+            for each in inspect.signature(made, eval_str=True).parameters.values()
         ),
-    ] = None,
-    impacts: Annotated[int, Parameter(help="Pitches to be turned, each with its mesh exit.")] = 3,
-    lowest: Annotated[
-        float | None, Parameter(help="Lowest torque to try in N m. Default: 0.001 of the drive's own.")
-    ] = None,
-    tolerance: Annotated[float, Parameter(help="Relative width at which the search ends.")] = 0.1,
-    seeds: Annotated[
-        int | None, Parameter(help="Gears of a population, with seeds from contact.seed on. Default: 20.")
-    ] = None,
-    request: Usual = USUAL,
-) -> int:
-    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
+        inspect.Parameter(
+            "request", _IN_LINE, default=_USUAL, annotation=Annotated[Request, Parameter(name="*")]
+        ),
+    ]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {each.name: each.annotation for each in parameters}
+    return run
 
-    Of a population (contact.model = population): the distribution over its gears, whose torque rises slowly until each
-    has turned one pitch.
-    """
-    from gearidae.cli.studies import search_starting_torque
 
-    return search_starting_torque(
-        str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance, seeds=seeds
-    )
+def _annotation(declared: Any) -> Any:
+    """Turn the annotation of a parameter with its `Option` into one that cyclopts reads."""
+    kind, option = get_args(declared)
+    assert isinstance(option, Option)
+    about: dict[str, Any] = {"help": option.help}
+    if option.name:
+        about["name"] = option.name
+    if option.repeatable:
+        about["consume_multiple"] = False
+    if option.completes:
+        about["completer"] = getattr(completing, option.completes)
+    return Annotated[kind, Parameter(**about)]

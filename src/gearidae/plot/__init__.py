@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 from gearidae.plot.asperity_events import asperity_events as asperity_events
 from gearidae.plot.coating import coating_map as coating_map
-from gearidae.plot.coating import starting_torque as starting_torque
-from gearidae.plot.coating import starting_torques as starting_torques
 from gearidae.plot.ensembles import sobol_indices as sobol_indices
 from gearidae.plot.ensembles import specimens as specimens
 from gearidae.plot.ensembles import sticking_probability as sticking_probability

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -16,12 +14,6 @@ from gearidae.plot.gears import gear_speed
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.torque import contact_torque
 from gearidae.studies.declared import studies
-
-_PICTURES: Final = {
-    "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
-    "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
-}
-"""Pictures of what studies have written, and their captions: the one that says most first."""
 
 
 def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
@@ -40,12 +32,7 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
     if kind == "runs":
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
-    if kind in studies():
-        return {each.name: each.caption for each in studies()[kind].pictures if each.needs(ds)}
-    needed = {"coverage_along_flank": "coverage_by_place"}
-    return {
-        name: words for name, words in _PICTURES[kind].items() if name not in needed or needed[name] in ds
-    }
+    return {each.name: each.caption for each in studies()[kind].pictures if each.needs(ds)}
 
 
 def overview(ds: xr.Dataset) -> Figure:

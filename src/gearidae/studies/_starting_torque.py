@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
-import os
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -19,15 +16,15 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.mesh.friction import hub_starting_torque, starting_ratio
-from gearidae.progress import SweepProgress, sweep_progress
+from gearidae.progress import sweep_progress
 from gearidae.runs.estimates import mean_force
-from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
+from gearidae.runs.execution import Execution, RunOptions, prepared, solutions
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.rubbing import flank_coefficient, hub_radii
-from gearidae.runs.running import prepare, solve_to_end, unfinished, unsolved
+from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.carried import numbers_of
 from gearidae.studies._starting_seeds import starting_torques
-from gearidae.studies.products import open_product
+from gearidae.studies.declared.starting_torque import STUDY
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
 from gearidae.studies.starting_ramp import pitch_of
@@ -104,13 +101,7 @@ def starting_torque(
     simulated: bool = True,
     tolerance: float = 0.1,
     seeds: int | None = None,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
+    **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Smallest drive torque that takes the gear through the mesh, against SAM fraction; of a population, by its gears.
 
@@ -133,8 +124,9 @@ def starting_torque(
     seeds : int, optional
         Of a population the number of gears, 20 by default, whose seeds count from ``contact.seed`` on. `impacts`,
         `lowest`, `simulated` and `tolerance` are not for populations.
-    executor, jobs, backend, progress, archive, overwrite, resume
-        As for `sweep`. With `archive`, finished runs are kept beside it until it is written.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
+        With ``archive``, finished runs are kept beside it until it is written.
 
     Returns
     -------
@@ -169,8 +161,7 @@ def starting_torque(
     _require(scene, impacts)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
-    base = prepare(scene, rtol=None, t_end=None, samples=None, backend=backend)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    base, how = prepared(scene, options)
     if base.contact.model == "population":
         _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
         return starting_torques(
@@ -193,13 +184,7 @@ def starting_torque(
         found = [each.result if simulated else (math.nan, math.nan) for each in searches]
         return _dataset(scene, fractions, static, found).assign_attrs(impacts=impacts, tolerance=tolerance)
 
-    return run_kept(
-        how,
-        lambda target: KeptRuns(target, base, how.driver),
-        work,
-        {**origin_of(scene), "settings": json.dumps([fractions, impacts, least, simulated, tolerance])},
-        read=lambda path: open_product(path, "starting_torque")[0],
-    )
+    return STUDY.compute(how, base, work, [fractions, impacts, least, simulated, tolerance], origin=scene)
 
 
 def _refuse_settings(**given: Any) -> None:
@@ -225,26 +210,17 @@ def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[S
 def _dataset(
     scene: Scene, fractions: Sequence[float], static: Sequence[float], found: Sequence[tuple[float, float]]
 ) -> xr.Dataset:
-    turns, sticks = zip(*found, strict=True)
-    columns = {
-        "static_torque": (static, "starting torque without inertia"),
-        "simulated_torque": (turns, "smallest simulated torque at which the gear turns from rest"),
-        "simulated_stuck": (sticks, "largest simulated torque at which the gear sticks"),
-    }
     assert scene.drive is not None
-    return xr.Dataset(
-        {
-            name: ("sam_fraction", np.array(numbers), {"units": "N m", "long_name": text})
-            for name, (numbers, text) in columns.items()
-        },
-        coords={"sam_fraction": ("sam_fraction", np.array(fractions), SAM_FRACTION.attributes)},
-        attrs={
-            **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
-            "title": f"{scene.name}: starting torque",
-            "summary": "Smallest drive torque that keeps the gear turning against adhesion, against SAM fraction.",
-            "drive_torque": scene.drive.torque,
-        },
-    )
+    turns, sticks = map(np.array, zip(*found, strict=True))
+    values = {"static_torque": np.array(static), "simulated_torque": turns, "simulated_stuck": sticks}
+    attributes = {
+        **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
+        "title": f"{scene.name}: starting torque",
+        "summary": "Smallest drive torque that keeps the gear turning against adhesion, against SAM fraction.",
+        "drive_torque": scene.drive.torque,
+    }
+    coverage = ("sam_fraction", np.array(fractions), SAM_FRACTION.attributes)
+    return STUDY.dataset(values, attributes).assign_coords(sam_fraction=coverage)
 
 
 @dataclass

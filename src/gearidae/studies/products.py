@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
 
 import xarray as xr
 
@@ -19,83 +16,6 @@ _HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
 """How netCDF files begin, those of version 4 and the older ones."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """What a study writes other than runs.
-
-    Attributes
-    ----------
-    words : str
-        What it is.
-    maker : str
-        Function of `gearidae.studies`, or command, that makes one.
-    needed : dict of str to str
-        Variables that it has, and their first dimension, which is not empty.
-    check : callable
-        Raises a SceneError if it is something else.
-    """
-
-    words: str
-    maker: str
-    needed: dict[str, str] = field(default_factory=dict)
-    check: Callable[[xr.Dataset], object] = id  # anything will do
-
-
-_KINDS: Final = {
-    "starting_torque": _Kind(
-        "study of starting torques",
-        "starting-torque",
-        dict.fromkeys(("static_torque", "simulated_torque", "simulated_stuck"), "sam_fraction"),
-    ),
-    "starting_torques": _Kind(
-        "study of a population's starting torques",
-        "starting-torque",
-        dict.fromkeys(
-            (
-                "starting_torque",
-                "starts",
-                "quantiles",
-                "not_started",
-                "chance",
-                "rate",
-                "median_change",
-                "damping",
-            ),
-            "sam_fraction",
-        ),
-    ),
-}
-
-
-def require(ds: xr.Dataset, kind: str) -> xr.Dataset:
-    """Return a dataset that a study has made.
-
-    Parameters
-    ----------
-    kind : str
-        ``coating_map``, ``life``, ``lives``, ``posterior``, ``starting_torque``, ``starting_torques`` or
-        ``sticking_threshold``.
-
-    Raises
-    ------
-    SceneError
-        If it is something else.
-    """
-    if kind in studies():
-        return studies()[kind].require(ds)
-    about = _KINDS[kind]
-    lacking = [
-        name
-        for name, dim in about.needed.items()
-        if name not in ds or ds[name].dims[:1] != (dim,) or not ds.sizes[dim]
-    ]
-    if lacking:
-        allowed = f"is no {about.words}: it lacks {', '.join(lacking)}; make one with {about.maker}"
-        raise SceneError("dataset", type(ds).__name__, allowed)
-    about.check(ds)
-    return ds
-
-
 def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple[xr.Dataset, str]:
     """Read a file that this program has written, whatever it is.
 
@@ -104,13 +24,13 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
     path : path-like
         A netCDF file.
     kind : str, optional
-        What it has to be, as for `require`.
+        What it has to be: of a `Study`.
 
     Returns
     -------
     ds : Dataset
     kind : str
-        As for `require`, or ``runs``, ``ensemble`` or ``operating_map`` of an archive of runs.
+        Of a `Study`, or ``runs`` of an archive of other runs.
 
     Raises
     ------
@@ -120,7 +40,7 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
     if kind is not None:
         ds = _read(path, kind)
         try:
-            return require(ds, kind), kind
+            return studies()[kind].require(ds), kind
         except SceneError as error:
             raise SceneError(_last(kind), path, error.allowed) from None
     try:
@@ -144,9 +64,9 @@ def kind_of(ds: xr.Dataset) -> str:
     str
         As from `open_product`; ``runs`` if it is nothing else.
     """
-    for kind in (*studies(), *_KINDS):
+    for kind, study in studies().items():
         try:
-            require(ds, kind)
+            study.require(ds)
             return kind
         except SceneError:
             pass
@@ -159,7 +79,7 @@ def _last(kind: str) -> str:
 
 
 def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
-    source, about = Path(path), studies().get(kind) or _KINDS[kind]
+    source, about = Path(path), studies()[kind]
     if not source.is_file():
         raise SceneError(_last(kind), path, "there is no such file")
     try:
