@@ -11,8 +11,7 @@ import pytest
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.report import build_report
-from gearidae.studies.answers import answer
-from gearidae.studies.products import kind_of, open_product
+from gearidae.studies.products import answer, kind_of, open_product
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 4e-3, "run.samples": 401})
 LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)

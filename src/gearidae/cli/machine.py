@@ -15,7 +15,7 @@ from gearidae.analysis.verdict import outcomes
 from gearidae.archive.energy import balance_in_attributes
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.output import say
-from gearidae.studies.answers import answer
+from gearidae.studies.products import answer
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import gearidae as gd
 from gearidae.archive import check_target
@@ -14,8 +14,7 @@ from gearidae.cli.request import Request
 from gearidae.cli.tables import name_failures
 from gearidae.runs.executors import check_jobs
 from gearidae.runs.kept_runs import folder_beside
-from gearidae.studies.answers import answer
-from gearidae.studies.products import kind_of
+from gearidae.studies.products import answer, kind_of
 from gearidae.studies.study import Call
 
 if TYPE_CHECKING:
@@ -23,9 +22,6 @@ if TYPE_CHECKING:
 
     from gearidae.scene import Scene
     from gearidae.studies.study import Study
-
-_FRACTION: Final = "coating.sam_fraction"
-_TORQUE: Final = "drive.torque"
 
 
 def run_study(study: Study, case: str, request: Request, call: Call) -> int:

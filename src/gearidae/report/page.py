@@ -30,9 +30,8 @@ from gearidae.report.tables import (
     validity_table,
 )
 from gearidae.report.teeth import pack_teeth
-from gearidae.studies.answers import answer
 from gearidae.studies.declared import studies
-from gearidae.studies.products import kind_of
+from gearidae.studies.products import answer, kind_of
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 """What the browser may load for the page: nothing from anywhere."""

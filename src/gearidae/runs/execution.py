@@ -16,6 +16,7 @@ from gearidae.archive import open_archive, save
 from gearidae.archive.provenance import provenance
 from gearidae.archive.target import check_target, claims_output
 from gearidae.errors import Interrupted, SceneError
+from gearidae.progress import sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import prepare
@@ -104,6 +105,50 @@ class Execution:
         workers = self.threads() or (1 if self.jobs is None else self.jobs)
         with own_executor(workers, calls, releases_gil=self.threads() > 0) as own:
             yield own
+
+    @contextmanager
+    def side_by_side(
+        self, kept: KeptRuns | None, usual: int, at_a_time: int | None = None
+    ) -> Iterator[SideBySide]:
+        """Provide what computes the runs of a study, of which there are usually so many, and shows its progress."""
+        with (
+            sweep_progress(self.progress, usual) as report,
+            self.computing(at_a_time or usual) as executor,
+        ):
+            yield SideBySide(self, kept, executor, report, usual)
+
+
+@dataclass
+class SideBySide:
+    """Runs of a study side by side, from `Execution.side_by_side`.
+
+    Attributes
+    ----------
+    how : Execution
+    kept : KeptRuns or None
+        Where finished runs are taken from, and kept.
+    executor : Executor or None
+    report : callable
+        Shows the progress.
+    usual : int
+        How many runs the study usually takes.
+    """
+
+    how: Execution
+    kept: KeptRuns | None
+    executor: Executor | None
+    report: SweepProgress
+    usual: int
+    done: int = 0
+
+    def of(
+        self, function: Callable[..., tuple[Solution, str]], scenes: Sequence[Scene], *arguments: Any
+    ) -> Iterator[tuple[Solution, str]]:
+        """Go through the results of a function of each scene, the arguments and the driver, as `solutions`."""
+        for found in solutions(self.kept, self.executor, function, scenes, *arguments, self.how.backend):
+            self.done += 1
+            self.report(float(min(self.done, self.usual)), self.usual)
+            yield found
 
 
 def prepared(

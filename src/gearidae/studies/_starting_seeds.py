@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
@@ -16,8 +15,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError, SolverError
-from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.execution import Execution, solutions
+from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
 from gearidae.studies.starting_ramp import (
@@ -101,32 +99,22 @@ class _Design:
         self.torques = torques
 
 
+@dataclass
 class _Runs:
-    """Runs side by side, with their progress."""
+    """Runs side by side, and the messages of those that have failed."""
 
-    def __init__(
-        self,
-        how: Execution,
-        kept: KeptRuns | None,
-        executor: Executor | None,
-        report: SweepProgress,
-        usual: int,
-    ) -> None:
-        self._how, self._kept, self._executor = how, kept, executor
-        self._report, self._usual, self._done = report, usual, 0
-        self.failures: list[str] = []
+    computing: SideBySide
+    failures: list[str] = field(default_factory=list)
 
     def torques(self, scenes: Sequence[Scene]) -> Floats:
         """Torques of runs from rest [N m]; infinite where the gear has not turned, NaN where its run has failed."""
         found = []
-        for _, word in solutions(self._kept, self._executor, run_from_rest, scenes, self._how.backend):
+        for _, word in self.computing.of(run_from_rest, scenes):
             failed = word.startswith(FAILS)
             if failed:
                 self.failures.append(word.removeprefix(FAILS))
                 log.warning("one gear is left out: %s", self.failures[-1])
             found.append(math.nan if failed else math.inf if word == RESTS else float(word))
-            self._done += 1
-            self._report(float(min(self._done, self._usual)), self._usual)
         return np.array(found)
 
 
@@ -158,8 +146,8 @@ def starting_torques(
     def work(kept: KeptRuns | None) -> xr.Dataset:
         designs = [_Design(each, [laid(each, seed) for seed in numbers]) for each in scenes]
         usual = _STAGES * count * len(designs)
-        with sweep_progress(how.progress, usual) as report, how.computing(usual) as executor:
-            _find_all(designs, _Runs(how, kept, executor, report, usual))
+        with how.side_by_side(kept, usual) as computing:
+            _find_all(designs, _Runs(computing))
         return _dataset(base, fractions, numbers, designs)
 
     return GEARS.compute(how, base, work, [GEARS.kind, list(fractions), count])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
@@ -16,14 +16,14 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.mesh.friction import hub_starting_torque, starting_ratio
-from gearidae.progress import sweep_progress
 from gearidae.runs.estimates import mean_force
-from gearidae.runs.execution import Execution, RunOptions, prepared, solutions
+from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.rubbing import flank_coefficient, hub_radii
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.carried import numbers_of
 from gearidae.studies._starting_seeds import starting_torques
+from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
@@ -36,12 +36,8 @@ if TYPE_CHECKING:
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
 _LOWEST = 1e-3
 """Default lower end of the search, as a part of the scene's torque."""
-_HEAVIEST = 1e12
-"""No torque above this many times the lowest is tried."""
 _PATIENCE = 3.0
 """A gear that has not arrived after this many times the time it would take without adhesion has stuck."""
-_STRIDE = 4.0
-"""Factor by which the simulated search widens its bracket."""
 
 
 def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | None = None) -> float:
@@ -81,14 +77,14 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
         force = (dry + math.exp(logarithm)) / geometry.base_radius_pinion
         return math.exp(logarithm) - max(holding_forces(scene, force, impacts)) * lever
 
-    low = math.log(lowest)
-    if surplus(low) > 0.0:
+    tried: dict[float, bool] = {}
+    while (torque := next_value(tried, lowest, lowest, STRIDE)) is not None:
+        tried[torque] = surplus(math.log(torque)) > 0.0
+    if tried[lowest]:
         return dry
-    high = low
-    while surplus(high) <= 0.0:
-        if high > math.log(lowest * _HEAVIEST):
-            return math.inf
-        low, high = high, high + math.log(_STRIDE)
+    if not any(tried.values()):
+        return math.inf
+    low, high = map(math.log, bracket(tried))
     return dry + math.exp(float(brentq(surplus, low, high, xtol=1e-3)))
 
 
@@ -231,50 +227,38 @@ class _Search:
     impacts: int
     lowest: float
     static: float
-    turns: float = math.inf
-    sticks: float = 0.0
+    turned: dict[float, bool] = field(default_factory=dict)
 
     def next_torque(self, tolerance: float) -> float | None:
         """Torque to try next; None when the bracket is narrow, or there is nothing in reach."""
-        if math.isinf(self.turns):
-            guess = self.static - _dry(self.scene)
-            first = guess if self.lowest < guess < math.inf else self.lowest
-            torque = first if self.sticks == 0.0 else self.sticks * _STRIDE
-            return torque if torque <= self.lowest * _HEAVIEST else None
-        if self.sticks == 0.0:
-            return max(self.turns / _STRIDE, self.lowest) if self.turns > self.lowest else None
-        return math.sqrt(self.turns * self.sticks) if self.turns > (1.0 + tolerance) * self.sticks else None
-
-    def learn(self, torque: float, turned: bool) -> None:
-        """Take in the outcome of a run."""
-        if turned:
-            self.turns = min(self.turns, torque)
-        else:
-            self.sticks = max(self.sticks, torque)
+        guess = self.static - _dry(self.scene)
+        first = guess if self.lowest < guess < math.inf else self.lowest
+        return next_value(self.turned, first, self.lowest, tolerance)
 
     @property
     def result(self) -> tuple[float, float]:
         """Smallest torque that turns and largest that sticks [N m]; alike if the gear turns at the lowest."""
         dry = _dry(self.scene)
-        return (dry, dry) if self.sticks == 0.0 else (dry + self.turns, dry + self.sticks)
+        if all(self.turned.values()):
+            return dry, dry
+        sticks, turns = bracket(self.turned)
+        return (dry + turns, dry + sticks) if turns > 0.0 else (math.inf, dry + max(self.turned))
 
 
 def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, kept: KeptRuns | None) -> None:
     """Narrow all brackets, the runs of each round side by side."""
-    halvings = math.ceil(math.log2(math.log(_STRIDE) / math.log1p(tolerance)))
-    usual, done = len(searches) * (2 + max(halvings, 0)), 0
-    with sweep_progress(how.progress, usual) as report, how.computing(len(searches)) as executor:
+    halvings = math.ceil(math.log2(math.log(STRIDE) / math.log1p(tolerance)))
+    usual = len(searches) * (2 + max(halvings, 0))
+    with how.side_by_side(kept, usual, len(searches)) as computing:
         while True:
             wanted = [(each, each.next_torque(tolerance)) for each in searches]
             todo = [(each, torque) for each, torque in wanted if torque is not None]
             if not todo:
                 return
             scenes = [_from_rest(each, torque) for each, torque in todo]
-            found = solutions(kept, executor, _run_from_rest, scenes, _way(todo[0][0]), how.backend)
+            found = computing.of(_run_from_rest, scenes, _way(todo[0][0]))
             for (each, torque), (_, word) in zip(todo, found, strict=True):
-                each.learn(torque, word == "turns")
-                done += 1
-                report(float(min(done, usual)), usual)
+                each.turned[torque] = word == "turns"
 
 
 def _way(search: _Search) -> float:

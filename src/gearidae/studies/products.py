@@ -1,8 +1,9 @@
-"""Files that studies have written: one reader, and which study a file is of."""
+"""Files that studies have written: one reader, which study a file is of, and what it says."""
 
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 
 import xarray as xr
@@ -94,6 +95,34 @@ def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
         return loaded(source)
     except Exception as error:
         raise SceneError(_last(kind), path, f"is damaged ({error})") from error
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a study has found.
+
+    Attributes
+    ----------
+    sentence : str
+        The answer.
+    rows : tuple of (str, str, str)
+        Name, value and remark; a row without a value is a heading.
+    """
+
+    sentence: str
+    rows: tuple[tuple[str, str, str], ...]
+
+
+def answer(ds: xr.Dataset, kind: str) -> Answer:
+    """Say what a study has found.
+
+    Parameters
+    ----------
+    kind : str
+        From `open_product`, other than ``runs``.
+    """
+    study = studies()[kind]
+    return Answer(study.sentence(ds), tuple(study.rows(ds)))
 
 
 def open_life(path: str | os.PathLike[str]) -> xr.Dataset:

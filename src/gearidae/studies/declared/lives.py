@@ -14,8 +14,8 @@ import xarray as xr
 
 from gearidae.errors import SceneError
 from gearidae.scene.pairs import texts
-from gearidae.studies.answers import count_rows
 from gearidae.studies.law_draws import written_law
+from gearidae.studies.members import count_rows
 from gearidae.studies.options import (
     VARY_EXAMPLE,
     Arrhenius,

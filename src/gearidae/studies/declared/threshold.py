@@ -6,11 +6,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
@@ -19,11 +16,11 @@ import xarray as xr
 from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
-from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.execution import RunOptions, prepared, solutions
+from gearidae.runs.execution import RunOptions, SideBySide, prepared
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.scene.keys import find_key
 from gearidae.scene.pairs import sweep_values
+from gearidae.studies.bracket import bracket
 from gearidae.studies.requirements import require_gears
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
@@ -114,16 +111,11 @@ def sticking_threshold(
         return _dataset(scene, over, runs, waits, ends, width)
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
-        with sweep_progress(how.progress, most) as report, how.computing(most) as computing:
-            pool = _Pool(base, over, exits, how.backend, computing, kept, partial(_tell, report, most), runs)
-            _search(pool, ends, waits, width)
+        with how.side_by_side(kept, most) as computing:
+            _search(_Pool(base, over, exits, computing, runs), ends, waits, width)
         return so_far()
 
     return STUDY.compute(how, base, work, [over, *ends, exits, width], origin=scene, so_far=so_far)
-
-
-def _tell(report: SweepProgress, most: int, done: int) -> None:
-    report(float(done), most)
 
 
 @dataclass
@@ -133,10 +125,7 @@ class _Pool:
     scene: Scene
     over: str
     exits: int
-    backend: str
-    executor: Executor | None
-    kept: KeptRuns | None
-    report: Callable[[int], None]
+    computing: SideBySide
     runs: list[ThresholdRun]
 
     def run(self, values: Sequence[float]) -> None:
@@ -144,12 +133,11 @@ class _Pool:
         done = {each.value for each in self.runs}
         todo = sorted({value for value in values if value not in done})
         scenes = [self.scene.replace({self.over: value}) for value in todo]
-        found = solutions(self.kept, self.executor, run_until, scenes, self.exits, self.backend)
+        found = self.computing.of(run_until, scenes, self.exits)
         for value, (solution, _) in zip(todo, found, strict=True):
             run = ThresholdRun.of(value, solution)
             _refuse_short(self.scene, run, self.exits)
             self.runs.append(run)
-            self.report(len(self.runs))
 
 
 def _refuse_short(scene: Scene, run: ThresholdRun, exits: int) -> None:
@@ -180,14 +168,9 @@ def _search(pool: _Pool, ends: tuple[float, float], waits: Sequence[int], width:
 
 def _bracket(runs: Sequence[ThresholdRun], exits: int) -> tuple[float, float]:
     """Value nearest to the passing end at which a run sticks within so many exits, and the next beyond it."""
-    ordered = sorted(runs, key=lambda run: run.value)
-    if ordered[0].passed > ordered[-1].passed:  # go from the end that sticks to the other
-        ordered.reverse()
-    bracket = (math.nan, math.nan)
-    for one, high in pairwise(ordered):
-        if one.passed < exits <= high.passed:
-            bracket = (one.value, high.value)
-    return bracket
+    first, last = (pick(runs, key=lambda run: run.value) for pick in (min, max))
+    passed = {run.value: run.passed >= exits for run in runs}
+    return bracket(passed, falling=first.passed > last.passed)
 
 
 def _check_ends(pool: _Pool, ends: tuple[float, float]) -> None:
