@@ -5,12 +5,15 @@ from __future__ import annotations
 import html
 import json
 import re
+import subprocess
+import sys
 
 import pytest
 
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.report import build_report
+from gearidae.studies.declared import studies
 from gearidae.studies.products import answer, kind_of, open_product
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 4e-3, "run.samples": 401})
@@ -81,6 +84,35 @@ def test_a_file_is_known_for_what_it_is(product):
     found, name = open_product(path)
     assert name == kind == kind_of(ds)
     assert answer(found, kind) == answer(ds, kind)
+
+
+def test_a_file_holds_what_its_study_declares(product):
+    """Dimensions and units of the columns, as the reference lists them."""
+    kind, path, _ = product
+    found, _ = open_product(path)
+    columns = studies()[kind].columns
+    assert columns
+    for name, column in columns.items():
+        if name not in found.variables:
+            assert not column.required, name
+            continue
+        assert len(found[name].dims) == len(column.dims), name
+        if column.units and not column.units.startswith("{"):
+            assert found[name].attrs.get("units", "1") == column.units, name
+
+
+def test_a_study_needs_neither_the_engine_nor_matplotlib_to_be_read():
+    script = (
+        "import sys; from gearidae.studies.declared import studies; studies(); "
+        "heavy = ('numba', 'matplotlib', 'scipy.stats', 'gearidae.engine', 'gearidae.compiled', 'gearidae.cli'); "
+        "print([name for name in heavy if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_kind_is_tested_here():
+    assert set(studies()) == set(STUDIES)
 
 
 def test_a_whole_file_is_not_computed_again(product, monkeypatch):

@@ -61,8 +61,8 @@ def _annotation(declared: Any) -> Any:
     about: dict[str, Any] = {"help": option.help}
     if option.name:
         about["name"] = option.name
-    if option.repeatable:
-        about["consume_multiple"] = False
+    if option.repeatable or option.many:
+        about["consume_multiple"] = option.many
     if option.completes:
         about["completer"] = getattr(completing, option.completes)
     return Annotated[kind, Parameter(**about)]

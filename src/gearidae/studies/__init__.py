@@ -1,8 +1,8 @@
 """Studies: simulations, or the static contact, used to answer a question.
 
-`coating_map`, `sticking_threshold`, `starting_torque` and `static_starting_torque`, what the teeth did
-(`tooth_contacts`), derivatives (`sensitivity`), and estimates on paper. The older names are those of
-`gearidae.analysis` too. Names are loaded on first use.
+Each file of `gearidae.studies.declared` is a study; besides there are what the teeth did (`tooth_contacts`),
+derivatives (`sensitivity`), and estimates on paper. The older names are those of `gearidae.analysis` too. Names are
+loaded on first use; a study needs no line below, which is for type checkers.
 """
 
 from __future__ import annotations
@@ -43,4 +43,4 @@ if TYPE_CHECKING:
     from gearidae.studies.products import open_map as open_map
     from gearidae.studies.products import open_posterior as open_posterior
 
-__getattr__, __dir__, __all__ = lazy_names(__name__)
+__getattr__, __dir__, __all__ = lazy_names(__name__, "gearidae.studies.declared")

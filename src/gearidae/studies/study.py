@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import xarray as xr
 
+from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.errors import SceneError
 
 if TYPE_CHECKING:
@@ -62,6 +63,8 @@ class Option:
         Of the option, where it is not that of the parameter.
     repeatable : bool, optional
         Whether the option stands in front of each of its values.
+    many : bool, optional
+        Whether several values follow the option.
     completes : str, optional
         Function of `gearidae.cli.completing` that offers the shell its values.
     """
@@ -69,6 +72,7 @@ class Option:
     help: str
     name: str = ""
     repeatable: bool = False
+    many: bool = False
     completes: str = ""
 
 
@@ -225,6 +229,7 @@ class Study:
         settings: object,
         *,
         origin: Scene | None = None,
+        keep: Keep = EVERYTHING,
         **more: Any,
     ) -> xr.Dataset:
         """Compute the dataset by `work`, whose runs are kept beside the archive until it is written.
@@ -237,6 +242,8 @@ class Study:
             What the result depends on besides the scene, ready for JSON.
         origin : Scene, optional
             The scene that the question was about; by default `base`.
+        keep : Keep, optional
+            What each run leaves behind.
         **more
             As for `gearidae.runs.execution.run_kept`, whose errors these are too.
         """
@@ -245,7 +252,7 @@ class Study:
         from gearidae.studies.products import open_product
 
         def store(target: Path) -> KeptRuns:
-            return KeptRuns(target, base, how.driver)
+            return KeptRuns(target, base, how.driver, keep)
 
         about = {**origin_of(base if origin is None else origin), "settings": json.dumps(settings)}
         return run_kept(how, store, work, about, read=lambda path: open_product(path, self.kind)[0], **more)
