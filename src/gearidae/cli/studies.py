@@ -44,7 +44,7 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
-    function = getattr(gd.studies, study.run)
+    function = getattr(gd.studies, study.run or study.kind)
     words = call.announcement
     if not isinstance(words, str):
         words = words(scene, workers if request.dask is None else None)

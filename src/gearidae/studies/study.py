@@ -141,7 +141,7 @@ class Study:
     check : callable, optional
         Raises a `SceneError` if a dataset is something else, in place of a look at the columns.
     run : str, optional
-        The function of `gearidae.studies`; without one, another study's makes this kind too.
+        The function of `gearidae.studies`, by default that of the kind's name.
     title, suffix : str, optional
         What the command calls it, and the end of the name of its file.
     command : callable, optional

@@ -296,7 +296,6 @@ STUDY = Study(
     words="coating map",
     maker="coating-map",
     title="Map",
-    run="coating_map",
     command=_call,
     examples=("gearidae coating-map mine.toml -o map.nc",),
     columns={

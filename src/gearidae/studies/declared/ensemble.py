@@ -332,7 +332,6 @@ STUDY = Study(
     words="ensemble of runs",
     maker="ensemble",
     title="Ensemble",
-    run="ensemble",
     command=_call,
     examples=(
         'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',

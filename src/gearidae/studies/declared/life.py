@@ -229,7 +229,6 @@ STUDY = Study(
     words="life of a coating",
     maker="life",
     title="Life",
-    run="life",
     command=_call,
     examples=(
         'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',

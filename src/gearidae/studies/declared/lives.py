@@ -207,7 +207,6 @@ STUDY = Study(
     words="ensemble of lives",
     maker="lives",
     title="Lives",
-    run="lives",
     command=_call,
     examples=("gearidae lives mine.toml --law contacts --size 64 --vary law.area=lognormal(1e-19,3)",),
     columns={

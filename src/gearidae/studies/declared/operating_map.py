@@ -265,7 +265,6 @@ STUDY = Study(
     words="operating map",
     maker="operating-map",
     title="Operating map",
-    run="operating_map",
     command=_call,
     examples=(
         "gearidae operating-map mine.toml --over drive.torque=4e-18:5e-18:2e-19 coating.sam_fraction=1:0.4:-0.1",

@@ -221,7 +221,6 @@ STUDY = Study(
     words="study of pull-off forces",
     maker="pull-off",
     title="Pull-off",
-    run="pull_off",
     command=_call,
     examples=('gearidae pull-off mine.toml --seeds 1000 --load "1 uN"',),
     columns={

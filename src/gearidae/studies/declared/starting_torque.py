@@ -276,7 +276,6 @@ STUDY = Study(
     words="study of starting torques",
     maker="starting-torque",
     title="Starting torque",
-    run="starting_torque",
     command=_call,
     examples=(
         "gearidae starting-torque mine.toml",

@@ -350,7 +350,6 @@ STUDY = Study(
     words="sticking threshold",
     maker="threshold",
     title="Threshold",
-    run="sticking_threshold",
     command=_call,
     examples=("gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",),
     columns={
