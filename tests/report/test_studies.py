@@ -56,6 +56,9 @@ def sticking_threshold(path, **more):
 
 STUDIES = {
     "coating_map": lambda path, **more: gd.studies.coating_map(LOW, [1.0, 0.8], archive=path, **more),
+    "convergence": lambda path, **more: gd.studies.convergence(
+        LOW, ["gear_angle", "adhesion_loss"], rtols=[1e-4, 1e-5, 1e-6], archive=path, **more
+    ),
     "ensemble": lambda path, **more: gd.studies.ensemble(
         LOW, DRAWN, 4, of="min_gear_speed", archive=path, **more
     ),
