@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import gearidae as gd
-from gearidae.archive import check_target
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
 from gearidae.cli.request import Request
+from gearidae.cli.simulation import announce
 from gearidae.cli.tables import name_failures
 from gearidae.runs.executors import check_jobs
-from gearidae.runs.kept_runs import folder_beside
 from gearidae.studies.products import answer, kind_of
 from gearidae.studies.study import Call
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from gearidae.scene import Scene
     from gearidae.studies.study import Study
 
 
@@ -67,31 +64,6 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
     code = _code(ds)
     say(found.sentence)
     return code
-
-
-def announce(
-    title: str, scene: Scene, words: str, target: Path, *, resume: bool = False, overwrite: bool = False
-) -> None:
-    """Say what will be run, unless a file is in the way.
-
-    Where runs of an unfinished study are kept, the study itself says what to do with its file.
-
-    Parameters
-    ----------
-    title, words : str
-        What is made, and of which runs.
-    target : Path
-        File to be written.
-
-    Raises
-    ------
-    SceneError
-        If `target` cannot be written.
-    """
-    if not resume and not folder_beside(target).exists():
-        check_target(target, overwrite=overwrite)
-    if words:
-        say(f"{title} of {scene.name}: {words}")
 
 
 def _code(ds: xr.Dataset) -> int:

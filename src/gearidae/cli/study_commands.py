@@ -15,7 +15,6 @@ from gearidae.studies.declared import study_of_command
 from gearidae.studies.study import Option, Study
 
 _USUAL = Request()
-_IN_LINE = inspect.Parameter.KEYWORD_ONLY
 
 
 def __getattr__(name: str) -> App:
@@ -42,11 +41,14 @@ def _function(study: Study) -> Any:
     parameters = [
         inspect.Parameter("case", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=Case),
         *(
-            each.replace(kind=_IN_LINE, annotation=_annotation(each.annotation))
+            each.replace(annotation=_annotation(each.annotation))
             for each in inspect.signature(made, eval_str=True).parameters.values()
         ),
         inspect.Parameter(
-            "request", _IN_LINE, default=_USUAL, annotation=Annotated[Request, Parameter(name="*")]
+            "request",
+            inspect.Parameter.KEYWORD_ONLY,
+            default=_USUAL,
+            annotation=Annotated[Request, Parameter(name="*")],
         ),
     ]
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
@@ -59,8 +61,6 @@ def _annotation(declared: Any) -> Any:
     kind, option = get_args(declared)
     assert isinstance(option, Option)
     about: dict[str, Any] = {"help": option.help}
-    if option.name:
-        about["name"] = option.name
     if option.repeatable or option.many:
         about["consume_multiple"] = option.many
     if option.completes:

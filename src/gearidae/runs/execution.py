@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, TypeVar
 
 import xarray as xr
 
@@ -39,6 +40,7 @@ class Store(Protocol):
         """Delete those of some scenes, or all."""
 
 
+SideBySide: TypeAlias = Callable[..., Iterator[tuple["Solution", str]]]
 Kept = TypeVar("Kept", bound=Store)
 
 
@@ -110,66 +112,27 @@ class Execution:
     def side_by_side(
         self, kept: KeptRuns | None, usual: int, at_a_time: int | None = None
     ) -> Iterator[SideBySide]:
-        """Provide what computes the runs of a study, of which there are usually so many, and shows its progress."""
+        """Provide `solutions` for a study that usually has so many runs: with this driver, and its progress shown."""
+        done = itertools.count(1)
         with (
             sweep_progress(self.progress, usual) as report,
             self.computing(at_a_time or usual) as executor,
         ):
-            yield SideBySide(self, kept, executor, report, usual)
 
+            def run(
+                function: Any, scenes: Sequence[Scene], *arguments: Any
+            ) -> Iterator[tuple[Solution, str]]:
+                for found in solutions(kept, executor, function, scenes, *arguments, self.backend):
+                    yield found
+                    report(float(min(next(done), usual)), usual)  # of what has been taken in
 
-@dataclass
-class SideBySide:
-    """Runs of a study side by side, from `Execution.side_by_side`.
-
-    Attributes
-    ----------
-    how : Execution
-    kept : KeptRuns or None
-        Where finished runs are taken from, and kept.
-    executor : Executor or None
-    report : callable
-        Shows the progress.
-    usual : int
-        How many runs the study usually takes.
-    """
-
-    how: Execution
-    kept: KeptRuns | None
-    executor: Executor | None
-    report: SweepProgress
-    usual: int
-    done: int = 0
-
-    def of(
-        self, function: Callable[..., tuple[Solution, str]], scenes: Sequence[Scene], *arguments: Any
-    ) -> Iterator[tuple[Solution, str]]:
-        """Go through the results of a function of each scene, the arguments and the driver, as `solutions`."""
-        for found in solutions(self.kept, self.executor, function, scenes, *arguments, self.how.backend):
-            self.done += 1
-            self.report(float(min(self.done, self.usual)), self.usual)
-            yield found
+            yield run
 
 
 def prepared(
     scene: Scene, options: RunOptions, *, samples: int | str | None = None
 ) -> tuple[Scene, Execution]:
-    """Check the scene and the options of a study, before anything is run.
-
-    Parameters
-    ----------
-    samples : int or str, optional
-        In place of ``run.samples``.
-
-    Returns
-    -------
-    Scene, Execution
-
-    Raises
-    ------
-    SceneError
-        If one of them is not allowed.
-    """
+    """Check the scene and the options of a study, before anything is run; `samples` are in place of the scene's."""
     base = prepare(scene, rtol=None, samples=samples, backend=options.get("backend", "auto"))
     return base, Execution(**options, method=base.run.method)
 

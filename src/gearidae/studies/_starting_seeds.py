@@ -103,13 +103,13 @@ class _Design:
 class _Runs:
     """Runs side by side, and the messages of those that have failed."""
 
-    computing: SideBySide
+    compute: SideBySide
     failures: list[str] = field(default_factory=list)
 
     def torques(self, scenes: Sequence[Scene]) -> Floats:
         """Torques of runs from rest [N m]; infinite where the gear has not turned, NaN where its run has failed."""
         found = []
-        for _, word in self.computing.of(run_from_rest, scenes):
+        for _, word in self.compute(run_from_rest, scenes):
             failed = word.startswith(FAILS)
             if failed:
                 self.failures.append(word.removeprefix(FAILS))
@@ -146,8 +146,8 @@ def starting_torques(
     def work(kept: KeptRuns | None) -> xr.Dataset:
         designs = [_Design(each, [laid(each, seed) for seed in numbers]) for each in scenes]
         usual = _STAGES * count * len(designs)
-        with how.side_by_side(kept, usual) as computing:
-            _find_all(designs, _Runs(computing))
+        with how.side_by_side(kept, usual) as compute:
+            _find_all(designs, _Runs(compute))
         return _dataset(base, fractions, numbers, designs)
 
     return GEARS.compute(how, base, work, [GEARS.kind, list(fractions), count])

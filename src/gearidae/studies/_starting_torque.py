@@ -249,14 +249,14 @@ def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, k
     """Narrow all brackets, the runs of each round side by side."""
     halvings = math.ceil(math.log2(math.log(STRIDE) / math.log1p(tolerance)))
     usual = len(searches) * (2 + max(halvings, 0))
-    with how.side_by_side(kept, usual, len(searches)) as computing:
+    with how.side_by_side(kept, usual, len(searches)) as compute:
         while True:
             wanted = [(each, each.next_torque(tolerance)) for each in searches]
             todo = [(each, torque) for each, torque in wanted if torque is not None]
             if not todo:
                 return
             scenes = [_from_rest(each, torque) for each, torque in todo]
-            found = computing.of(_run_from_rest, scenes, _way(todo[0][0]))
+            found = compute(_run_from_rest, scenes, _way(todo[0][0]))
             for (each, torque), (_, word) in zip(todo, found, strict=True):
                 each.turned[torque] = word == "turns"
 

@@ -15,18 +15,9 @@ _HEAVIEST = 1e12
 def bracket(tried: Mapping[float, bool], *, falling: bool = False) -> tuple[float, float]:
     """Return the two values tried between which an outcome changes.
 
-    Parameters
-    ----------
-    tried : mapping of float to bool
-        Whether it holds at each value.
-    falling : bool, optional
-        Whether it holds at the small values, and not at the large ones.
-
-    Returns
-    -------
-    float, float
-        The value at which it does not hold that is nearest to those at which it does, and the next beyond, at which it
-        holds. NaN in place of both where there are no such neighbours.
+    `tried` says whether it holds at each value; it does at the large ones, or with `falling` at the small ones. The
+    first of the two is the value at which it does not hold that is nearest to those, the other the next beyond, at
+    which it holds; both are NaN where there are no such neighbours.
     """
     ends = (math.nan, math.nan)
     for value, beyond in pairwise(sorted(tried, reverse=falling)):
@@ -38,21 +29,8 @@ def bracket(tried: Mapping[float, bool], *, falling: bool = False) -> tuple[floa
 def next_value(tried: Mapping[float, bool], first: float, lowest: float, tolerance: float) -> float | None:
     """Return the value to try next where an outcome holds above some positive value, and not below.
 
-    Parameters
-    ----------
-    tried : mapping of float to bool
-        Whether it holds at each value.
-    first : float
-        Where the search begins.
-    lowest : float
-        No value below is tried.
-    tolerance : float
-        Relative width at which the bracket is narrow enough.
-
-    Returns
-    -------
-    float or None
-        None if it is, or no value in reach makes a bracket.
+    The search begins at `first` and tries no value below `lowest`. None where the bracket is as narrow as `tolerance`,
+    relative to the value, or no value in reach makes one.
     """
     fails, holds = bracket(tried)
     if not tried:

@@ -23,22 +23,7 @@ _LAW: Final = "law."
 def written_law(
     name: str, parameters: Sequence[str], arrhenius: Sequence[str], vary: Mapping[str, Any]
 ) -> LossLaw:
-    """Make the loss law of a command line, whose parameters that are drawn may be missing.
-
-    Parameters
-    ----------
-    name : str
-        Of the law.
-    parameters, arrhenius : sequence of str
-        ``name=value`` of its parameters, and of those of a factor of Arrhenius, if it has one.
-    vary : mapping of str to object
-        As for `law_of_medians`.
-
-    Raises
-    ------
-    SceneError
-        If there is no such law, or its parameters are others.
-    """
+    """Make the loss law of a command line, of texts ``name=value``; parameters that are drawn may be missing."""
     law = law_of_medians(name, assignments(parameters, "--parameter", "energy=2 J/m^2"), vary)
     if not arrhenius:
         return law

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from pathlib import Path
 
 import xarray as xr
 
 from gearidae.archive import open_archive
-from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 from gearidae.studies.declared import studies
-
-_HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
-"""How netCDF files begin, those of version 4 and the older ones."""
 
 
 def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple[xr.Dataset, str]:
@@ -39,17 +34,13 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
         If the file cannot be read or is something else.
     """
     if kind is not None:
-        ds = _read(path, kind)
-        try:
-            return studies()[kind].require(ds), kind
-        except SceneError as error:
-            raise SceneError(_last(kind), path, error.allowed) from None
+        return studies()[kind].open(path), kind
     try:
         ds = open_archive(path)
         return ds, kind_of(ds)
     except SceneError as no_archive:
         try:
-            ds = _read(path, "life")
+            ds = studies()["life"].read(path)
         except SceneError:
             raise no_archive from None
         if (found := kind_of(ds)) == "runs":
@@ -72,29 +63,6 @@ def kind_of(ds: xr.Dataset) -> str:
         except SceneError:
             pass
     return "runs"
-
-
-def _last(kind: str) -> str:
-    """Name a file as errors do: ``map``."""
-    return kind.rpartition("_")[2]
-
-
-def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
-    source, about = Path(path), studies()[kind]
-    if not source.is_file():
-        raise SceneError(_last(kind), path, "there is no such file")
-    try:
-        with source.open("rb") as file:
-            head = file.read(8)
-    except OSError as error:
-        raise SceneError(_last(kind), path, f"cannot be read ({error.strerror})") from error
-    if not head.startswith(_HEADERS):
-        allowed = f"is no {about.words} but another kind of file; make one with {about.maker}"
-        raise SceneError(_last(kind), path, allowed)
-    try:
-        return loaded(source)
-    except Exception as error:
-        raise SceneError(_last(kind), path, f"is damaged ({error})") from error
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from a `Study`. The files that declare one are in `gearidae.studies.declared`.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import xarray as xr
 
 from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
 if TYPE_CHECKING:
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from gearidae.runs.kept_runs import KeptRuns
     from gearidae.scene import Scene
 
+_HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
+"""How netCDF files begin, those of version 4 and the older ones."""
 Rows: TypeAlias = Iterator[tuple[str, str, str]]
 """Names, values and remarks; a row without a value is a heading."""
 
@@ -59,8 +63,6 @@ class Option:
     ----------
     help : str
         What it is.
-    name : str, optional
-        Of the option, where it is not that of the parameter.
     repeatable : bool, optional
         Whether the option stands in front of each of its values.
     many : bool, optional
@@ -70,7 +72,6 @@ class Option:
     """
 
     help: str
-    name: str = ""
     repeatable: bool = False
     many: bool = False
     completes: str = ""
@@ -145,7 +146,7 @@ class Study:
     title, suffix : str, optional
         What the command calls it, and the end of the name of its file.
     command : callable, optional
-        Makes the `Call` of the options on the command line.
+        Makes the `Call` of the options on the command line, its keyword arguments.
     examples : tuple of str, optional
         Command lines.
     member_columns : tuple of str, optional
@@ -199,6 +200,43 @@ class Study:
             raise SceneError("dataset", type(ds).__name__, allowed)
         return ds
 
+    def open(self, path: str | os.PathLike[str]) -> xr.Dataset:
+        """Read a file of this study.
+
+        Raises
+        ------
+        SceneError
+            If it cannot be read or is something else.
+        """
+        ds = self.read(path)
+        try:
+            return self.require(ds)
+        except SceneError as error:
+            raise SceneError(self._file, path, error.allowed) from None
+
+    def read(self, path: str | os.PathLike[str]) -> xr.Dataset:
+        """Read a netCDF file, whatever is in it; errors say that it is no file of this study."""
+        source = Path(path)
+        if not source.is_file():
+            raise SceneError(self._file, path, "there is no such file")
+        try:
+            with source.open("rb") as file:
+                head = file.read(8)
+        except OSError as error:
+            raise SceneError(self._file, path, f"cannot be read ({error.strerror})") from error
+        if not head.startswith(_HEADERS):
+            allowed = f"is no {self.words} but another kind of file; make one with {self.maker}"
+            raise SceneError(self._file, path, allowed)
+        try:
+            return loaded(source)
+        except Exception as error:
+            raise SceneError(self._file, path, f"is damaged ({error})") from error
+
+    @property
+    def _file(self) -> str:
+        """What errors call the file: ``map``."""
+        return self.kind.rpartition("_")[2]
+
     def dataset(self, values: Mapping[str, Any], attributes: Mapping[str, Any], **named: str) -> xr.Dataset:
         """Make the dataset of what was found.
 
@@ -249,10 +287,9 @@ class Study:
         """
         from gearidae.runs.execution import origin_of, run_kept
         from gearidae.runs.kept_runs import KeptRuns
-        from gearidae.studies.products import open_product
 
         def store(target: Path) -> KeptRuns:
             return KeptRuns(target, base, how.driver, keep)
 
         about = {**origin_of(base if origin is None else origin), "settings": json.dumps(settings)}
-        return run_kept(how, store, work, about, read=lambda path: open_product(path, self.kind)[0], **more)
+        return run_kept(how, store, work, about, read=self.open, **more)

@@ -28,9 +28,9 @@ from gearidae.studies.declared.ensemble import figure_names
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.observation_files import observation_of, read_observations
 from gearidae.studies.observations import STICKS, Observation
-from gearidae.studies.posterior import grid_posterior, sampled_posterior
+from gearidae.studies.posterior import SUMMARY, grid_posterior, sampled_posterior
 from gearidae.studies.products import open_posterior
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Call, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -264,6 +264,7 @@ def calibrated_keys(posterior: xr.Dataset) -> tuple[str, ...]:
 
 
 def _call(
+    *,
     vary: Annotated[
         list[str],
         Option(
@@ -368,13 +369,7 @@ STUDY = Study(
         'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
         'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',
     ),
-    columns={
-        "parameter": Column(("parameter",), "1", "key"),
-        "level": Column(("level",), "1", "share of the posterior below"),
-        "mean": Column(("parameter",), "", "posterior mean, in the key's SI unit"),
-        "standard_deviation": Column(("parameter",), "", "posterior standard deviation, likewise"),
-        "quantiles": Column(("parameter", "level"), "", "posterior quantiles, likewise"),
-    },
+    columns=SUMMARY,
     check=calibrated_keys,
     sentence=_sentence,
     rows=_rows,

@@ -240,6 +240,7 @@ def _attributes(scene: Scene, keys: tuple[str, ...], analysis: Mapping[Any, Any]
 
 
 def _call(
+    *,
     over: Annotated[
         list[str] | None,
         Option(

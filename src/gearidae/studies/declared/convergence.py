@@ -249,6 +249,7 @@ def judge(values: Floats, ladder: Floats, target: float) -> dict[str, Any]:
 
 
 def _call(
+    *,
     of: Annotated[
         list[str] | None,
         Option(

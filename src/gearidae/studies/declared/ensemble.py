@@ -27,7 +27,7 @@ from gearidae.studies._sticking_probability import sticking_probability
 from gearidae.studies.announcement import draw_words
 from gearidae.studies.design import Design, check_design, pick_freeze_design, plain_design
 from gearidae.studies.distributions import read_distributions
-from gearidae.studies.indices import FEWEST, Indices, indices_of
+from gearidae.studies.indices import FEWEST, indices_of
 from gearidae.studies.members import along_members, count_rows, member_plan, names_of
 from gearidae.studies.options import VARY_EXAMPLE, Seed, Vary
 from gearidae.studies.options import Design as DesignOption
@@ -173,25 +173,10 @@ def _with_design(
             "%d of %d members have no %s: the indices rest on %d rows in which all members have one%s",
             none, figures.size, of, found.rows, f", of {FEWEST} that they need" if found.rows < FEWEST else "",
         )  # fmt: skip
-    ds = ds.assign_coords(
-        matrix=("member", drawn.matrix, {"long_name": "matrix of the design", "units": "1"}),
-        row=("member", drawn.row, {"long_name": "row of the matrix", "units": "1"}),
-        parameter=("parameter", np.array(keys), {"long_name": "key that was drawn", "units": "1"}),
-    )
-    return ds.assign(_index_variables(found, of)).assign_attrs(index_of=of, index_rows=found.rows)
-
-
-def _index_variables(found: Indices, of: str) -> dict[str, Any]:
-    words = {
-        "first_order": f"share of the variance of {of} that the key makes alone",
-        "total_order": f"share of the variance of {of} that the key makes, interactions included",
-    }
-    made: dict[str, Any] = {}
-    for name, long_name in words.items():
-        made[name] = ("parameter", getattr(found, name), {"long_name": long_name, "units": "1"})
-        about = {"long_name": f"standard uncertainty of {name}", "units": "1"}
-        made[f"{name}_uncertainty"] = ("parameter", getattr(found, f"{name}_uncertainty"), about)
-    return made
+    values = {name: getattr(found, name) for name in found._fields if name in STUDY.columns}
+    values |= {"matrix": drawn.matrix, "row": drawn.row, "parameter": np.array(keys)}
+    ds = ds.merge(STUDY.dataset(values, {}, of=of)).set_coords(["matrix", "row"])
+    return ds.assign_attrs(index_of=of, index_rows=found.rows)
 
 
 def _titles(scene: Scene, texts: Mapping[str, str], members: int) -> dict[str, str]:
@@ -214,6 +199,7 @@ def _check(ds: xr.Dataset) -> None:
 
 
 def _call(
+    *,
     vary: Vary,
     size: Annotated[int, Option("Number of members; with --of, of rows, a power of 2.")],
     of: Annotated[
@@ -327,6 +313,17 @@ def _with_error(mean: float, error: float, unit: str) -> str:
     return f"{mean:.{digits}g} +- {error:.2g}" + ("" if unit == "1" else f" {unit}")
 
 
+def _index_columns() -> dict[str, Column]:
+    """Sobol' indices and their uncertainties."""
+    found = {}
+    for name, words in (("first_order", " alone"), ("total_order", ", interactions included")):
+        found[name] = Column(
+            ("parameter",), "1", f"share of the variance of {{of}} that the key makes{words}"
+        )
+        found[f"{name}_uncertainty"] = Column(("parameter",), "1", f"standard uncertainty of {name}")
+    return found
+
+
 STUDY = Study(
     kind="ensemble",
     words="ensemble of runs",
@@ -340,8 +337,10 @@ STUDY = Study(
     columns={
         "verdict_code": Column(("member",), "1", "verdict as a number"),
         "sticks": Column(("member",), "1", "whether the gear sticks"),
-        "first_order": Column(("parameter",), "1", "share of the variance that the key makes alone"),
-        "total_order": Column(("parameter",), "1", "share of the variance, interactions included"),
+        "matrix": Column(("member",), "1", "matrix of the design"),
+        "row": Column(("member",), "1", "row of the matrix"),
+        "parameter": Column(("parameter",), "1", "key that was drawn"),
+        **_index_columns(),
     },
     check=_check,
     sentence=_sentence,

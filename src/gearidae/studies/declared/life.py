@@ -33,6 +33,7 @@ _FLANKS: Final = ("passages", "side")
 
 
 def _call(
+    *,
     law: Law,
     parameter: LawParameters,
     arrhenius: Arrhenius = None,

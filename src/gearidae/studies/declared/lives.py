@@ -39,6 +39,7 @@ _SHARES: Final = (0.9, 0.5, 0.1)
 
 
 def _call(
+    *,
     law: Law,
     vary: Vary,
     size: Annotated[int, Option("Number of members.")],

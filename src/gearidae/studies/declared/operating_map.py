@@ -131,6 +131,7 @@ def _check(ds: xr.Dataset) -> None:
 
 
 def _call(
+    *,
     over: Annotated[
         list[str],
         Option(

@@ -118,6 +118,7 @@ def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str
 
 
 def _call(
+    *,
     posterior: Annotated[Path, Option("Posterior, from gearidae calibrate.")],
     size: Annotated[int, Option("Number of runs.")],
     seed: Annotated[int, Option("Seed of the draws.")] = 0,

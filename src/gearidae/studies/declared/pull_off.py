@@ -149,6 +149,7 @@ def _load(scene: Scene, given: float | None) -> float:
 
 
 def _call(
+    *,
     seeds: Annotated[int, Option("Number of drawn surfaces, from contact.seed on.")] = 100,
     load: Annotated[
         str | None, Option("Force that presses the pair, 1 uN. Default: of the drive's mean torque.")

@@ -31,6 +31,7 @@ _ALONG: Final = ("sam_fraction",)
 
 
 def _call(
+    *,
     over: Annotated[
         str | None,
         Option("SAM fractions, coating.sam_fraction=1:0.4:-0.1. Default: the coating of the case as it is."),

@@ -111,8 +111,8 @@ def sticking_threshold(
         return _dataset(scene, over, runs, waits, ends, width)
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
-        with how.side_by_side(kept, most) as computing:
-            _search(_Pool(base, over, exits, computing, runs), ends, waits, width)
+        with how.side_by_side(kept, most) as compute:
+            _search(_Pool(base, over, exits, compute, runs), ends, waits, width)
         return so_far()
 
     return STUDY.compute(how, base, work, [over, *ends, exits, width], origin=scene, so_far=so_far)
@@ -125,7 +125,7 @@ class _Pool:
     scene: Scene
     over: str
     exits: int
-    computing: SideBySide
+    compute: SideBySide
     runs: list[ThresholdRun]
 
     def run(self, values: Sequence[float]) -> None:
@@ -133,7 +133,7 @@ class _Pool:
         done = {each.value for each in self.runs}
         todo = sorted({value for value in values if value not in done})
         scenes = [self.scene.replace({self.over: value}) for value in todo]
-        found = self.computing.of(run_until, scenes, self.exits)
+        found = self.compute(run_until, scenes, self.exits)
         for value, (solution, _) in zip(todo, found, strict=True):
             run = ThresholdRun.of(value, solution)
             _refuse_short(self.scene, run, self.exits)
@@ -248,6 +248,7 @@ def _window(scene: Scene, exits: int) -> float:
 
 
 def _call(
+    *,
     over: Annotated[
         str, Option("Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7.")
     ],
