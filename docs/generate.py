@@ -24,8 +24,9 @@ from gearidae.engine.model.checkpoint_record import STATE_FIELDS
 from gearidae.records import EventKind, Flank
 from gearidae.records.quantity import Quantity
 from gearidae.scene import describe_keys
+from gearidae.studies.declared import studies
 
-__all__ = ["command_tables", "dataset_tables", "key_table", "state_tables", "write_tables"]
+__all__ = ["command_tables", "dataset_tables", "key_table", "state_tables", "study_tables", "write_tables"]
 
 
 def write_tables(folder: Path) -> None:
@@ -35,6 +36,7 @@ def write_tables(folder: Path) -> None:
         ("keys", key_table()),
         ("dataset", dataset_tables()),
         ("commands", command_tables()),
+        ("studies", study_tables()),
         ("state", state_tables()),
     ):
         target = folder / f"{name}.inc.md"
@@ -109,6 +111,29 @@ def command_tables() -> str:
     ]
     parts.append(f"## With every command\n\n{_table(('option', ''), rows)}")
     return "\n".join(parts)
+
+
+def study_tables() -> str:
+    """List the files of studies with what they hold beside the variables of runs."""
+    parts = []
+    for study in studies().values():
+        rows = [
+            (
+                f"`{name}`",
+                ", ".join(column.dims),
+                _unit_of(column.units),
+                column.words.replace("{over}", "the key"),
+            )
+            for name, column in study.columns.items()
+        ]
+        title = f"{study.words[0].upper()}{study.words[1:]}: `gearidae {study.maker}`"
+        parts.append(f"### {title}\n\n{_table(('name', 'dimensions', 'unit', 'what it is'), rows)}")
+    return "\n".join(parts)
+
+
+def _unit_of(declared: str) -> str:
+    """Write the unit of a column; it may be that of a key."""
+    return "" if not declared or declared.startswith("{") else declared
 
 
 def state_tables() -> str:

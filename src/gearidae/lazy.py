@@ -6,6 +6,7 @@ Likewise a call as soon as another package has been imported, without importing 
 from __future__ import annotations
 
 import ast
+import pkgutil
 import sys
 from collections.abc import Callable
 from importlib import import_module
@@ -16,7 +17,9 @@ from types import ModuleType
 from typing import Any
 
 
-def lazy_names(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+def lazy_names(
+    package: str, files_of: str = ""
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Make ``__getattr__``, ``__dir__`` and ``__all__`` of a package from its re-exports.
 
     Re-exports, ``from module import name as name``, are the only list of its public names, for type checkers too.
@@ -27,6 +30,9 @@ def lazy_names(package: str) -> tuple[Callable[[str], Any], Callable[[], list[st
     ----------
     package : str
         Its ``__name__``.
+    files_of : str, optional
+        A package within it. Each of its files has a function of its own name that is public too, unless the re-exports
+        take another one from that file.
     """
     here = sys.modules[package]
     assert here.__spec__ is not None
@@ -38,6 +44,9 @@ def lazy_names(package: str) -> tuple[Callable[[str], Any], Callable[[], list[st
         for each in node.names
         if each.name == each.asname
     }
+    for file in pkgutil.iter_modules(import_module(files_of).__path__) if files_of else ():
+        if (place := f"{files_of}.{file.name}") not in home.values():
+            home.setdefault(file.name, place)
 
     def load(name: str) -> Any:
         if name not in home:

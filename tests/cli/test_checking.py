@@ -12,7 +12,7 @@ import gearidae as gd
 from gearidae.cli import main
 from gearidae.cli.tables import show_outcomes
 from gearidae.report.tables import outcome_table
-from gearidae.studies.answers import answer
+from gearidae.studies.products import answer
 
 CASE = str(Path(__file__).parents[2] / "cases" / "low_speed.toml")
 

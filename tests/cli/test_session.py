@@ -17,6 +17,7 @@ from gearidae.cli.command_line import spread
 from gearidae.cli.examples import EXAMPLES
 from gearidae.cli.session import app
 from gearidae.scene import dump_case
+from gearidae.studies.declared import study_of_command
 
 SHORT = ["--set", "run.samples=51"]
 
@@ -76,7 +77,7 @@ def test_help_shows_examples_that_parse(command, capfd):
     assert main([command, "--help"]) == 0
     shown = " ".join(capfd.readouterr().out.split())
     assert "Examples:" in shown
-    for example in EXAMPLES[command]:
+    for example in EXAMPLES.get(command) or study_of_command(command).examples:
         assert example.split()[-1] in shown
         program, *arguments = shlex.split(example)
         assert program == "gearidae"

@@ -13,7 +13,7 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.analysis.verdict.headline import headline
 from gearidae.cli import main
-from gearidae.cli.outset import draw_words
+from gearidae.studies.announcement import draw_words
 from sweeps import without_times
 
 FRACTIONS = [1.0, 0.5, 0.45]

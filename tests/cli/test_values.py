@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gearidae.cli.case import default_output
 from gearidae.cli.command_line import spread
-from gearidae.cli.values import assignments, default_output, sweep_values
 from gearidae.errors import SceneError
+from gearidae.scene.pairs import assignments, sweep_values
 
 
 @pytest.mark.parametrize(

@@ -167,6 +167,13 @@ def test_generated_tables_are_complete(monkeypatch):
     for option in ("--over", "--jobs", "--map", "--quiet", "--log"):
         assert f"`{option}`" in program
     assert "--no-" not in program
+    written = generate.study_tables()
+    for words in (
+        "Sticking threshold: `gearidae threshold`",
+        "`passages_to_sticking`",
+        "sticking limit of the key",
+    ):
+        assert words in written
     kept = generate.state_tables()
     for record in ("STATE", "HISTORY", "ENERGY", "PROGRESS"):
         assert f"## `{record}`" in kept

@@ -10,8 +10,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 import gearidae as gd
 from gearidae.cli import main
+from gearidae.drawing.picking import pick
 from gearidae.plot.outcome import outcome
-from gearidae.plot.picking import pick
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.1, "run.samples": 201})
 FRACTIONS = [1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.46, 0.42, 0.38, 0.34]

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 import gearidae as gd
 from gearidae.archive import combine, to_dataset
 from gearidae.archive import pieces as pieces_module
-from gearidae.plot import style
-from gearidae.plot.style import scale_for, thin
+from gearidae.drawing import style
+from gearidae.drawing.style import scale_for, thin
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Solution, Statistics
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 1001})

@@ -5,14 +5,16 @@ from __future__ import annotations
 import html
 import json
 import re
+import subprocess
+import sys
 
 import pytest
 
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.report import build_report
-from gearidae.studies.answers import answer
-from gearidae.studies.products import kind_of, open_product
+from gearidae.studies.declared import studies
+from gearidae.studies.products import answer, kind_of, open_product
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 4e-3, "run.samples": 401})
 LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)
@@ -54,6 +56,9 @@ def sticking_threshold(path, **more):
 
 STUDIES = {
     "coating_map": lambda path, **more: gd.studies.coating_map(LOW, [1.0, 0.8], archive=path, **more),
+    "convergence": lambda path, **more: gd.studies.convergence(
+        LOW, ["gear_angle", "adhesion_loss"], rtols=[1e-4, 1e-5, 1e-6], archive=path, **more
+    ),
     "ensemble": lambda path, **more: gd.studies.ensemble(
         LOW, DRAWN, 4, of="min_gear_speed", archive=path, **more
     ),
@@ -82,6 +87,35 @@ def test_a_file_is_known_for_what_it_is(product):
     found, name = open_product(path)
     assert name == kind == kind_of(ds)
     assert answer(found, kind) == answer(ds, kind)
+
+
+def test_a_file_holds_what_its_study_declares(product):
+    """Dimensions and units of the columns, as the reference lists them."""
+    kind, path, _ = product
+    found, _ = open_product(path)
+    columns = studies()[kind].columns
+    assert columns
+    for name, column in columns.items():
+        if name not in found.variables:
+            assert not column.required, name
+            continue
+        assert len(found[name].dims) == len(column.dims), name
+        if column.units and not column.units.startswith("{"):
+            assert found[name].attrs.get("units", "1") == column.units, name
+
+
+def test_a_study_needs_neither_the_engine_nor_matplotlib_to_be_read():
+    script = (
+        "import sys; from gearidae.studies.declared import studies; studies(); "
+        "heavy = ('numba', 'matplotlib', 'scipy.stats', 'gearidae.engine', 'gearidae.compiled', 'gearidae.cli'); "
+        "print([name for name in heavy if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_kind_is_tested_here():
+    assert set(studies()) == set(STUDIES)
 
 
 def test_a_whole_file_is_not_computed_again(product, monkeypatch):

@@ -11,7 +11,7 @@ import gearidae as gd
 from gearidae.errors import Interrupted
 from gearidae.runs.kept_runs import folder_beside
 from gearidae.studies import Observation
-from gearidae.studies._predict import posterior_draws
+from gearidae.studies.declared.predict import posterior_draws
 from gearidae.studies.posterior import LEVELS
 
 LOW = gd.preset("teodorescu2009_low_speed")

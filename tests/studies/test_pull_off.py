@@ -11,8 +11,7 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.cli import main
 from gearidae.contact import attraction_force
 from gearidae.mesh.involute import curvature_radii, flank_arc
-from gearidae.studies.answers import answer
-from gearidae.studies.products import open_product
+from gearidae.studies.products import answer, open_product
 
 GEARS = gd.preset("teodorescu2009").replace({"contact.model": "population"})
 

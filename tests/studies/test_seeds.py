@@ -12,7 +12,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.errors import Interrupted
-from gearidae.studies.answers import answer
+from gearidae.studies.products import answer
 from sweeps import without_times
 
 GEARS = gd.preset("teodorescu2009").replace(

@@ -16,7 +16,6 @@ from gearidae.cli import main
 from gearidae.engine import solve
 from gearidae.errors import Interrupted
 from gearidae.populations.first_touch import first_touch
-from gearidae.runs.execution import Execution
 from gearidae.studies import _starting_seeds, starting_ramp
 from gearidae.studies._starting_seeds import _quantiles
 from reference.population import Contact, Tip
@@ -117,15 +116,10 @@ def test_quantiles_count_gears_that_did_not_start():
     assert found.tolist() == [pytest.approx(1.4), 4.0, math.inf]
 
 
-def test_a_gear_that_cannot_be_followed_is_left_out_and_named(monkeypatch, caplog):
+def test_a_gear_that_cannot_be_followed_is_left_out_and_named(caplog):
     """One of three fails in each run: the others' torques are 2 and 4, and 1 of 2 starts."""
     words = itertools.cycle(["2.0", "fails: the steps became too small", "4.0"])
-    monkeypatch.setattr(
-        _starting_seeds,
-        "solutions",
-        lambda kept, executor, run, scenes, backend: [(None, next(words)) for _ in scenes],
-    )
-    runs = _starting_seeds._Runs(Execution(), None, None, lambda done, total: None, 3)
+    runs = _starting_seeds._Runs(lambda run, scenes: ((None, next(words)) for _ in scenes))
     torques = runs.torques([GEARS] * 3)
     np.testing.assert_array_equal(torques, [2.0, math.nan, 4.0])
     assert "one gear is left out: the steps became too small" in caplog.text

@@ -1,4 +1,4 @@
-"""Find the scene that the command line names."""
+"""Find the scene that the command line names, and name a result after it."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import gearidae
-from gearidae.cli.values import assignments
 from gearidae.errors import SceneError
+from gearidae.scene.pairs import assignments
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -58,6 +58,11 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
         scene = load_case(shipped[case])
     changes = assignments(settings)
     return scene.replace(changes) if changes else scene
+
+
+def default_output(case: str, suffix: str) -> Path:
+    """Name a result after its case, in the current folder."""
+    return Path(f"{Path(case).stem}{suffix}")
 
 
 def check_dask(dask: str | None, jobs: int | None) -> None:

@@ -12,7 +12,7 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.machine import say_json
 from gearidae.cli.output import say
 from gearidae.cli.selection import selected
-from gearidae.cli.values import quantity
+from gearidae.scene.pairs import quantity
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -1,6 +1,8 @@
-"""Examples below the help of each command; the tests parse every one of them."""
+"""Examples below the help of each command but those of studies, which declare theirs; the tests parse every one."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 EXAMPLES: dict[str, tuple[str, ...]] = {
     "run": (
@@ -19,30 +21,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae plot mine.nc --picture teeth --from "76 ms" --to "79 ms" -o teeth.gif',
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
-    "coating-map": ("gearidae coating-map mine.toml -o map.nc",),
-    "threshold": ("gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",),
-    "starting-torque": (
-        "gearidae starting-torque mine.toml",
-        "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
-    ),
-    "pull-off": ('gearidae pull-off mine.toml --seeds 1000 --load "1 uN"',),
-    "ensemble": (
-        'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',
-        'gearidae ensemble mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.8)" --size 256 --of min_gear_speed',
-    ),
-    "operating-map": (
-        "gearidae operating-map mine.toml --over drive.torque=4e-18:5e-18:2e-19 coating.sam_fraction=1:0.4:-0.1",
-    ),
-    "calibrate": (
-        'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
-        'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',
-    ),
-    "predict": ("gearidae predict mine.toml --posterior known.nc --size 64 --set drive.torque=6e-18",),
-    "life": (
-        'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
-        'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',
-    ),
-    "lives": ("gearidae lives mine.toml --law contacts --size 64 --vary law.area=lognormal(1e-19,3)",),
     "assess": (
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',
@@ -53,8 +31,14 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae surface scan.csv --size "2 um" --unit nm --cutoff "80 nm" -o surface.toml',
         'gearidae surface scan.csv --size "2 um, 1 um" --unit nm --cutoff "80 nm" --case mine.toml -o rough.toml',
     ),
+    "compile": ("gearidae compile",),
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset start_up"),
     "schema": ("gearidae schema -o gearidae.schema.json",),
     "info": ("gearidae info mine.nc", "gearidae info mine.nc --json"),
 }
+
+
+def epilogue(examples: Sequence[str]) -> str:
+    """Write command lines below the help of a command."""
+    return "Examples:\n\n" + "\n\n".join(f"    {line}" for line in examples)

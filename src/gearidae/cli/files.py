@@ -20,8 +20,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.kept_validity import validity_of
 from gearidae.scene.coating import MATERIAL_NAMES
 from gearidae.scene.validity_row import ATTRIBUTE, contact_subject
-from gearidae.studies.answers import answer
-from gearidae.studies.products import open_product
+from gearidae.studies.products import answer, open_product
 
 
 def write_case(name: str, preset: str) -> int:

@@ -16,7 +16,7 @@ from gearidae.archive.energy import energy_balance
 from gearidae.archive.run_summary import account
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.cli.output import say
-from gearidae.studies.answers import answer
+from gearidae.studies.products import answer
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,15 +9,16 @@ from matplotlib.figure import Figure
 
 import gearidae as gd
 from gearidae.archive.select import swept_dims
+from gearidae.cli.case import default_output
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 from gearidae.cli.selection import selected
-from gearidae.cli.values import default_output, quantity
+from gearidae.drawing.picture import usual_style
 from gearidae.errors import SceneError
 from gearidae.plot.files import MOVING
 from gearidae.plot.overview import usual_pictures
-from gearidae.plot.picture import usual_style
 from gearidae.scene.group import did_you_mean
+from gearidae.scene.pairs import quantity
 from gearidae.studies.products import open_product
 
 _FUNCTIONS_OF_FILES = ("animate_teeth", "write")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import gearidae as gd
+from gearidae.cli.case import default_output
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
-from gearidae.cli.values import default_output
 
 
 def report_archive(archive: Path, output: Path | None, *, overwrite: bool) -> int:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from gearidae.cli.values import assignments
 from gearidae.errors import SceneError
+from gearidae.scene.pairs import assignments
 
 _MOST_SHOWN = 20
 

@@ -16,19 +16,16 @@ from cyclopts import CycloptsError, Parameter
 
 import gearidae
 from gearidae.archive.target import is_input, keeps_inputs
-from gearidae.cli import life_commands, study_commands  # noqa: F401, which declare more commands
 from gearidae.cli.app import app
-from gearidae.cli.examples import EXAMPLES
+from gearidae.cli.examples import EXAMPLES, epilogue
 from gearidae.cli.output import complain, hushed
 from gearidae.errors import GearidaeError, SceneError
 from gearidae.printable import printable
+from gearidae.studies.declared import command_help
 
 __all__ = ["app", "session"]
 
-_WRITERS = (
-    "calibrate", "coating-map", "ensemble", "init", "life", "lives", "operating-map", "plot", "predict", "pull-off",
-    "report", "run", "starting-torque", "sweep", "threshold",
-)  # fmt: skip
+_WRITERS = {"init", "plot", "report", "run", "sweep", *command_help()}
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
 _WRITTEN = ("-o", "--output", "--picture", "--asperities")
@@ -39,7 +36,9 @@ log = logging.getLogger("gearidae")
 app.meta.suppress_keyboard_interrupt = False  # as in the app itself: `main` says what is kept
 app.register_install_completion_command()
 for _name, _lines in EXAMPLES.items():
-    app[_name].help_epilogue = "Examples:\n\n" + "\n\n".join(f"    {_line}" for _line in _lines)
+    app[_name].help_epilogue = epilogue(_lines)
+for _name, _words in command_help().items():
+    app.command(f"gearidae.cli.study_commands:{_name.replace('-', '_')}", name=_name, help=_words)
 
 
 @app.meta.default

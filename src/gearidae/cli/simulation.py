@@ -4,18 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import gearidae as gd
 from gearidae.analysis.verdict.headline import headline
+from gearidae.archive import check_target
 from gearidae.archive.select import run_value, runs
-from gearidae.cli.case import check_dask, read_scene
+from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say
-from gearidae.cli.outset import begin, grid_words
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
-from gearidae.cli.values import default_output, sweep_values
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
+from gearidae.runs.kept_runs import folder_beside
+from gearidae.scene.pairs import sweep_values
+from gearidae.studies.announcement import grid_words
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
 
 
 def run_case(
@@ -126,7 +132,7 @@ def sweep_case(
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
     words = grid_words(scene, values, workers if dask is None else None, zipped=zipped)
-    begin("Sweep", scene, words, target, resume=resume, overwrite=overwrite)
+    announce("Sweep", scene, words, target, resume=resume, overwrite=overwrite)
     with dask_executor(dask) as executor:
         ds = gd.sweep(
             scene,
@@ -149,6 +155,31 @@ def sweep_case(
         complain(f"{label_text(label)}: {run_value(run, 'message') or run_value(run, 'status')}")
     say(headline(ds))
     return UNFINISHED if failed else DONE
+
+
+def announce(
+    title: str, scene: Scene, words: str, target: Path, *, resume: bool = False, overwrite: bool = False
+) -> None:
+    """Say what will be run, unless a file is in the way.
+
+    Where runs of an unfinished study are kept, the study itself says what to do with its file.
+
+    Parameters
+    ----------
+    title, words : str
+        What is made, and of which runs.
+    target : Path
+        File to be written.
+
+    Raises
+    ------
+    SceneError
+        If `target` cannot be written.
+    """
+    if not resume and not folder_beside(target).exists():
+        check_target(target, overwrite=overwrite)
+    if words:
+        say(f"{title} of {scene.name}: {words}")
 
 
 def _check_resume(*, resume: bool, overwrite: bool) -> None:

@@ -1,80 +1,56 @@
-"""The commands that conduct a study: it is run, kept, and what it has found is shown."""
+"""How the command line runs a study: it is announced, computed and kept, and its answer is shown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING
 
 import gearidae as gd
-from gearidae.archive.specimen import SEED
-from gearidae.cli.case import check_dask, read_scene
+from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
-from gearidae.cli.outset import begin, draw_words, grid_words
 from gearidae.cli.request import Request
+from gearidae.cli.simulation import announce
 from gearidae.cli.tables import name_failures
-from gearidae.cli.values import assignments, default_output, quantity, sweep_values, texts
-from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
-from gearidae.studies.answers import answer
-from gearidae.studies.products import kind_of
+from gearidae.studies.products import answer, kind_of
+from gearidae.studies.study import Call
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from gearidae.scene import Scene
-    from gearidae.wear import LossLaw
-
-_FRACTION: Final = "coating.sam_fraction"
-_TORQUE: Final = "drive.torque"
+    from gearidae.studies.study import Study
 
 
-def conduct(
-    case: str,
-    request: Request,
-    title: str,
-    study: Callable[..., xr.Dataset],
-    *arguments: Any,
-    keys: Mapping[str, Any] | Sequence[str] = (),
-    members: int = 0,
-    outset: str | Callable[[Scene, int | None], str] = "",
-    **options: Any,
-) -> int:
-    """Conduct a study of a case, keep it, show what it has found.
+def run_study(study: Study, case: str, request: Request, call: Call) -> int:
+    """Run a study of a case, keep it, show its answer.
 
     Parameters
     ----------
     case : str
         Path of a case file, or name of a preset.
-    title : str
-        How it is called; the file is named after it.
-    study : callable
-        Function of `gearidae.studies`.
-    *arguments
-        Of the function, after the scene.
-    keys, members
-        What differs between the members of an ensemble, and how many they are.
-    outset : str or callable, optional
-        What will be run, in words; a callable gets the scene and the number of simultaneous runs (None on a cluster).
-    **options
-        Of the function.
+    call : Call
+        From the command of the study.
 
     Returns
     -------
     int
         Exit code.
     """
-    target = request.output or default_output(case, f"_{title.lower().replace(' ', '_')}.nc")
+    suffix = study.suffix or study.title.lower().replace(" ", "_")
+    target = request.output or default_output(case, f"_{suffix}.nc")
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
-    words = outset if isinstance(outset, str) else outset(scene, workers if request.dask is None else None)
-    begin(title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
-    with request.executor(keys, members) as executor:
-        ds = study(
+    function = getattr(gd.studies, study.run or study.kind)
+    words = call.announcement
+    if not isinstance(words, str):
+        words = words(scene, workers if request.dask is None else None)
+    announce(study.title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
+    with request.executor(call.keys, call.members) as executor:
+        ds = function(
             scene,
-            *arguments,
-            **options,
+            *call.arguments,
+            **call.options,
             executor=executor,
             jobs=workers,
             progress=not is_quiet(),
@@ -84,7 +60,7 @@ def conduct(
         )
     found = answer(ds, kind_of(ds))
     show_rows(found.rows)
-    say(f"{title}: {target}")
+    say(f"{study.title}: {target}")
     code = _code(ds)
     say(found.sentence)
     return code
@@ -100,168 +76,3 @@ def _code(ds: xr.Dataset) -> int:
     if failed:
         complain(f"{failed} runs could not be finished: their status and message are in the file")
     return UNFINISHED if failed else DONE
-
-
-def search_threshold(case: str, request: Request, over: str, exits: int) -> int:
-    """Search the sticking threshold of a case between two values of a key, ``key=value,value``."""
-    ((key, ends),) = sweep_values([over]).items()
-    if len(ends) != 2 or ends[0] == ends[1]:
-        raise SceneError(
-            "--over", over, f"needs two different values, at one of which the gear sticks: {key}=0.4,0.7"
-        )
-    return conduct(
-        case,
-        request,
-        "Threshold",
-        gd.studies.sticking_threshold,
-        key,
-        (ends[0], ends[1]),
-        exits,
-        outset=f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits",
-    )
-
-
-def search_starting_torque(case: str, request: Request, over: str | None, **options: Any) -> int:
-    """Search the starting torque of a case at its own coating, or at fractions, ``coating.sam_fraction=1:0.4:-0.1``."""
-    fractions: Any = "own"
-    if over is not None:
-        ((key, fractions),) = sweep_values([over]).items()
-        if key != _FRACTION:
-            raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
-
-    def outset(scene: Scene, _: int | None) -> str:
-        from gearidae.studies._starting_seeds import SEEDS
-
-        coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
-        if scene.contact.model != "population":
-            return f"{coatings}; one torque is tried after the other"
-        gears = options["seeds"] or SEEDS
-        return f"{gears} gears, {coatings}; each is run several times, with a torque that rises slowly"
-
-    return conduct(
-        case, request, "Starting torque", gd.studies.starting_torque, fractions, outset=outset, **options
-    )
-
-
-def part_pairs(case: str, request: Request, seeds: int, load: str | None) -> int:
-    """Part drawn pairs of a case, pressed with a force."""
-    force = None if load is None else quantity("--load", load, "N")
-    return conduct(
-        case,
-        request,
-        "Pull-off",
-        gd.studies.pull_off,
-        seeds,
-        load=force,
-        outset=f"{seeds} drawn pairs",
-    )
-
-
-def map_outcomes(case: str, request: Request, over: Sequence[str]) -> int:
-    """Map what the gears of a case do over two keys."""
-    values = sweep_values(over)
-    if len(values) != 2:
-        example = "drive.torque=4e-18,5e-18 coating.sam_fraction=1:0.4:-0.1"
-        raise SceneError("--over", " ".join(over), f"must be two keys and their values: {example}")
-    return conduct(
-        case,
-        request,
-        "Operating map",
-        gd.studies.operating_map,
-        values,
-        outset=lambda scene, workers: grid_words(scene, values, workers),
-    )
-
-
-def map_coating(case: str, request: Request, over: Sequence[str]) -> int:
-    """Make a coating map of a case, over fractions, and over other keys for several lines."""
-    from gearidae.studies._coating_map import FRACTIONS, further_keys
-
-    values = sweep_values([pair for pair in over if pair.strip() != _TORQUE])
-    fractions = values.pop(_FRACTION, FRACTIONS.tolist())
-    usual_torques = any(pair.strip() == _TORQUE for pair in over)
-    if usual_torques and values:
-        raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
-    further = _TORQUE if usual_torques else values
-
-    def outset(scene: Scene, workers: int | None) -> str:
-        return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further), workers)
-
-    return conduct(case, request, "Map", gd.studies.coating_map, fractions, over=further, outset=outset)
-
-
-def run_ensemble(case: str, request: Request, vary: Sequence[str], **drawn: Any) -> int:
-    """Run an ensemble of a case."""
-    from gearidae.studies.design import check_design
-
-    keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
-    size, of = drawn["size"], drawn.get("of")
-    check_design(size, drawn["design"], drawn["seed"], indices=of is not None)
-    drawn_keys = [key for key in keys if key != SEED]
-    runs = size if of is None else size * (len(drawn_keys) + 2)  # the matrices of the Sobol' indices
-    drawn |= {"keys": keys, "members": size}
-    return conduct(
-        case,
-        request,
-        "Ensemble",
-        gd.studies.ensemble,
-        keys,
-        outset=lambda scene, workers: draw_words(scene, keys, runs, workers),
-        **drawn,
-    )
-
-
-def follow_life(
-    case: str, request: Request, law: str, parameters: Sequence[str], arrhenius: Sequence[str], **options: Any
-) -> int:
-    """Follow the life of a case's coating by a loss law, given its parameters and a factor of Arrhenius."""
-    found = _read_law(law, parameters, arrhenius)
-    return conduct(
-        case,
-        request,
-        "Life",
-        gd.studies.life,
-        found,
-        outset=f"{law}; at most {options['passages']:g} passages, of which few are simulated",
-        **options,
-    )
-
-
-def follow_lives(
-    case: str,
-    request: Request,
-    law: str,
-    parameters: Sequence[str],
-    arrhenius: Sequence[str],
-    vary: Sequence[str],
-    **options: Any,
-) -> int:
-    """Follow the coatings of an ensemble of gears."""
-    keys = texts(vary, "--vary", "drive.torque=normal(4.5e-18, 2e-19)")
-    found = _read_law(law, parameters, arrhenius, keys)
-    return conduct(
-        case,
-        request,
-        "Lives",
-        gd.studies.lives,
-        found,
-        keys,
-        outset=f"{options['size']} gears, {law}; at most {options['passages']:g} passages, of which few are simulated",
-        **options,
-    )
-
-
-def _read_law(
-    name: str, parameters: Sequence[str], arrhenius: Sequence[str], vary: Mapping[str, Any] | None = None
-) -> LossLaw:
-    """Make a loss law, whose parameters that are drawn may be missing."""
-    from gearidae.studies.law_draws import law_of_medians
-
-    law = law_of_medians(name, assignments(parameters, "--parameter", "energy=2 J/m^2"), vary or {})
-    if not arrhenius:
-        return law
-    given = assignments(arrhenius, "--arrhenius", "activation_energy=1 eV")
-    known = ("activation_energy", "activation_volume", "temperature")
-    if sorted(given) != sorted(known):
-        raise SceneError("--arrhenius", ", ".join(given), "needs " + ", ".join(known))
-    return gd.wear.Arrhenius(law, **given)

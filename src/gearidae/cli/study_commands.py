@@ -1,220 +1,68 @@
-"""The commands that run a study: many runs that answer one question. `gearidae.cli.app` has the others.
-
-Those on the life of a coating are in `gearidae.cli.life_commands`.
-"""
+"""The commands of studies, made from their declarations when the command line asks for one by its name."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Literal
+import inspect
+from typing import Annotated, Any, get_args
 
-from cyclopts import Parameter
+from cyclopts import App, Parameter
 
 from gearidae.cli import completing
-from gearidae.cli.app import Case, app
+from gearidae.cli.app import Case
+from gearidae.cli.examples import epilogue
 from gearidae.cli.request import Request
+from gearidae.studies.declared import study_of_command
+from gearidae.studies.study import Option, Study
 
-Vary = Annotated[
-    list[str],
-    Parameter(
-        help="Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
-        "uniform(lowest, highest), lognormal(median, geometric deviation); contact.seed=seeds numbers the seeds of a "
-        "population; repeatable.",
-        consume_multiple=False,
-        completer=completing.keys,
-    ),
-]
-Design = Annotated[str, Parameter(help="sobol or random.")]
-Seed = Annotated[int, Parameter(help="Seed of the design.")]
-Usual = Annotated[Request, Parameter(name="*")]
-USUAL = Request()
+_USUAL = Request()
 
 
-@app.command(name="coating-map")
-def coating_map(
-    case: Case,
-    *,
-    over: Annotated[
-        list[str] | None,
-        Parameter(
-            help="SAM fractions, coating.sam_fraction=1:0.5:-0.01, and other keys for several lines; repeatable.",
-            consume_multiple=False,
-            completer=completing.keys,
+def __getattr__(name: str) -> App:
+    """Make the command of a study; ``-`` in its name is ``_`` here."""
+    if name.startswith("__"):
+        raise AttributeError(name)
+    command = name.replace("_", "-")
+    study = study_of_command(command)
+    app = App(name=command, help_epilogue=epilogue(study.examples))
+    app.default(_function(study))
+    return app
+
+
+def _function(study: Study) -> Any:
+    """Make the function of a command: its options are the parameters of the study's, and those of all studies."""
+    assert study.command is not None
+    made = study.command
+
+    def run(case: Any, *, request: Request = _USUAL, **given: Any) -> int:
+        from gearidae.cli.studies import run_study
+
+        return run_study(study, str(case), request, made(**given))
+
+    parameters = [
+        inspect.Parameter("case", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=Case),
+        *(
+            each.replace(annotation=_annotation(each.annotation))
+            for each in inspect.signature(made, eval_str=True).parameters.values()
         ),
-    ] = None,
-    request: Usual = USUAL,
-) -> int:
-    """Map the frequency of the impact response against the SAM fraction.
-
-    Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
-    """
-    from gearidae.cli.studies import map_coating
-
-    return map_coating(str(case), request, over or [])
-
-
-@app.command
-def threshold(
-    case: Case,
-    *,
-    over: Annotated[
-        str,
-        Parameter(help="Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7."),
-    ],
-    exits: Annotated[int, Parameter(help="Mesh exits to wait for.")] = 100,
-    request: Usual = USUAL,
-) -> int:
-    """Search where the gear begins to stick, against the number of mesh exits waited for."""
-    from gearidae.cli.studies import search_threshold
-
-    return search_threshold(str(case), request, over, exits)
-
-
-@app.command(name="starting-torque")
-def starting_torque(
-    case: Case,
-    *,
-    over: Annotated[
-        str | None,
-        Parameter(
-            help="SAM fractions, coating.sam_fraction=1:0.4:-0.1. Default: the coating of the case as it is."
+        inspect.Parameter(
+            "request",
+            inspect.Parameter.KEYWORD_ONLY,
+            default=_USUAL,
+            annotation=Annotated[Request, Parameter(name="*")],
         ),
-    ] = None,
-    impacts: Annotated[int, Parameter(help="Pitches to be turned, each with its mesh exit.")] = 3,
-    lowest: Annotated[
-        float | None, Parameter(help="Lowest torque to try in N m. Default: 0.001 of the drive's own.")
-    ] = None,
-    tolerance: Annotated[float, Parameter(help="Relative width at which the search ends.")] = 0.1,
-    seeds: Annotated[
-        int | None, Parameter(help="Gears of a population, with seeds from contact.seed on. Default: 20.")
-    ] = None,
-    request: Usual = USUAL,
-) -> int:
-    """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
-
-    Of a population (contact.model = population): the distribution over its gears, whose torque rises slowly until each
-    has turned one pitch.
-    """
-    from gearidae.cli.studies import search_starting_torque
-
-    return search_starting_torque(
-        str(case), request, over, impacts=impacts, lowest=lowest, tolerance=tolerance, seeds=seeds
-    )
+    ]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {each.name: each.annotation for each in parameters}
+    return run
 
 
-@app.command(name="pull-off")
-def pull_off(
-    case: Case,
-    *,
-    seeds: Annotated[int, Parameter(help="Number of drawn surfaces, from contact.seed on.")] = 100,
-    load: Annotated[
-        str | None, Parameter(help="Force that presses the pair, 1 uN. Default: of the drive's mean torque.")
-    ] = None,
-    request: Usual = USUAL,
-) -> int:
-    """Part single pairs of teeth with drawn asperities: the distribution of their pull-off force."""
-    from gearidae.cli.studies import part_pairs
-
-    return part_pairs(str(case), request, seeds, load)
-
-
-@app.command(name="operating-map")
-def operating_map(
-    case: Case,
-    *,
-    over: Annotated[
-        list[str],
-        Parameter(
-            help="Two keys and their values, drive.torque=4e-18:5e-18:1e-19 coating.sam_fraction=1:0.4:-0.1.",
-            consume_multiple=False,
-            completer=completing.keys,
-        ),
-    ],
-    request: Usual = USUAL,
-) -> int:
-    """Map over two keys where the gear turns, where it sticks, and where its teeth cross the backlash.
-
-    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
-    """
-    from gearidae.cli.studies import map_outcomes
-
-    return map_outcomes(str(case), request, over)
-
-
-@app.command
-def ensemble(
-    case: Case,
-    *,
-    vary: Vary,
-    size: Annotated[int, Parameter(help="Number of members; with --of, of rows, a power of 2.")],
-    of: Annotated[
-        str | None, Parameter(help="Figure whose Sobol indices are wanted: sticks, min_gear_speed and so on.")
-    ] = None,
-    design: Design = "sobol",
-    seed: Seed = 0,
-    request: Usual = USUAL,
-) -> int:
-    """Run a scene with keys drawn from distributions: how often it sticks, and what that depends on.
-
-    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
-    """
-    from gearidae.cli.studies import run_ensemble
-
-    return run_ensemble(str(case), request, vary, size=size, design=design, seed=seed, of=of)
-
-
-@app.command
-def calibrate(
-    case: Case,
-    *,
-    vary: Annotated[
-        list[str],
-        Parameter(
-            help="Key and what was known of it, key=normal(450 nm, 50 nm), as for ensemble; repeatable.",
-            consume_multiple=False,
-            completer=completing.keys,
-        ),
-    ],
-    seen: Annotated[
-        list[str] | None,
-        Parameter(
-            help="Observation and its conditions: 'sticks=true; drive.torque=4.2e-18', "
-            "'ring_frequency=5.2 kHz +- 0.1 kHz'; repeatable.",
-            consume_multiple=False,
-        ),
-    ] = None,
-    observations: Annotated[Path | None, Parameter(help="File with more of them: .toml or .csv.")] = None,
-    method: Annotated[
-        Literal["auto", "grid", "emcee"], Parameter(help="By default a grid for up to two keys, else emcee.")
-    ] = "auto",
-    points: Annotated[int, Parameter(help="Cells a key of the grid.")] = 41,
-    steps: Annotated[int, Parameter(help="Steps of each of emcee's walkers.")] = 500,
-    seed: Annotated[int, Parameter(help="Seed of emcee.")] = 0,
-    request: Usual = USUAL,
-) -> int:
-    """Find out what observations of gears say about keys that are not known: their posterior.
-
-    Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
-    """
-    from gearidae.cli.calibrate import calibrate_case
-
-    options = {"method": method, "points": points, "steps": steps, "seed": seed}
-    return calibrate_case(str(case), request, vary, seen or [], observations, **options)
-
-
-@app.command
-def predict(
-    case: Case,
-    *,
-    posterior: Annotated[Path, Parameter(help="Posterior, from gearidae calibrate.")],
-    size: Annotated[int, Parameter(help="Number of runs.")],
-    seed: Annotated[int, Parameter(help="Seed of the draws.")] = 0,
-    request: Usual = USUAL,
-) -> int:
-    """Run a scene with the keys that were calibrated drawn from their posterior: how often it sticks.
-
-    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
-    """
-    from gearidae.cli.calibrate import predict_case
-
-    return predict_case(str(case), request, posterior, size=size, seed=seed)
+def _annotation(declared: Any) -> Any:
+    """Turn the annotation of a parameter with its `Option` into one that cyclopts reads."""
+    kind, option = get_args(declared)
+    assert isinstance(option, Option)
+    about: dict[str, Any] = {"help": option.help}
+    if option.repeatable or option.many:
+        about["consume_multiple"] = option.many
+    if option.completes:
+        about["completer"] = getattr(completing, option.completes)
+    return Annotated[kind, Parameter(**about)]

@@ -103,7 +103,7 @@ def analyse_scan(
     if choices.asperities is not None and listed is not None:
         _write_list(choices.asperities, listed, found, overwrite=overwrite)
     if picture is not None:
-        from gearidae.plot.picture import usual_style
+        from gearidae.drawing.picture import usual_style
 
         with usual_style():
             gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)

@@ -1,6 +1,7 @@
 """Pictures of datasets: one function each, takes a dataset, returns matplotlib axes or a figure.
 
-Those of the teeth are loaded on first use, because they need the contact laws, compiled.
+A study may bring its picture with it, see `gearidae.studies.study.Picture`. Those of the teeth are loaded on first use,
+because they need the contact laws, compiled.
 """
 
 from __future__ import annotations
@@ -10,8 +11,6 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 from gearidae.plot.asperity_events import asperity_events as asperity_events
 from gearidae.plot.coating import coating_map as coating_map
-from gearidae.plot.coating import starting_torque as starting_torque
-from gearidae.plot.coating import starting_torques as starting_torques
 from gearidae.plot.ensembles import sobol_indices as sobol_indices
 from gearidae.plot.ensembles import specimens as specimens
 from gearidae.plot.ensembles import sticking_probability as sticking_probability
@@ -19,14 +18,9 @@ from gearidae.plot.files import write as write
 from gearidae.plot.gears import gap as gap
 from gearidae.plot.gears import gear_speed as gear_speed
 from gearidae.plot.gears import transmission_error as transmission_error
-from gearidae.plot.life import coverage_along_flank as coverage_along_flank
-from gearidae.plot.life import life as life
-from gearidae.plot.lives import lives as lives
 from gearidae.plot.outcome import outcome as outcome
-from gearidae.plot.outcome_map import outcome_map as outcome_map
 from gearidae.plot.overview import overview as overview
 from gearidae.plot.posterior import posterior as posterior
-from gearidae.plot.pull_off import pull_off as pull_off
 from gearidae.plot.roller import roller_force as roller_force
 from gearidae.plot.roller import roller_gap as roller_gap
 from gearidae.plot.spectra import cycle as cycle
@@ -34,11 +28,16 @@ from gearidae.plot.spectra import impact_spectrum as impact_spectrum
 from gearidae.plot.spectra import power_spectrum as power_spectrum
 from gearidae.plot.spectra import spectrogram as spectrogram
 from gearidae.plot.surface import surface as surface
-from gearidae.plot.threshold import sticking_threshold as sticking_threshold
 from gearidae.plot.torque import contact_torque as contact_torque
+from gearidae.studies.declared import studies
 
 if TYPE_CHECKING:
     from gearidae.plot.animation import animate_teeth as animate_teeth
     from gearidae.plot.teeth_view import teeth as teeth
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)
+_of_studies = {
+    one.name: one.draw for each in studies().values() for one in each.pictures if one.draw is not None
+}
+globals().update(_of_studies)
+__all__ = sorted({*__all__, *_of_studies})

@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from gearidae.arrays import Floats
-from gearidae.plot.style import NEGATIVE, POSITIVE
+from gearidae.drawing.style import NEGATIVE, POSITIVE
 from gearidae.records import Flank
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.studies.joined_asperities import MetFlank, contact_arc, met_flank

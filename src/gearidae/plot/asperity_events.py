@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from gearidae.archive.select import run_scene, swept_dims
 from gearidae.archive.select import runs as single_runs
 from gearidae.arrays import Floats
+from gearidae.drawing.style import NEGATIVE, POSITIVE, largest, new_axes, runs_of, scale_for, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.style import NEGATIVE, POSITIVE, largest, new_axes, runs_of, scale_for, tidy
 from gearidae.records import EventKind, Flank
 
 _FORCES = ("mesh_force", "force")

@@ -1,4 +1,4 @@
-"""Pictures of what depends on the coating: the coating map and the starting torque."""
+"""The picture of a coating map."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter, StrMethodFormatter
+from matplotlib.ticker import EngFormatter
 
 from gearidae.analysis.map_model import require_map
-from gearidae.errors import SceneError
-from gearidae.plot.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
-from gearidae.studies.products import require
+from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
 
 if TYPE_CHECKING:
     from gearidae.analysis.assessment import Assessment
@@ -80,121 +78,6 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
     ax.set_xlabel("SAM (%)")
     ax.set_ylabel("frequency of the impact response (Hz)")
     tidy(ax)
-    ax.legend(frameon=False, fontsize="small")
-    return ax
-
-
-def starting_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """Draw the starting torque against the SAM fraction.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        From `gearidae.analysis.starting_torque`.
-    ax : matplotlib Axes, optional
-        Where to draw; by default in a figure of its own.
-
-    Returns
-    -------
-    Axes
-        On a logarithmic scale; fractions at which adhesion does not hold the gear have no point.
-
-    Raises
-    ------
-    SceneError
-        If the dataset is none of starting torques, or adhesion holds the gear nowhere.
-    """
-    require(ds, "starting_torque")
-    ax = new_axes(ax, height=3.8)
-    percent = 100.0 * ds["sam_fraction"].values
-    drawn = False
-    for number, (name, label) in enumerate(
-        (("static_torque", "static: without inertia"), ("simulated_torque", "simulated: from rest"))
-    ):
-        torque = ds[name].values
-        held = np.isfinite(torque) & (torque > 0.0)
-        if held.any():
-            drawn = True
-            ax.plot(
-                percent[held],
-                torque[held],
-                color=COLOURS[number],
-                linestyle=LINE_STYLES[number],
-                marker=".",
-                linewidth=1.2,
-                label=label,
-            )
-    if not drawn:
-        raise SceneError(
-            "plot", "starting_torque", "adhesion does not hold the gear at any of these fractions"
-        )
-    ax.set_yscale("log")
-    ax.set_xlabel("SAM (%)")
-    ax.set_ylabel("starting torque on the pinion (N m)")
-    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    tidy(ax)
-    if len(percent) > 1:
-        ax.set_xlim(percent.min(), percent.max())
-    else:
-        ax.set_xticks(percent)
-    if ds.attrs.get("drive_torque", 0.0) > 0.0:
-        ax.axhline(
-            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
-        )
-    ax.legend(frameon=False, fontsize="small")
-    return ax
-
-
-def starting_torques(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """Draw the distribution function of a population's starting torques, a line for each coverage.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        From `gearidae.studies.starting_torque` of a scene with a population.
-    ax : matplotlib Axes, optional
-        Where to draw; by default in a figure of its own.
-
-    Returns
-    -------
-    Axes
-        With the drive's own torque; gears that did not start are missing from the top of their line.
-
-    Raises
-    ------
-    SceneError
-        If the dataset is something else, or no gear has started.
-    """
-    require(ds, "starting_torques")
-    if not np.isfinite(ds["starting_torque"]).any():
-        raise SceneError("plot", "starting_torques", "no gear has started")
-    ax = new_axes(ax, height=3.8)
-    count = ds.sizes["seed"]
-    for number in range(ds.sizes["sam_fraction"]):
-        one = ds["starting_torque"].isel(sam_fraction=number)
-        torque = np.sort(one.values[np.isfinite(one.values)])
-        ax.step(
-            torque,
-            np.arange(1, torque.size + 1) / count,
-            where="post",
-            color=COLOURS[number % len(COLOURS)],
-            linestyle=LINE_STYLES[number % len(LINE_STYLES)],
-            marker=".",
-            linewidth=1.2,
-            label=f"SAM {100.0 * float(one['sam_fraction']):.4g} %",
-        )
-    ax.set_xscale("log")
-    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.set_ylim(0.0, 1.02)
-    ax.set_xlabel("starting torque on the pinion (N m)")
-    ax.set_ylabel(f"share of {count} gears")
-    tidy(ax)
-    if ds.attrs.get("drive_torque", 0.0) > 0.0:
-        ax.axvline(
-            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
-        )
     ax.legend(frameon=False, fontsize="small")
     return ax
 

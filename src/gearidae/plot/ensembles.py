@@ -7,9 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from gearidae.archive.specimen import SEED
+from gearidae.drawing.parameter_axis import parameter_axis
+from gearidae.drawing.style import NEGATIVE, POSITIVE, new_axes, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.parameter_axis import parameter_axis
-from gearidae.plot.style import NEGATIVE, POSITIVE, new_axes, tidy
 from gearidae.studies._sticking_probability import drawn_keys
 from gearidae.studies._sticking_probability import sticking_probability as probability_of
 

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 
 from gearidae.analysis.verdict.standstills import standstill_rows
 from gearidae.archive.variables import STANDSTILL_LIST
+from gearidae.drawing.style import Run, label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 from gearidae.plot.outcome import look_of
-from gearidae.plot.style import Run, label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 
 
 def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:

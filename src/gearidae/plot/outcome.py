@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.select import swept_dims
+from gearidae.drawing.parameter_axis import ParameterAxis, parameter_axis
+from gearidae.drawing.style import new_axes, scale_for, scaled, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.parameter_axis import ParameterAxis, parameter_axis
-from gearidae.plot.style import new_axes, scale_for, scaled, tidy
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,40 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import xarray as xr
 from matplotlib.figure import Figure
 
 from gearidae.archive.select import is_roller, scene_of, swept_dims
-from gearidae.archive.specimen import has_seeds, specimen_label
+from gearidae.archive.specimen import specimen_label
 from gearidae.archive.variables import columns
+from gearidae.drawing.picture import new_picture
+from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
-from gearidae.plot.picture import new_picture
 from gearidae.plot.roller import roller_force, roller_gap
-from gearidae.plot.style import runs_of
 from gearidae.plot.torque import contact_torque
-
-_PICTURES: Final = {
-    "coating_map": {"coating_map": "Frequency of the impact response against the coverage"},
-    "ensemble": {
-        "sobol_indices": "What the figure depends on",
-        "specimens": "Mean speeds of gears of one design",
-        "sticking_probability": "Probability of sticking against one of the keys",
-    },
-    "life": {
-        "life": "Coverage and frequency of the impact response over passages",
-        "coverage_along_flank": "Coverage along the path of contact",
-    },
-    "lives": {"lives": "Share of the gears that still turn"},
-    "operating_map": {"outcome_map": "What the gears do over two keys"},
-    "posterior": {"posterior": "Posterior of each key, and of each two"},
-    "pull_off": {"pull_off": "Share of drawn pairs that part below a force"},
-    "starting_torque": {"starting_torque": "Smallest torque at which a gear at rest begins to turn"},
-    "starting_torques": {"starting_torques": "Share of the gears that start below a torque"},
-    "sticking_threshold": {"sticking_threshold": "Sticking limit against the mesh exits waited for"},
-}
-"""Pictures of what studies have written, and their captions: the one that says most first."""
+from gearidae.studies.declared import studies
 
 
 def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
@@ -54,13 +32,7 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
     if kind == "runs":
         sampled = any(name in ds for name in columns(is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
-    needed = {"sobol_indices": "total_order", "coverage_along_flank": "coverage_by_place"}
-    found = {
-        name: words for name, words in _PICTURES[kind].items() if name not in needed or needed[name] in ds
-    }
-    if kind == "ensemble" and not has_seeds(ds):
-        del found["specimens"]
-    return found
+    return {each.name: each.caption for each in studies()[kind].pictures if each.needs(ds)}
 
 
 def overview(ds: xr.Dataset) -> Figure:

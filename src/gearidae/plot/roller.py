@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.plot.style import label_time, largest, legend, new_axes, runs_of, scale_for, tidy
+from gearidae.drawing.style import label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 
 
 def roller_force(ds: xr.Dataset, ax: Axes | None = None) -> Axes:

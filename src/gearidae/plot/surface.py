@@ -8,9 +8,9 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter
 
+from gearidae.drawing.picture import new_picture
+from gearidae.drawing.style import COLOURS, LINE_STYLES, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.picture import new_picture
-from gearidae.plot.style import COLOURS, LINE_STYLES, tidy
 
 _PANELS = (
     ("roughness", "roughness $\\sigma$", "m"),

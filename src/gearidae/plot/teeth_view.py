@@ -13,9 +13,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from gearidae.archive.select import run_scene
+from gearidae.drawing.picture import new_picture
+from gearidae.drawing.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
-from gearidae.plot.picture import new_picture
-from gearidae.plot.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
 from gearidae.records import Flank
 from gearidae.scene import Scene

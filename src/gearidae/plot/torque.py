@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.plot.style import (
+from gearidae.drawing.style import (
     NEGATIVE,
     POSITIVE,
     Run,

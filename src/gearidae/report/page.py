@@ -9,7 +9,6 @@ from pathlib import Path
 
 import xarray as xr
 
-from gearidae import plot
 from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import scene_of
 from gearidae.archive.specimen import specimen_note
@@ -31,8 +30,8 @@ from gearidae.report.tables import (
     validity_table,
 )
 from gearidae.report.teeth import pack_teeth
-from gearidae.studies.answers import answer
-from gearidae.studies.products import kind_of
+from gearidae.studies.declared import studies
+from gearidae.studies.products import answer, kind_of
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 """What the browser may load for the page: nothing from anywhere."""
@@ -81,19 +80,19 @@ def _specimen(ds: xr.Dataset) -> str:
 
 def _study_page(ds: xr.Dataset, kind: str) -> str:
     """Make the page about what a study has found."""
+    study = studies()[kind]
     found = answer(ds, kind)
-    drawn = [(getattr(plot, name), words) for name, words in usual_pictures(ds, kind).items()]
-    shown = html.section("pictures", "Pictures", figures(ds, drawn))
+    shown = html.section("pictures", "Pictures", figures(ds, usual_pictures(ds, kind)))
     sections: tuple[str, ...]
-    if kind == "life":
+    if study.viewer == "life":
         viewer = html.section("life", "Over passages", life_viewer(ds))
         sections = (viewer, html.section("outcome", "Steps", life_table(ds)), shown)
         return _page(ds, found.sentence, sections, ("common.js", "save.js", "life.js"))
-    rows = () if kind == "operating_map" else found.rows  # its picture says the same
+    rows = () if study.rows_are_drawn else found.rows
     sections = (
         html.section("outcome", "Outcome", answer_tables(rows), law_table(ds)),
         shown,
-        html.section("members", "Runs", member_table(ds, kind)),
+        html.section("members", "Runs", member_table(ds, study.member_columns)),
     )
     return _page(ds, found.sentence, sections, ("common.js", "save.js"))
 

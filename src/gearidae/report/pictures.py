@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Mapping
 
 import xarray as xr
 from matplotlib.figure import Figure
 
 from gearidae import plot
 from gearidae.archive.select import is_roller, swept_dims
+from gearidae.drawing.picture import usual_style
 from gearidae.errors import SceneError
-from gearidae.plot.picture import usual_style
 from gearidae.report import html
 from gearidae.report.svg import colour_rules, drawing
 
-_Draw = Callable[[xr.Dataset], Any]
-
-_OUTCOME: tuple[_Draw, str] = (plot.outcome, "Outcome of each run against what was swept")
-_GEARS: tuple[tuple[_Draw, str], ...] = (
-    (plot.overview, "Speed of the gear and torque of the tooth contacts on it"),
-    (plot.gap, "Smallest gap between the teeth, drive flank"),
-    (plot.power_spectrum, "Power spectrum of the gear's speed"),
-)
-_SINGLE: tuple[tuple[_Draw, str], ...] = (
-    (plot.impact_spectrum, "Spectrum of the ringing after mesh impacts"),
-)
-_ROLLER: tuple[tuple[_Draw, str], ...] = ((plot.overview, "Contact force and gap of the roller"),)
+_OUTCOME = {"outcome": "Outcome of each run against what was swept"}
+_GEARS = {
+    "overview": "Speed of the gear and torque of the tooth contacts on it",
+    "gap": "Smallest gap between the teeth, drive flank",
+    "power_spectrum": "Power spectrum of the gear's speed",
+}
+_SINGLE = {"impact_spectrum": "Spectrum of the ringing after mesh impacts"}
+_ROLLER = {"overview": "Contact force and gap of the roller"}
 
 
 def pictures(ds: xr.Dataset) -> str:
@@ -44,16 +39,16 @@ def pictures(ds: xr.Dataset) -> str:
         is left out.
     """
     swept = bool(swept_dims(ds))
-    wanted = _ROLLER if is_roller(ds) else _GEARS if swept else _GEARS + _SINGLE
+    wanted = _ROLLER if is_roller(ds) else _GEARS if swept else _GEARS | _SINGLE
     if swept:
-        wanted = (_OUTCOME, *wanted)
+        wanted = _OUTCOME | wanted
     return figures(ds, wanted)
 
 
-def figures(ds: xr.Dataset, wanted: Sequence[tuple[_Draw, str]]) -> str:
-    """Draw pictures with their captions; those for which a dataset is too short or too empty are left out."""
+def figures(ds: xr.Dataset, wanted: Mapping[str, str]) -> str:
+    """Draw pictures, functions of `gearidae.plot` with their captions; those without enough data are left out."""
     with usual_style():
-        drawn = [(draw.__name__, _drawn(ds, draw, caption), caption) for draw, caption in wanted]
+        drawn = [(name, _drawn(ds, name, caption), caption) for name, caption in wanted.items()]
     shown = [(name, text, caption) for name, text, caption in drawn if text]
     if not shown:
         return ""
@@ -65,10 +60,10 @@ def figures(ds: xr.Dataset, wanted: Sequence[tuple[_Draw, str]]) -> str:
     return f"<style>\n{colour_rules(text for _, text, _ in shown)}</style>\n{content}"
 
 
-def _drawn(ds: xr.Dataset, draw: _Draw, caption: str) -> str:
+def _drawn(ds: xr.Dataset, name: str, caption: str) -> str:
     try:
-        made = draw(ds)
+        made = getattr(plot, name)(ds)
     except SceneError:
         return ""
     figure = made if isinstance(made, Figure) else made.get_figure(root=True)
-    return drawing(figure, draw.__name__, caption)
+    return drawing(figure, name, caption)

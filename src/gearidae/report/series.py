@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from gearidae.archive.pieces import PIECE, count, pieces
 from gearidae.archive.select import is_roller, runs
 from gearidae.archive.variables import SAMPLES, columns
+from gearidae.drawing.style import runs_of
 from gearidae.errors import SceneError
-from gearidae.plot.style import runs_of
 from gearidae.records import EventKind
 
 MOST_VALUES = 1_500_000

@@ -77,35 +77,41 @@ def answer_tables(rows: Sequence[tuple[str, str, str]]) -> str:
     )
 
 
-def member_table(ds: xr.Dataset, kind: str) -> str:
-    """List the members of an ensemble with the values that were drawn, or the runs of a map, folded."""
-    if kind == "lives":
+def member_table(ds: xr.Dataset, listed: Sequence[str]) -> str:
+    """List the members of an ensemble with the values that were drawn, or the runs of a map, folded.
+
+    Parameters
+    ----------
+    listed : sequence of str
+        Variables to list for each member; without any, the outcomes of the runs.
+    """
+    if listed:
         drawn = [str(name) for name in ds.coords if name != "member" and ds[name].dims == ("member",)]
-        columns = [*drawn, "ending", "passages_to_sticking", "passages_turning", "final_coverage", "status"]
+        columns = [*drawn, *listed]
         rows = [
             [str(number), *(_value(one[name].item(), _unit(one[name])) for name in columns)]
             for number, one in ((number, ds.isel(member=number)) for number in range(ds.sizes["member"]))
         ]
-        listed = html.table(
-            ("member", *(name.replace("_", " ") for name in columns)), rows, caption="Members"
-        )
-    elif kind == "ensemble":
+        table = html.table(("member", *(name.replace("_", " ") for name in columns)), rows, caption="Members")
+    elif "status" not in ds:
+        return ""
+    elif "member" in ds.dims:
         judged, rtol = outcomes(ds), scene_of(ds)["run"]["rtol"]
         drawn = [str(name) for name in dimension_names(json.loads(ds.attrs["swept"])).values()]
         rows = [
             [
                 str(number),
-                *(_value(values.item(), _unit(values)) for values in columns),
+                *(_value(values.item(), _unit(values)) for values in values_of),
                 *cells(one, rtol),
             ]
-            for number, (one, *columns) in enumerate(zip(judged, *(ds[name] for name in drawn), strict=True))
+            for number, (one, *values_of) in enumerate(
+                zip(judged, *(ds[name] for name in drawn), strict=True)
+            )
         ]
-        listed = html.table(("member", *drawn, *headings(judged[0])), rows, caption="Members")
-    elif kind == "operating_map":
-        listed = outcome_table(ds)
+        table = html.table(("member", *drawn, *headings(judged[0])), rows, caption="Members")
     else:
-        return ""
-    return html.folded("Outcome of each run", listed)
+        table = outcome_table(ds)
+    return html.folded("Outcome of each run", table)
 
 
 def _unit(values: xr.DataArray) -> str:

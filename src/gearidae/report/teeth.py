@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from gearidae.archive.select import is_roller, motion_samples, run_scene
 from gearidae.archive.variables import EVENTS, columns
 from gearidae.arrays import Floats
+from gearidae.drawing.style import runs_of
 from gearidae.errors import SceneError
 from gearidae.plot.asperities import flank_asperities, half_width, joined_asperities, touching_arc
-from gearidae.plot.style import runs_of
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
 from gearidae.scene import MATERIAL_NAMES, Scene

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, TypeVar
 
 import xarray as xr
 
 from gearidae.archive import open_archive, save
 from gearidae.archive.provenance import provenance
 from gearidae.archive.target import check_target, claims_output
-from gearidae.engine import choose_backend
 from gearidae.errors import Interrupted, SceneError
+from gearidae.progress import sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import prepare
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -38,12 +40,25 @@ class Store(Protocol):
         """Delete those of some scenes, or all."""
 
 
+SideBySide: TypeAlias = Callable[..., Iterator[tuple["Solution", str]]]
 Kept = TypeVar("Kept", bound=Store)
+
+
+class RunOptions(TypedDict, total=False):
+    """Keyword arguments of every study, as those of `gearidae.sweep`: where its runs are computed and kept."""
+
+    executor: Executor | None
+    jobs: int | None
+    backend: str
+    progress: bool | SweepProgress
+    archive: str | os.PathLike[str] | None
+    overwrite: bool
+    resume: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """How runs are computed and kept; each field is an argument of `gearidae.sweep`.
+    """How runs are computed and kept: the `RunOptions`, and the formulas of the solver.
 
     Raises
     ------
@@ -68,6 +83,8 @@ class Execution:
     @property
     def driver(self) -> str:
         """Driver of the solver that computes the runs."""
+        from gearidae.engine import choose_backend  # what reads results does without the engine
+
         return choose_backend(self.backend, self.method)
 
     def threads(self) -> int:
@@ -90,6 +107,34 @@ class Execution:
         workers = self.threads() or (1 if self.jobs is None else self.jobs)
         with own_executor(workers, calls, releases_gil=self.threads() > 0) as own:
             yield own
+
+    @contextmanager
+    def side_by_side(
+        self, kept: KeptRuns | None, usual: int, at_a_time: int | None = None
+    ) -> Iterator[SideBySide]:
+        """Provide `solutions` for a study that usually has so many runs: with this driver, and its progress shown."""
+        done = itertools.count(1)
+        with (
+            sweep_progress(self.progress, usual) as report,
+            self.computing(at_a_time or usual) as executor,
+        ):
+
+            def run(
+                function: Any, scenes: Sequence[Scene], *arguments: Any
+            ) -> Iterator[tuple[Solution, str]]:
+                for found in solutions(kept, executor, function, scenes, *arguments, self.backend):
+                    yield found
+                    report(float(min(next(done), usual)), usual)  # of what has been taken in
+
+            yield run
+
+
+def prepared(
+    scene: Scene, options: RunOptions, *, samples: int | str | None = None
+) -> tuple[Scene, Execution]:
+    """Check the scene and the options of a study, before anything is run; `samples` are in place of the scene's."""
+    base = prepare(scene, rtol=None, samples=samples, backend=options.get("backend", "auto"))
+    return base, Execution(**options, method=base.run.method)
 
 
 def run_kept(

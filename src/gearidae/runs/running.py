@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearidae import engine
 from gearidae.errors import SceneError, SolverError
 from gearidae.records import EventKind, Events, Flank, Solution, Statistics
 from gearidae.runs.halting import is_halted
@@ -15,6 +14,8 @@ from gearidae.scene import Scene
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from gearidae import engine
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
@@ -52,6 +53,8 @@ def prepare(
         raise SceneError(
             "scene", type(scene).__name__, "must be a Scene (from load_case, preset or Scene.from_dict)"
         )
+    from gearidae import engine  # what reads results does without it
+
     engine.choose_backend(backend, scene.run.method)  # refuses what is unknown or cannot work here
     settings = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     given = {key: value for key, value in settings.items() if value is not None}
@@ -63,7 +66,7 @@ def solve(
     backend: str,
     on_progress: Callable[[float, int], None] | None = None,
     *,
-    start: engine.Start = engine.AT_ONCE,
+    start: engine.Start | None = None,
     on_block: engine.OnBlock | None = None,
 ) -> Solution:
     """Run a scene; a solver that cannot even start leaves an empty solution that says why.
@@ -84,6 +87,7 @@ def solve(
     Solution
         Of the status ``interrupted`` after Ctrl-C, also in a thread of `gearidae.runs.executors.own_executor`.
     """
+    from gearidae import engine
 
     def report(time: float, events: int) -> None:
         if is_halted():
@@ -92,12 +96,13 @@ def solve(
             on_progress(time, events)
 
     try:
-        return engine.solve(scene, backend=backend, on_progress=report, start=start, on_block=on_block)
+        at = engine.AT_ONCE if start is None else start
+        return engine.solve(scene, backend=backend, on_progress=report, start=at, on_block=on_block)
     except SolverError as error:
         return unsolved("failed", str(error))
 
 
-def solve_to_end(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
+def solve_to_end(scene: Scene, backend: str, start: engine.Start | None = None) -> Solution:
     """Run a scene as `solve` does; a run that Ctrl-C has cut off is no result, and raises `KeyboardInterrupt`."""
     solution = solve(scene, backend, start=start)
     if solution.status == "interrupted":

@@ -1,8 +1,8 @@
 """Studies: simulations, or the static contact, used to answer a question.
 
-`coating_map`, `sticking_threshold`, `starting_torque` and `static_starting_torque`, what the teeth did
-(`tooth_contacts`), derivatives (`sensitivity`), and estimates on paper. The older names are those of
-`gearidae.analysis` too. Names are loaded on first use.
+Each file of `gearidae.studies.declared` is a study; besides there are what the teeth did (`tooth_contacts`),
+derivatives (`sensitivity`), and estimates on paper. The older names are those of `gearidae.analysis` too. Names are
+loaded on first use; a study needs no line below, which is for type checkers.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
     from gearidae.runs.plausibility import doubts as doubts
     from gearidae.runs.run_time import run_time as run_time
     from gearidae.runs.validity import validity as validity
-    from gearidae.studies._calibrate import calibrate as calibrate
-    from gearidae.studies._coating_map import coating_map as coating_map
-    from gearidae.studies._ensemble import ensemble as ensemble
     from gearidae.studies._life import life as life
     from gearidae.studies._lives import lives as lives
-    from gearidae.studies._operating_map import operating_map as operating_map
-    from gearidae.studies._predict import predict as predict
-    from gearidae.studies._pull_off import pull_off as pull_off
     from gearidae.studies._sensitivity import sensitivity as sensitivity
     from gearidae.studies._starting_torque import starting_torque as starting_torque
     from gearidae.studies._starting_torque import static_starting_torque as static_starting_torque
     from gearidae.studies._sticking_probability import sticking_probability as sticking_probability
-    from gearidae.studies._sticking_threshold import sticking_threshold as sticking_threshold
-    from gearidae.studies._surviving_share import surviving_share as surviving_share
     from gearidae.studies._tooth_contacts import tooth_contacts as tooth_contacts
+    from gearidae.studies.declared.calibrate import calibrate as calibrate
+    from gearidae.studies.declared.coating_map import coating_map as coating_map
+    from gearidae.studies.declared.ensemble import ensemble as ensemble
+    from gearidae.studies.declared.lives import surviving_share as surviving_share
+    from gearidae.studies.declared.operating_map import operating_map as operating_map
+    from gearidae.studies.declared.predict import predict as predict
+    from gearidae.studies.declared.pull_off import pull_off as pull_off
+    from gearidae.studies.declared.threshold import sticking_threshold as sticking_threshold
     from gearidae.studies.equilibrium import contact_resonance as contact_resonance
     from gearidae.studies.equilibrium import natural_frequency as natural_frequency
     from gearidae.studies.life_signals import assess_life as assess_life
@@ -43,4 +43,4 @@ if TYPE_CHECKING:
     from gearidae.studies.products import open_map as open_map
     from gearidae.studies.products import open_posterior as open_posterior
 
-__getattr__, __dir__, __all__ = lazy_names(__name__)
+__getattr__, __dir__, __all__ = lazy_names(__name__, "gearidae.studies.declared")

@@ -11,24 +11,21 @@ from __future__ import annotations
 
 import json
 import math
-import os
-from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Unpack
 
 import xarray as xr
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.execution import Execution, origin_of, run_kept
+from gearidae.progress import sweep_progress
+from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.running import prepare
 from gearidae.studies.cycle_jump import Life, jump
+from gearidae.studies.declared.life import STUDY
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_dataset import life_dataset
 from gearidae.studies.life_rates import MOST_STATES, DirectCycles, StateResult, Windows
 from gearidae.studies.life_window import Cycles, window_scene
-from gearidae.studies.products import open_life
 from gearidae.studies.requirements import require_constant, require_gears
 from gearidae.wear import LossLaw
 
@@ -52,13 +49,7 @@ def life(
     tolerance: float = 3e-3,
     bracket: float = 0.01,
     frequency: bool = True,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
+    **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Coverage of the flanks against the passages of their teeth, until the gear sticks.
 
@@ -90,10 +81,9 @@ def life(
         Relative width to which the passages to sticking are narrowed.
     frequency : bool, optional
         Whether to find the characteristic frequency along the life, which takes a sampled run for each step.
-    executor, jobs, backend, progress, overwrite, resume
-        As for `sweep`. With `archive`, finished windows are kept beside it until it is written.
-    archive : path, optional
-        netCDF file to write.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
+        With ``archive``, finished windows are kept beside it until it is written.
 
     Returns
     -------
@@ -129,22 +119,21 @@ def life(
     >>> found = gd.studies.life(scene, law)  # doctest: +SKIP
     >>> found.attrs["passages_to_sticking"]  # doctest: +SKIP
     """
-    base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
+    base, how = prepared(scene, options, samples="off")
     count = _check(
         base, law, passages, fraction, (places, cycles, settle, starts), (tolerance, bracket), resolved
     )
     coverage = coverage_of(base, resolved, places)
     length = Cycles(settle, count, tolerance)
     window = window_scene(base, length, places)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     found = Life()
-    windows = Windows(window, coverage, law, length, starts, backend)
+    windows = Windows(window, coverage, law, length, starts, how.backend)
     direct = DirectCycles(windows)
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
         windows.kept = kept
         with (
-            sweep_progress(progress, MOST_STATES) as windows.report,
+            sweep_progress(how.progress, MOST_STATES) as windows.report,
             how.computing(starts) as windows.executor,
         ):
             jump(
@@ -160,12 +149,12 @@ def life(
             return _dataset(scene, direct, found, frequency=frequency)
 
     settings = [law.describe(), passages, fraction, resolved, places, cycles, settle, starts]
-    return run_kept(
+    return STUDY.compute(
         how,
-        lambda target: KeptRuns(target, window, how.driver),
+        window,
         work,
-        {**origin_of(scene), "settings": json.dumps([*settings, tolerance, bracket, frequency])},
-        read=open_life,
+        [*settings, tolerance, bracket, frequency],
+        origin=scene,
         so_far=lambda: _so_far(scene, direct, found),
         prepared=lambda ds: ds,
     )

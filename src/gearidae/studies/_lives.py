@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -21,13 +19,13 @@ from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
 from gearidae.engine import choose_backend
 from gearidae.errors import SceneError, SolverError
-from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.execution import Execution, origin_of, run_kept
+from gearidae.progress import sweep_progress
+from gearidae.runs.execution import RunOptions, origin_of, prepared, run_kept
 from gearidae.runs.executors import side_by_side
 from gearidae.runs.kept_runs import circumstances, name_of
-from gearidae.runs.running import prepare
 from gearidae.scene.group import did_you_mean
 from gearidae.studies._life import life
+from gearidae.studies.declared.lives import STUDY
 from gearidae.studies.design import check_design, plain_design
 from gearidae.studies.distributions import Distribution, read_distributions
 from gearidae.studies.law_draws import drawn_laws, parameter_units
@@ -38,27 +36,25 @@ from gearidae.wear import LossLaw
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-_SETTINGS: Final = (
-    "passages",
-    "fraction",
-    "resolved",
-    "places",
-    "cycles",
-    "settle",
-    "starts",
-    "tolerance",
-    "bracket",
-)
-"""Arguments of `life` that hold for all members."""
 _LIFE: Final = re.compile(r"[0-9a-f]{64}\.nc(\.runs)?")
 """Names of files of lives, and of the folders of windows beside them."""
-_COLUMNS: Final = {
-    "passages_to_sticking": ("1", "passages of each tooth of the pinion by which the gear sticks"),
-    "passages_turning": ("1", "passages up to which it turns, as far as it was followed"),
-    "final_coverage": ("1", "mean coverage there"),
-    "windows": ("1", "windows that were simulated"),
-    "sticks": ("1", "whether the gear sticks at the end of its life; NaN if the life is unfinished"),
-}
+
+
+class _Options(RunOptions, total=False):
+    """Arguments of `life` that hold for all members, and those of every study."""
+
+    passages: float
+    fraction: float
+    resolved: str
+    places: int
+    cycles: int
+    settle: int
+    starts: int
+    tolerance: float
+    bracket: float
+
+
+_SETTINGS: Final = tuple(name for name in _Options.__annotations__ if name not in RunOptions.__annotations__)
 
 
 def lives(
@@ -69,14 +65,7 @@ def lives(
     design: str = "sobol",
     *,
     seed: int = 0,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
-    **settings: Any,
+    **options: Unpack[_Options],
 ) -> xr.Dataset:
     """Follow the coatings of gears whose keys are drawn from distributions, each until its gear sticks.
 
@@ -93,13 +82,11 @@ def lives(
         Number of members.
     design, seed
         As for `gearidae.studies.ensemble`.
-    executor, jobs, backend, progress, overwrite, resume
-        As for `gearidae.sweep`; members are followed side by side. With `archive`, the lives so far and their finished
-        windows are kept beside it, in ``OUT.nc.lives``, until it is written.
-    archive : path, optional
-        netCDF file to write.
-    **settings
-        ``passages``, ``fraction``, ``resolved``, ``places``, ``cycles``, ``settle``, ``starts``, ``tolerance`` and
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
+        `gearidae.sweep`; members are followed side by side. With ``archive``, the lives so far and their finished
+        windows are kept beside it, in ``OUT.nc.lives``, until it is written. Also ``passages``, ``fraction``,
+        ``resolved``, ``places``, ``cycles``, ``settle``, ``starts``, ``tolerance`` and
         ``bracket`` of `gearidae.studies.life`.
 
     Returns
@@ -125,7 +112,9 @@ def lives(
     >>> found = gd.studies.lives(scene, law, vary, 16)  # doctest: +SKIP
     >>> gd.studies.surviving_share(found)  # doctest: +SKIP
     """
-    base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
+    chosen: Any = dict(options)
+    settings = {name: chosen.pop(name) for name in options if name not in RunOptions.__annotations__}
+    base, how = prepared(scene, chosen, samples="off")
     check_design(size, design, seed, indices=False)
     _check_settings(law, settings)
     distributions = read_distributions(base, vary, parameter_units(law))
@@ -136,15 +125,14 @@ def lives(
     members = list(zip(_scenes(base, values, int(size), texts), laws, strict=True))
     for scene_of_member, law_of_member in members:
         law_of_member.check(scene_of_member)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
 
     def work(kept: _KeptLives | None) -> xr.Dataset:
-        common = _Common(settings, backend, None if kept is None else kept.folder)
+        common = _Common(settings, how.backend, None if kept is None else kept.folder)
         found: list[_Member] = []
         with (
             nullcontext() if kept is None else kept,
-            sweep_progress(progress, len(members)) as report,
+            sweep_progress(how.progress, len(members)) as report,
             how.computing(len(members)) as computing,
         ):
             for each in side_by_side(computing, _follow, members, [common] * len(members)):
@@ -284,29 +272,19 @@ def _dataset(
         "windows": [each.windows for each in found],
         "sticks": [np.nan if each.status == "failed" else float(each.ending == "sticks") for each in found],
     }
-    variables: dict[str, Any] = {
-        name: ("member", np.array(columns[name]), {"units": units, "long_name": words})
-        for name, (units, words) in _COLUMNS.items()
-    }
-    for name, words in (("ending", "what ended the life"), ("status", ""), ("message", "")):
-        about = {"units": "1", "long_name": words or f"{name} of the member"}
-        variables[name] = ("member", [getattr(each, name) for each in found], about)
+    values_of: dict[str, Any] = {name: np.array(column) for name, column in columns.items()}
+    values_of |= {name: [getattr(each, name) for each in found] for name in ("ending", "status", "message")}
     names = dimension_names(values)
     coords: dict[str, Any] = {
         names[each.key]: ("member", values[each.key], {"units": each.unit, "long_name": each.key})
         for each in distributions
     }
-    coords["member"] = ("member", np.arange(len(found)), {"units": "1", "long_name": "number of the member"})
-    about = provenance(base, f"followed {len(found)} lives", swept=tuple(values))
-    return xr.Dataset(
-        variables,
-        coords=coords,
-        attrs={
-            **about,
-            "title": f"{base.name}: lives of {len(found)} coatings",
-            "summary": "Passages until gears stick whose keys were drawn from distributions, by cycle jump.",
-            "swept": json.dumps({key: column.tolist() for key, column in values.items()}, allow_nan=False),
-            "law": json.dumps(law.describe()),
-            "law_source": law.source,
-        },
-    )
+    attributes = {
+        **provenance(base, f"followed {len(found)} lives", swept=tuple(values)),
+        "title": f"{base.name}: lives of {len(found)} coatings",
+        "summary": "Passages until gears stick whose keys were drawn from distributions, by cycle jump.",
+        "swept": json.dumps({key: column.tolist() for key, column in values.items()}, allow_nan=False),
+        "law": json.dumps(law.describe()),
+        "law_source": law.source,
+    }
+    return STUDY.dataset({"member": np.arange(len(found)), **values_of}, attributes).assign_coords(coords)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import math
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,11 +15,9 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError, SolverError
-from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
+from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.studies.gear_answers import SLOW_ENOUGH
-from gearidae.studies.products import open_product
+from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
 from gearidae.studies.starting_ramp import (
     FAILS,
     RESTS,
@@ -42,8 +38,6 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-KIND: Final = "starting_torques"
-SEEDS: Final = 20
 QUANTILES: Final = (0.1, 0.5, 0.9)
 _MOST_SEEDS: Final = 10_000
 _HALVINGS: Final = 4
@@ -52,36 +46,6 @@ _STAGES: Final = 4
 """Runs of each gear, where the first two rates agree."""
 
 
-_ALONG: Final = ("sam_fraction",)
-_VARIABLES: Final[dict[str, tuple[tuple[str, ...], str, str]]] = {
-    "starting_torque": (
-        (*_ALONG, "seed"),
-        "N m",
-        "torque at the last moment of rest; NaN if the gear did not start",
-    ),
-    "starts": (
-        (*_ALONG, "seed"),
-        "1",
-        "whether the drive's own torque turns the gear from rest by one pitch",
-    ),
-    "failed": (
-        (*_ALONG, "seed"),
-        "1",
-        "whether the run of the gear could not be finished: shares are those of the others",
-    ),
-    "place": (("seed",), "1", "place of the start, in pitches"),
-    "quantiles": (
-        (*_ALONG, "quantile"),
-        "N m",
-        "quantiles of the starting torque, gears that did not start included; NaN beyond the ramp",
-    ),
-    "not_started": (_ALONG, "1", "share that had not started when the ramp ended"),
-    "chance": (_ALONG, "1", "share that the drive's own torque starts"),
-    "rate": (_ALONG, "N m s-1", "rise of the torque"),
-    "ramp_end": (_ALONG, "N m", "torque at which the ramp ended"),
-    "median_change": (_ALONG, "1", "relative change of the median from twice this rate"),
-    "damping": (_ALONG, "N s m-1", "damping of the mesh"),
-}
 _SUMMARY: Final = (
     "Torques on the pinion at which gears with real asperities start from rest: the torque rises linearly, and that of "
     "the last moment of rest before one pitch counts."
@@ -135,32 +99,22 @@ class _Design:
         self.torques = torques
 
 
+@dataclass
 class _Runs:
-    """Runs side by side, with their progress."""
+    """Runs side by side, and the messages of those that have failed."""
 
-    def __init__(
-        self,
-        how: Execution,
-        kept: KeptRuns | None,
-        executor: Executor | None,
-        report: SweepProgress,
-        usual: int,
-    ) -> None:
-        self._how, self._kept, self._executor = how, kept, executor
-        self._report, self._usual, self._done = report, usual, 0
-        self.failures: list[str] = []
+    compute: SideBySide
+    failures: list[str] = field(default_factory=list)
 
     def torques(self, scenes: Sequence[Scene]) -> Floats:
         """Torques of runs from rest [N m]; infinite where the gear has not turned, NaN where its run has failed."""
         found = []
-        for _, word in solutions(self._kept, self._executor, run_from_rest, scenes, self._how.backend):
+        for _, word in self.compute(run_from_rest, scenes):
             failed = word.startswith(FAILS)
             if failed:
                 self.failures.append(word.removeprefix(FAILS))
                 log.warning("one gear is left out: %s", self.failures[-1])
             found.append(math.nan if failed else math.inf if word == RESTS else float(word))
-            self._done += 1
-            self._report(float(min(self._done, self._usual)), self._usual)
         return np.array(found)
 
 
@@ -192,17 +146,11 @@ def starting_torques(
     def work(kept: KeptRuns | None) -> xr.Dataset:
         designs = [_Design(each, [laid(each, seed) for seed in numbers]) for each in scenes]
         usual = _STAGES * count * len(designs)
-        with sweep_progress(how.progress, usual) as report, how.computing(usual) as executor:
-            _find_all(designs, _Runs(how, kept, executor, report, usual))
+        with how.side_by_side(kept, usual) as compute:
+            _find_all(designs, _Runs(compute))
         return _dataset(base, fractions, numbers, designs)
 
-    return run_kept(
-        how,
-        lambda target: KeptRuns(target, base, how.driver),
-        work,
-        {**origin_of(base), "settings": json.dumps([KIND, list(fractions), count])},
-        read=lambda path: open_product(path, KIND)[0],
-    )
+    return GEARS.compute(how, base, work, [GEARS.kind, list(fractions), count])
 
 
 def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
@@ -260,29 +208,17 @@ def _dataset(
     base: Scene, shares: Sequence[float], numbers: Sequence[int], designs: Sequence[_Design]
 ) -> xr.Dataset:
     assert base.drive is not None
-    columns = _columns(designs) | {"place": [place_of_seed(base, number) for number in numbers]}
-    coords = {
-        "sam_fraction": ("sam_fraction", np.array(shares), SAM_FRACTION.attributes),
-        "seed": ("seed", np.array(numbers), {"units": "1", "long_name": "contact.seed of the gear"}),
-        "quantile": (
-            "quantile",
-            np.array(QUANTILES),
-            {"units": "1", "long_name": "share of the gears below"},
-        ),
+    places = [place_of_seed(base, number) for number in numbers]
+    axes = {"place": np.array(places), "seed": np.array(numbers), "quantile": np.array(QUANTILES)}
+    values = {name: np.asarray(column) for name, column in _columns(designs).items()}
+    attributes = {
+        **provenance(base, "found starting torques of a population", swept=("contact.seed",)),
+        "title": f"{base.name}: starting torque of {len(numbers)} gears",
+        "summary": _SUMMARY,
+        "drive_torque": base.drive.torque,
     }
-    return xr.Dataset(
-        {
-            name: (dims, np.asarray(columns[name]), {"units": units, "long_name": words})
-            for name, (dims, units, words) in _VARIABLES.items()
-        },
-        coords=coords,
-        attrs={
-            **provenance(base, "found starting torques of a population", swept=("contact.seed",)),
-            "title": f"{base.name}: starting torque of {len(numbers)} gears",
-            "summary": _SUMMARY,
-            "drive_torque": base.drive.torque,
-        },
-    )
+    coverage = ("sam_fraction", np.array(shares), SAM_FRACTION.attributes)
+    return GEARS.dataset(axes | values, attributes).assign_coords(sam_fraction=coverage)
 
 
 def _columns(designs: Sequence[_Design]) -> dict[str, Any]:

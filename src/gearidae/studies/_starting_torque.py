@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
-import os
 from collections.abc import Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -19,15 +16,15 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.mesh.friction import hub_starting_torque, starting_ratio
-from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.estimates import mean_force
-from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
+from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.rubbing import flank_coefficient, hub_radii
-from gearidae.runs.running import prepare, solve_to_end, unfinished, unsolved
+from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.carried import numbers_of
 from gearidae.studies._starting_seeds import starting_torques
-from gearidae.studies.products import open_product
+from gearidae.studies.bracket import STRIDE, bracket, next_value
+from gearidae.studies.declared.starting_torque import STUDY
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
 from gearidae.studies.starting_ramp import pitch_of
@@ -39,12 +36,8 @@ if TYPE_CHECKING:
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
 _LOWEST = 1e-3
 """Default lower end of the search, as a part of the scene's torque."""
-_HEAVIEST = 1e12
-"""No torque above this many times the lowest is tried."""
 _PATIENCE = 3.0
 """A gear that has not arrived after this many times the time it would take without adhesion has stuck."""
-_STRIDE = 4.0
-"""Factor by which the simulated search widens its bracket."""
 
 
 def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | None = None) -> float:
@@ -84,14 +77,14 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
         force = (dry + math.exp(logarithm)) / geometry.base_radius_pinion
         return math.exp(logarithm) - max(holding_forces(scene, force, impacts)) * lever
 
-    low = math.log(lowest)
-    if surplus(low) > 0.0:
+    tried: dict[float, bool] = {}
+    while (torque := next_value(tried, lowest, lowest, STRIDE)) is not None:
+        tried[torque] = surplus(math.log(torque)) > 0.0
+    if tried[lowest]:
         return dry
-    high = low
-    while surplus(high) <= 0.0:
-        if high > math.log(lowest * _HEAVIEST):
-            return math.inf
-        low, high = high, high + math.log(_STRIDE)
+    if not any(tried.values()):
+        return math.inf
+    low, high = map(math.log, bracket(tried))
     return dry + math.exp(float(brentq(surplus, low, high, xtol=1e-3)))
 
 
@@ -104,13 +97,7 @@ def starting_torque(
     simulated: bool = True,
     tolerance: float = 0.1,
     seeds: int | None = None,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
+    **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Smallest drive torque that takes the gear through the mesh, against SAM fraction; of a population, by its gears.
 
@@ -133,8 +120,9 @@ def starting_torque(
     seeds : int, optional
         Of a population the number of gears, 20 by default, whose seeds count from ``contact.seed`` on. `impacts`,
         `lowest`, `simulated` and `tolerance` are not for populations.
-    executor, jobs, backend, progress, archive, overwrite, resume
-        As for `sweep`. With `archive`, finished runs are kept beside it until it is written.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
+        With ``archive``, finished runs are kept beside it until it is written.
 
     Returns
     -------
@@ -169,8 +157,7 @@ def starting_torque(
     _require(scene, impacts)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
-    base = prepare(scene, rtol=None, t_end=None, samples=None, backend=backend)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    base, how = prepared(scene, options)
     if base.contact.model == "population":
         _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
         return starting_torques(
@@ -193,13 +180,7 @@ def starting_torque(
         found = [each.result if simulated else (math.nan, math.nan) for each in searches]
         return _dataset(scene, fractions, static, found).assign_attrs(impacts=impacts, tolerance=tolerance)
 
-    return run_kept(
-        how,
-        lambda target: KeptRuns(target, base, how.driver),
-        work,
-        {**origin_of(scene), "settings": json.dumps([fractions, impacts, least, simulated, tolerance])},
-        read=lambda path: open_product(path, "starting_torque")[0],
-    )
+    return STUDY.compute(how, base, work, [fractions, impacts, least, simulated, tolerance], origin=scene)
 
 
 def _refuse_settings(**given: Any) -> None:
@@ -225,26 +206,17 @@ def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[S
 def _dataset(
     scene: Scene, fractions: Sequence[float], static: Sequence[float], found: Sequence[tuple[float, float]]
 ) -> xr.Dataset:
-    turns, sticks = zip(*found, strict=True)
-    columns = {
-        "static_torque": (static, "starting torque without inertia"),
-        "simulated_torque": (turns, "smallest simulated torque at which the gear turns from rest"),
-        "simulated_stuck": (sticks, "largest simulated torque at which the gear sticks"),
-    }
     assert scene.drive is not None
-    return xr.Dataset(
-        {
-            name: ("sam_fraction", np.array(numbers), {"units": "N m", "long_name": text})
-            for name, (numbers, text) in columns.items()
-        },
-        coords={"sam_fraction": ("sam_fraction", np.array(fractions), SAM_FRACTION.attributes)},
-        attrs={
-            **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
-            "title": f"{scene.name}: starting torque",
-            "summary": "Smallest drive torque that keeps the gear turning against adhesion, against SAM fraction.",
-            "drive_torque": scene.drive.torque,
-        },
-    )
+    turns, sticks = map(np.array, zip(*found, strict=True))
+    values = {"static_torque": np.array(static), "simulated_torque": turns, "simulated_stuck": sticks}
+    attributes = {
+        **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
+        "title": f"{scene.name}: starting torque",
+        "summary": "Smallest drive torque that keeps the gear turning against adhesion, against SAM fraction.",
+        "drive_torque": scene.drive.torque,
+    }
+    coverage = ("sam_fraction", np.array(fractions), SAM_FRACTION.attributes)
+    return STUDY.dataset(values, attributes).assign_coords(sam_fraction=coverage)
 
 
 @dataclass
@@ -255,50 +227,38 @@ class _Search:
     impacts: int
     lowest: float
     static: float
-    turns: float = math.inf
-    sticks: float = 0.0
+    turned: dict[float, bool] = field(default_factory=dict)
 
     def next_torque(self, tolerance: float) -> float | None:
         """Torque to try next; None when the bracket is narrow, or there is nothing in reach."""
-        if math.isinf(self.turns):
-            guess = self.static - _dry(self.scene)
-            first = guess if self.lowest < guess < math.inf else self.lowest
-            torque = first if self.sticks == 0.0 else self.sticks * _STRIDE
-            return torque if torque <= self.lowest * _HEAVIEST else None
-        if self.sticks == 0.0:
-            return max(self.turns / _STRIDE, self.lowest) if self.turns > self.lowest else None
-        return math.sqrt(self.turns * self.sticks) if self.turns > (1.0 + tolerance) * self.sticks else None
-
-    def learn(self, torque: float, turned: bool) -> None:
-        """Take in the outcome of a run."""
-        if turned:
-            self.turns = min(self.turns, torque)
-        else:
-            self.sticks = max(self.sticks, torque)
+        guess = self.static - _dry(self.scene)
+        first = guess if self.lowest < guess < math.inf else self.lowest
+        return next_value(self.turned, first, self.lowest, tolerance)
 
     @property
     def result(self) -> tuple[float, float]:
         """Smallest torque that turns and largest that sticks [N m]; alike if the gear turns at the lowest."""
         dry = _dry(self.scene)
-        return (dry, dry) if self.sticks == 0.0 else (dry + self.turns, dry + self.sticks)
+        if all(self.turned.values()):
+            return dry, dry
+        sticks, turns = bracket(self.turned)
+        return (dry + turns, dry + sticks) if turns > 0.0 else (math.inf, dry + max(self.turned))
 
 
 def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, kept: KeptRuns | None) -> None:
     """Narrow all brackets, the runs of each round side by side."""
-    halvings = math.ceil(math.log2(math.log(_STRIDE) / math.log1p(tolerance)))
-    usual, done = len(searches) * (2 + max(halvings, 0)), 0
-    with sweep_progress(how.progress, usual) as report, how.computing(len(searches)) as executor:
+    halvings = math.ceil(math.log2(math.log(STRIDE) / math.log1p(tolerance)))
+    usual = len(searches) * (2 + max(halvings, 0))
+    with how.side_by_side(kept, usual, len(searches)) as compute:
         while True:
             wanted = [(each, each.next_torque(tolerance)) for each in searches]
             todo = [(each, torque) for each, torque in wanted if torque is not None]
             if not todo:
                 return
             scenes = [_from_rest(each, torque) for each, torque in todo]
-            found = solutions(kept, executor, _run_from_rest, scenes, _way(todo[0][0]), how.backend)
+            found = compute(_run_from_rest, scenes, _way(todo[0][0]))
             for (each, torque), (_, word) in zip(todo, found, strict=True):
-                each.learn(torque, word == "turns")
-                done += 1
-                report(float(min(done, usual)), usual)
+                each.turned[torque] = word == "turns"
 
 
 def _way(search: _Search) -> float:

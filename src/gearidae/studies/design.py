@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -116,6 +115,8 @@ def pick_freeze_design(distributions: Sequence[Distribution], size: int, design:
 
 def _points(dimensions: int, size: int, design: str, seed: int) -> Floats:
     """Points of the unit cube, shape (size, dimensions)."""
+    from scipy.stats import qmc  # which takes half a second to load
+
     generator = np.random.default_rng(seed)
     if design == "random" or dimensions == 0:
         return generator.random((size, dimensions))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from scipy.stats import sobol_indices
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -84,6 +83,8 @@ def indices_of(figures: Floats, keys: int, *, seed: int = 0) -> Indices:
 
 def _estimate(table: Floats) -> Floats:
     """First-order and total indices, shape (2, keys), of the rows of A, B and each AB."""
+    from scipy.stats import sobol_indices  # which takes half a second to load
+
     # scipy drops dimensions of length one, which a single key has: the figure stands there twice
     twice = {
         "f_A": np.stack([table[0]] * 2),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any, Final
 
@@ -11,12 +11,27 @@ from numpy.typing import NDArray
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import did_you_mean, shorten
+from gearidae.scene.pairs import assignments
 from gearidae.studies.distributions import read_distribution
 from gearidae.studies.members import drawn_members
-from gearidae.wear import LossLaw, loss_law
+from gearidae.wear import Arrhenius, LossLaw, loss_law
 from gearidae.wear.registry import loss_law_units
 
 _LAW: Final = "law."
+
+
+def written_law(
+    name: str, parameters: Sequence[str], arrhenius: Sequence[str], vary: Mapping[str, Any]
+) -> LossLaw:
+    """Make the loss law of a command line, of texts ``name=value``; parameters that are drawn may be missing."""
+    law = law_of_medians(name, assignments(parameters, "--parameter", "energy=2 J/m^2"), vary)
+    if not arrhenius:
+        return law
+    values = assignments(arrhenius, "--arrhenius", "activation_energy=1 eV")
+    known = ("activation_energy", "activation_volume", "temperature")
+    if sorted(values) != sorted(known):
+        raise SceneError("--arrhenius", ", ".join(values), "needs " + ", ".join(known))
+    return Arrhenius(law, **values)
 
 
 def law_of_medians(name: str, parameters: Mapping[str, Any], vary: Mapping[str, Any]) -> LossLaw:

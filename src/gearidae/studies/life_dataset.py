@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
 from gearidae.scene.friction import friction_values
 from gearidae.studies.cycle_jump import Life
+from gearidae.studies.declared.life import STUDY
 from gearidae.studies.life_coverage import Coverage
 from gearidae.studies.life_signals import signal_of
 
@@ -21,13 +22,7 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
     from gearidae.studies.life_rates import StateResult
 
-_EXPOSURES = {
-    "contacts": ("m-2", "asperity contacts made on coated flank in a passage, per area of it"),
-    "adhesion_work": ("J m-2", "energy lost to adhesion on coated flank in a passage, per area of it"),
-    "sliding_work": ("J m-2", "normal force times sliding distance in a passage, per area"),
-    "friction_work": ("J m-2", "energy lost to friction of the flanks in a passage, per area"),
-    "pressure": ("Pa", "largest nominal pressure"),
-}
+_EXPOSURES: Final = {"contacts", "adhesion_work", "sliding_work", "friction_work", "pressure"}
 
 
 def life_dataset(
@@ -44,71 +39,38 @@ def life_dataset(
     frequency : bool
         Whether to find the characteristic frequency of each state.
     """
-    states = np.array(found.states)
+    states, passages = np.array(found.states), np.array(found.passages)
     tables = np.array([coverage.table(state) for state in states])
-    dims = ("passages", "side")
-    variables: dict[str, Any] = {
-        "coverage": (dims, tables.mean(axis=(2, 3)), _about("1", "mean covered share of the flanks")),
-        "coverage_loss": (
-            dims,
-            -np.array([coverage.table(each.rate) for each in seen]).mean(axis=(2, 3)),
-            _about("1", "share lost in a passage"),
-        ),
-        "verdict": ("passages", [_word(each) for each in seen], _about("1", "what the gear does")),
-        "mean_gear_speed": (
-            "passages",
-            [each.mean_speed for each in seen],
-            _about("rad s-1", "mean speed of the gear"),
-        ),
-        "min_gear_speed": (
-            "passages",
-            [each.min_speed for each in seen],
-            _about("rad s-1", "smallest speed of the gear"),
-        ),
+    values: dict[str, Any] = {
+        "passages": passages,
+        "side": list(coverage.sides),
+        "coverage": tables.mean(axis=(2, 3)),
+        "coverage_loss": -np.array([coverage.table(each.rate) for each in seen]).mean(axis=(2, 3)),
+        "verdict": [_word(each) for each in seen],
+        "mean_gear_speed": [each.mean_speed for each in seen],
+        "min_gear_speed": [each.min_speed for each in seen],
     }
     rubs = any(friction_values(scene).values())
-    for name, (unit, meaning) in _EXPOSURES.items():
-        if name == "friction_work" and not rubs:
-            continue
-        values = np.array([coverage.table(_mean(each, name, len(states[0]))) for each in seen])
-        together = values.max(axis=(2, 3)) if name == "pressure" else values.mean(axis=(2, 3))
-        variables[f"passage_{name}"] = (dims, together, _about(unit, meaning))
+    for name in _EXPOSURES if rubs else _EXPOSURES - {"friction_work"}:
+        parts = np.array([coverage.table(_mean(each, name, len(states[0]))) for each in seen])
+        values[f"passage_{name}"] = parts.max(axis=(2, 3)) if name == "pressure" else parts.mean(axis=(2, 3))
         if name != "pressure":
-            summed = _cumulated(np.array(found.passages), together)
-            text = meaning.replace(" in a passage", "").replace("made ", "made so far ")
-            variables[f"total_{name}"] = (dims, summed, _about(unit, f"{text}, since the beginning"))
+            values[f"total_{name}"] = _cumulated(passages, values[f"passage_{name}"])
     if coverage.resolved != "uniform":
-        text = "covered share by tooth of the pinion and place along the flank"
-        variables["coverage_by_place"] = (("passages", "side", "tooth", "place"), tables, _about("1", text))
+        values["coverage_by_place"] = tables
     if frequency:
-        variables["characteristic_frequency"] = (
-            "passages",
-            _frequencies(scene, coverage, states),
-            _about("Hz", "frequency of the first impact response"),
-        )
-    passages = _about("1", "passages of each tooth of the pinion")
-    coords: dict[str, Any] = {
-        "passages": ("passages", found.passages, passages),
-        "side": list(coverage.sides),
+        values["characteristic_frequency"] = _frequencies(scene, coverage, states)
+    attributes = {
+        **provenance(scene, "simulated the life of the coating", swept=("coating.sam_fraction",)),
+        "title": f"{scene.name}: life of the coating",
+        "summary": "Coverage of the flanks against passages of their teeth, by cycle jump.",
+        "resolved": coverage.resolved,
     }
-    if coverage.resolved != "uniform":
-        own = exposure_coordinates(scene.replace({"run.exposures": coverage.places}))
-        coords["place"] = own["place"]
-        coords["tooth"] = np.arange(coverage.teeth)
-    return xr.Dataset(
-        variables,
-        coords=coords,
-        attrs={
-            **provenance(scene, "simulated the life of the coating", swept=("coating.sam_fraction",)),
-            "title": f"{scene.name}: life of the coating",
-            "summary": "Coverage of the flanks against passages of their teeth, by cycle jump.",
-            "resolved": coverage.resolved,
-        },
-    )
-
-
-def _about(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}
+    ds = STUDY.dataset(values, attributes)
+    if coverage.resolved == "uniform":
+        return ds
+    place = exposure_coordinates(scene.replace({"run.exposures": coverage.places}))["place"]
+    return ds.assign_coords(place=place, tooth=np.arange(coverage.teeth))
 
 
 def _word(seen: StateResult) -> str:

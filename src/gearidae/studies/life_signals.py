@@ -11,7 +11,7 @@ from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
 from gearidae.runs.execution import interruptible
 from gearidae.scene import Scene
-from gearidae.studies.products import require
+from gearidae.studies.declared.life import STUDY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -54,7 +54,7 @@ def assess_life(ds: xr.Dataset, chart: xr.Dataset, *, noise: float = 0.0, seed: 
     """
     from gearidae.analysis import assess
 
-    require(ds, "life")
+    STUDY.require(ds)
     if not 0.0 <= noise < np.inf:
         raise SceneError("noise", noise, "must be a speed in rad/s, 0 or more")
     random = np.random.default_rng(seed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict.codes import CODE_ATTRIBUTES, sticking, verdict_codes
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import SweepPlan
+from gearidae.studies.study import Rows
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -124,3 +126,9 @@ def along_members(ds: xr.Dataset, keys: Sequence[str]) -> xr.Dataset:
 def names_of(distributions: Sequence[Distribution]) -> dict[str, str]:
     """Distributions in words, by their keys."""
     return {each.key: each.text for each in distributions}
+
+
+def count_rows(words: xr.DataArray) -> Rows:
+    """Count the members of which words are true, the most frequent first."""
+    for word, count in Counter(words.values.tolist()).most_common():
+        yield str(word), str(count), f"{100.0 * count / words.size:.3g} % of the members"

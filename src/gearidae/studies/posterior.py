@@ -12,12 +12,21 @@ import xarray as xr
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.studies.distributions import Distribution
+from gearidae.studies.study import Column
 
 LogLikelihood = Callable[[Floats], Floats]
 """Of points, shape (n, keys); shape (n,)."""
 
 LEVELS: Final = (0.025, 0.16, 0.5, 0.84, 0.975)
 """Quantiles that are given for each key."""
+SUMMARY: Final = {
+    "parameter": Column(("parameter",), "1", "key"),
+    "level": Column(("level",), "1", "share of the posterior below"),
+    "mean": Column(("parameter",), "", "posterior mean, in the key's SI unit"),
+    "standard_deviation": Column(("parameter",), "", "posterior standard deviation, likewise"),
+    "quantiles": Column(("parameter", "level"), "", "posterior quantiles, likewise"),
+}
+"""Variables of the summary."""
 _TAIL: Final = 2e-4
 """Share of the prior that a grid leaves out at each end."""
 _WALKERS: Final = 16
@@ -184,19 +193,6 @@ def summary(
         share = np.cumsum(np.bincount(place, weight))
         half = 0.5 * widths[number] if widths is not None else 0.0
         quantiles[number] = np.interp(LEVELS, np.r_[0.0, share], np.r_[values[0] - half, values + half])
-    about = {"long_name": "key", "units": "1"}
-    return xr.Dataset(
-        {
-            "mean": ("parameter", mean, {"long_name": "posterior mean, in the key's SI unit"}),
-            "standard_deviation": (
-                "parameter",
-                deviation,
-                {"long_name": "posterior standard deviation, likewise"},
-            ),
-            "quantiles": (("parameter", "level"), quantiles, {"long_name": "posterior quantiles, likewise"}),
-        },
-        coords={
-            "parameter": ("parameter", np.array(keys), about),
-            "level": ("level", np.array(LEVELS), {"long_name": "share of the posterior below", "units": "1"}),
-        },
-    )
+    columns = (np.array(keys), np.array(LEVELS), mean, deviation, quantiles)
+    made = zip(SUMMARY.items(), columns, strict=True)
+    return xr.Dataset({name: (column.dims, value, column.attributes()) for (name, column), value in made})

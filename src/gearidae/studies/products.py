@@ -1,145 +1,15 @@
-"""Files that studies have written: one reader, and which study a file is of."""
+"""Files that studies have written: one reader, which study a file is of, and what it says."""
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Final
+from dataclasses import dataclass
 
 import xarray as xr
 
 from gearidae.archive import open_archive
-from gearidae.archive.dataset import dimension_names
-from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
-
-_HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
-"""How netCDF files begin, those of version 4 and the older ones."""
-
-
-def calibrated_keys(posterior: xr.Dataset) -> tuple[str, ...]:
-    """Return the keys that a posterior is about.
-
-    Raises
-    ------
-    SceneError
-        If the dataset is no posterior.
-    """
-    try:
-        keys = tuple(map(str, json.loads(posterior.attrs["calibration"])["priors"]))
-        names = dimension_names(keys).values()
-        whole = bool(keys) and all(name in posterior.variables for name in names)
-        if whole and ("weight" in posterior or "draw" in posterior.dims):
-            return keys
-    except (AttributeError, KeyError, TypeError, ValueError):
-        pass
-    raise SceneError("posterior", type(posterior).__name__, "must be a posterior, from studies.calibrate")
-
-
-def _check_map(ds: xr.Dataset) -> object:
-    from gearidae.analysis.map_model import require_map  # loads what fits models
-
-    return require_map(ds)
-
-
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """What a study writes other than runs.
-
-    Attributes
-    ----------
-    words : str
-        What it is.
-    maker : str
-        Function of `gearidae.studies`, or command, that makes one.
-    needed : dict of str to str
-        Variables that it has, and their first dimension, which is not empty.
-    check : callable
-        Raises a SceneError if it is something else.
-    """
-
-    words: str
-    maker: str
-    needed: dict[str, str] = field(default_factory=dict)
-    check: Callable[[xr.Dataset], object] = id  # anything will do
-
-
-_KINDS: Final = {
-    "coating_map": _Kind("coating map", "coating-map", check=_check_map),
-    "life": _Kind(
-        "life of a coating",
-        "life",
-        dict.fromkeys(("coverage", "verdict", "mean_gear_speed", "min_gear_speed"), "passages"),
-    ),
-    "lives": _Kind(
-        "ensemble of lives",
-        "lives",
-        dict.fromkeys(("passages_to_sticking", "passages_turning", "sticks", "ending", "status"), "member"),
-    ),
-    "pull_off": _Kind(
-        "study of pull-off forces",
-        "pull-off",
-        dict.fromkeys(("pull_off", "asperities_joined", "asperities_holding", "gap"), "seed"),
-    ),
-    "posterior": _Kind("posterior", "calibrate", check=calibrated_keys),
-    "starting_torque": _Kind(
-        "study of starting torques",
-        "starting-torque",
-        dict.fromkeys(("static_torque", "simulated_torque", "simulated_stuck"), "sam_fraction"),
-    ),
-    "starting_torques": _Kind(
-        "study of a population's starting torques",
-        "starting-torque",
-        dict.fromkeys(
-            (
-                "starting_torque",
-                "starts",
-                "quantiles",
-                "not_started",
-                "chance",
-                "rate",
-                "median_change",
-                "damping",
-            ),
-            "sam_fraction",
-        ),
-    ),
-    "sticking_threshold": _Kind(
-        "sticking threshold", "threshold", dict.fromkeys(("limit", "sticks", "passes"), "exits")
-    ),
-}
-
-
-def require(ds: xr.Dataset, kind: str) -> xr.Dataset:
-    """Return a dataset that a study has made.
-
-    Parameters
-    ----------
-    kind : str
-        ``coating_map``, ``life``, ``lives``, ``posterior``, ``starting_torque``, ``starting_torques`` or
-        ``sticking_threshold``.
-
-    Raises
-    ------
-    SceneError
-        If it is something else.
-    """
-    about = _KINDS[kind]
-    lacking = [
-        name
-        for name, dim in about.needed.items()
-        if name not in ds or ds[name].dims[:1] != (dim,) or not ds.sizes[dim]
-    ]
-    if kind == "life" and "side" not in ds.coords:
-        lacking.append("side")
-    if lacking:
-        allowed = f"is no {about.words}: it lacks {', '.join(lacking)}; make one with {about.maker}"
-        raise SceneError("dataset", type(ds).__name__, allowed)
-    about.check(ds)
-    return ds
+from gearidae.studies.declared import studies
 
 
 def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple[xr.Dataset, str]:
@@ -150,13 +20,13 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
     path : path-like
         A netCDF file.
     kind : str, optional
-        What it has to be, as for `require`.
+        What it has to be: of a `Study`.
 
     Returns
     -------
     ds : Dataset
     kind : str
-        As for `require`, or ``runs``, ``ensemble`` or ``operating_map`` of an archive of runs.
+        Of a `Study`, or ``runs`` of an archive of other runs.
 
     Raises
     ------
@@ -164,17 +34,13 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
         If the file cannot be read or is something else.
     """
     if kind is not None:
-        ds = _read(path, kind)
-        try:
-            return require(ds, kind), kind
-        except SceneError as error:
-            raise SceneError(_last(kind), path, error.allowed) from None
+        return studies()[kind].open(path), kind
     try:
         ds = open_archive(path)
         return ds, kind_of(ds)
     except SceneError as no_archive:
         try:
-            ds = _read(path, "life")
+            ds = studies()["life"].read(path)
         except SceneError:
             raise no_archive from None
         if (found := kind_of(ds)) == "runs":
@@ -190,38 +56,41 @@ def kind_of(ds: xr.Dataset) -> str:
     str
         As from `open_product`; ``runs`` if it is nothing else.
     """
-    for kind in _KINDS:
+    for kind, study in studies().items():
         try:
-            require(ds, kind)
+            study.require(ds)
             return kind
         except SceneError:
             pass
-    if "ensemble" in ds.attrs and "member" in ds.dims:
-        return "ensemble"
-    return "operating_map" if "outcome" in ds and ds["outcome"].ndim == 2 else "runs"
+    return "runs"
 
 
-def _last(kind: str) -> str:
-    """Name a file as errors do: ``map``."""
-    return kind.rpartition("_")[2]
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a study has found.
+
+    Attributes
+    ----------
+    sentence : str
+        The answer.
+    rows : tuple of (str, str, str)
+        Name, value and remark; a row without a value is a heading.
+    """
+
+    sentence: str
+    rows: tuple[tuple[str, str, str], ...]
 
 
-def _read(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
-    source, about = Path(path), _KINDS[kind]
-    if not source.is_file():
-        raise SceneError(_last(kind), path, "there is no such file")
-    try:
-        with source.open("rb") as file:
-            head = file.read(8)
-    except OSError as error:
-        raise SceneError(_last(kind), path, f"cannot be read ({error.strerror})") from error
-    if not head.startswith(_HEADERS):
-        allowed = f"is no {about.words} but another kind of file; make one with {about.maker}"
-        raise SceneError(_last(kind), path, allowed)
-    try:
-        return loaded(source)
-    except Exception as error:
-        raise SceneError(_last(kind), path, f"is damaged ({error})") from error
+def answer(ds: xr.Dataset, kind: str) -> Answer:
+    """Say what a study has found.
+
+    Parameters
+    ----------
+    kind : str
+        From `open_product`, other than ``runs``.
+    """
+    study = studies()[kind]
+    return Answer(study.sentence(ds), tuple(study.rows(ds)))
 
 
 def open_life(path: str | os.PathLike[str]) -> xr.Dataset:

@@ -1,42 +1,49 @@
-"""Coating maps: how the impact response depends on how much of the monolayer is left.
+"""Map the frequency of the impact response against the SAM fraction.
 
-Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Fig. 10: one line for one pair of gears and one torque.
+Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
 """
+
+# Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Fig. 10: one line for one pair of gears and one torque.
 
 from __future__ import annotations
 
 import itertools
-import json
-import os
 from collections.abc import Iterable, Mapping
-from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from gearidae.analysis.impacts import WIDTH, check_width
+from gearidae.analysis.map_model import require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
+from gearidae.runs.execution import Execution, RunOptions
+from gearidae.runs.running import prepare
+from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
+from gearidae.runs.sweeping import run_plan
 from gearidae.scene import describe_key
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.keys import scene_value
-from gearidae.studies.products import open_map
+from gearidae.scene.pairs import sweep_values
+from gearidae.scene.prefixes import with_prefix
+from gearidae.studies.announcement import grid_words
 from gearidae.studies.requirements import require_gears
+from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
-    from gearidae.progress import SweepProgress
     from gearidae.runs.kept_runs import KeptRuns
-    from gearidae.runs.sweep_plan import SweepPlan
     from gearidae.scene import Scene
 
 FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
 """Fractions of a map by default."""
 _FRACTION = "coating.sam_fraction"
 _TORQUE = "drive.torque"
+_MOST_FRACTIONS: Final = 13
+"""Of a line, in the summary."""
 _PARTS_OF_TORQUE = (0.7, 0.85, 1.0, 1.15, 1.3)
 _SPEED = {
     "units": "rad s-1",
@@ -56,13 +63,7 @@ def coating_map(
     *,
     over: Mapping[str, Iterable[Any]] | str | None = None,
     width: float = WIDTH,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
+    **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Characteristic frequency against SAM fraction (Teodorescu et al. 2009, Fig. 10).
 
@@ -81,15 +82,8 @@ def coating_map(
         where the torque of a record is not known.
     width : float, optional
         Of the impact windows, in pitches, see `impact_windows`.
-    executor, jobs, backend, progress
-        As for `sweep`.
-    archive : path-like, optional
-        File to write the map to.
-    overwrite : bool, optional
-        Whether `archive` may replace a file, and the runs of an unfinished map beside it be discarded.
-    resume : bool, optional
-        Take the runs that an unfinished map into `archive` has kept, and compute the others only. A file that holds
-        this very map already is returned as it is.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
 
     Returns
     -------
@@ -113,17 +107,12 @@ def coating_map(
     >>> scene = gd.preset("teodorescu2009_low_speed")
     >>> chart = gd.analysis.coating_map(scene, [1.0, 0.8, 0.6, 0.5])  # doctest: +SKIP
     """
-    # reading and drawing maps must not wait for the solver
-    from gearidae.runs.execution import Execution, origin_of, run_kept
-    from gearidae.runs.kept_runs import KeptRuns
-    from gearidae.runs.sweeping import run_plan
-
     require_gears(scene)
     fractions = _fractions(sam_fraction)
     width = check_width(width)
     keys = further_keys(scene, over)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, scene.run.method)
-    plans = _plans(scene, fractions, keys, backend)
+    how = Execution(**options, method=scene.run.method)
+    plans = _plans(scene, fractions, keys, how.backend)
     numbers = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
@@ -131,24 +120,15 @@ def coating_map(
         lines = [_line(run_plan(plan, how, kept), width) for plan in plans]
         return _assembled(lines, numbers).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
 
-    settings = json.dumps({_FRACTION: fractions, **numbers, "width": width})
-    return run_kept(
-        how,
-        lambda target: KeptRuns(target, plans[0].base, how.driver),
-        work,
-        {**origin_of(scene), "settings": settings},
-        read=open_map,
-        scenes=[one for plan in plans for one in plan.scenes],
-    )
+    scenes = [one for plan in plans for one in plan.scenes]
+    settings = {_FRACTION: fractions, **numbers, "width": width}
+    return STUDY.compute(how, plans[0].base, work, settings, origin=scene, scenes=scenes)
 
 
 def _plans(
     scene: Scene, fractions: list[float], keys: Mapping[str, list[Any]], backend: str
 ) -> list[SweepPlan]:
     """Plan the runs of each line of the map, before any of them is run."""
-    from gearidae.runs.running import prepare
-    from gearidae.runs.sweep_plan import plan_sweep
-
     plans = []
     for values in itertools.product(*keys.values()):
         changes = dict(zip(keys, values, strict=True))
@@ -257,3 +237,79 @@ def _attributes(scene: Scene, keys: tuple[str, ...], analysis: Mapping[Any, Any]
         ),
         **{str(key): value for key, value in analysis.items()},
     }
+
+
+def _call(
+    *,
+    over: Annotated[
+        list[str] | None,
+        Option(
+            "SAM fractions, coating.sam_fraction=1:0.5:-0.01, and other keys for several lines; repeatable.",
+            repeatable=True,
+            completes="keys",
+        ),
+    ] = None,
+) -> Call:
+    values = sweep_values([pair for pair in over or [] if pair.strip() != _TORQUE])
+    fractions = values.pop(_FRACTION, FRACTIONS.tolist())
+    usual_torques = any(pair.strip() == _TORQUE for pair in over or [])
+    if usual_torques and values:
+        raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
+    further = _TORQUE if usual_torques else values
+
+    def announcement(scene: Scene, workers: int | None) -> str:
+        return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further), workers)
+
+    return Call((fractions,), {"over": further}, announcement)
+
+
+def _sentence(ds: xr.Dataset) -> str:
+    frequency = ds["characteristic_frequency"].values
+    if not np.isfinite(frequency).any():
+        return "Nothing rings at any coverage."
+    low, high = (with_prefix(float(f(frequency)), "Hz", 4) for f in (np.nanmin, np.nanmax))
+    ends = [f"{100.0 * float(f(ds['sam_fraction'])):.4g} %" for f in (np.max, np.min)]
+    return f"From SAM {ends[0]} to {ends[1]} the teeth ring at {low} to {high}."
+
+
+def _rows(ds: xr.Dataset) -> Rows:
+    """Frequencies at some of the fractions, line by line."""
+    # without the impacts, of which there may be none
+    ds = ds[["characteristic_frequency", "uncertainty", "min_gear_speed"]]
+    further = [dim for dim in ds["characteristic_frequency"].dims if dim != "sam_fraction"]
+    lines = ds.stack(line=further) if further else ds.expand_dims("line")
+    count = ds.sizes["sam_fraction"]
+    picked = np.unique(np.linspace(0, count - 1, min(count, _MOST_FRACTIONS)).round().astype(int))
+    for number in range(lines.sizes["line"]):
+        line = lines.isel(line=number)
+        held = ", ".join(f"{dim} = {line[dim].item():g}" for dim in further)
+        yield held or "Frequency of the first impact response", "", ""
+        for place in picked:
+            one = line.isel(sam_fraction=int(place))
+            value, spread = float(one["characteristic_frequency"]), float(one["uncertainty"])
+            text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
+            stops = "" if float(one["min_gear_speed"]) > 0.0 else "the gear stops within the run"
+            yield f"SAM {100 * float(one['sam_fraction']):g} %", text, stops
+
+
+STUDY = Study(
+    kind="coating_map",
+    words="coating map",
+    maker="coating-map",
+    title="Map",
+    command=_call,
+    examples=("gearidae coating-map mine.toml -o map.nc",),
+    columns={
+        "characteristic_frequency": Column(("sam_fraction",), "Hz", "frequency of the first impact response"),
+        "uncertainty": Column(("sam_fraction",), "Hz", "its standard uncertainty"),
+        "impact_frequency": Column(("sam_fraction", "impact"), "Hz", "frequency of each impact response"),
+        "impact_uncertainty": Column(("sam_fraction", "impact"), "Hz", "its standard uncertainty"),
+        "impact_time": Column(("sam_fraction", "impact"), "s", "time of the impact"),
+        "median_gear_speed": Column(("sam_fraction",), "rad s-1", "median speed of the gear"),
+        "min_gear_speed": Column(("sam_fraction",), "rad s-1", "smallest speed of the gear"),
+    },
+    check=require_map,
+    sentence=_sentence,
+    rows=_rows,
+    pictures=(Picture("coating_map", "Frequency of the impact response against the coverage"),),
+)

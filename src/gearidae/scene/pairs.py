@@ -1,10 +1,9 @@
-"""Read ``key=value`` and ``key=values`` as they stand on the command line."""
+"""Read ``key=value`` and ``key=values`` as they are written on the command line."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from decimal import Decimal, DecimalException
-from pathlib import Path
 from typing import Any
 
 from gearidae.errors import SceneError
@@ -106,11 +105,6 @@ def quantity(option: str, text: str, unit: str) -> float:
         return from_text(text, unit)
     except ValueError as error:
         raise SceneError(option, text, str(error)) from None
-
-
-def default_output(case: str, suffix: str) -> Path:
-    """Name a result after its case, in the current folder."""
-    return Path(f"{Path(case).stem}{suffix}")
 
 
 def _split(pair: str, option: str, example: str) -> tuple[str, str]:

@@ -20,9 +20,9 @@ from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import runs
 from gearidae.arrays import Floats
+from gearidae.drawing.picking import pick
+from gearidae.drawing.picture import PictureAxes, new_picture
 from gearidae.errors import SceneError
-from gearidae.plot.picking import pick
-from gearidae.plot.picture import PictureAxes, new_picture
 from gearidae.scene.prefixes import PREFIXES
 
 # Okabe and Ito's palette, dark colours first: distinguishable for colour-blind readers and, with the line styles,
@@ -106,7 +106,7 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     -------
     list of Run
         At most seven, because more cannot be distinguished in one picture: the first, the last, and those at which the
-        outcome changes, see `gearidae.plot.picking`.
+        outcome changes, see `gearidae.drawing.picking`.
 
     Raises
     ------

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.plot.style import scaled
+from gearidae.drawing.style import scaled
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,48 +1,19 @@
-"""What a command of many runs is going to do, and for how long, said before it begins."""
+"""What many runs are going to be, and how long they take, in words for a command that is about to begin them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearidae.archive import check_target
-from gearidae.cli.output import say
 from gearidae.progress import in_words
-from gearidae.runs.kept_runs import folder_beside
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 _TRIED: Final = 8
 """Runs whose time is estimated."""
-
-
-def begin(
-    title: str, scene: Scene, words: str, target: Path, *, resume: bool = False, overwrite: bool = False
-) -> None:
-    """Say what will be run, unless a file is in the way.
-
-    Where runs of an unfinished study are kept, the study itself says what to do with its file.
-
-    Parameters
-    ----------
-    title, words : str
-        What is made, and of which runs.
-    target : Path
-        File to be written.
-
-    Raises
-    ------
-    SceneError
-        If `target` cannot be written.
-    """
-    if not resume and not folder_beside(target).exists():
-        check_target(target, overwrite=overwrite)
-    if words:
-        say(f"{title} of {scene.name}: {words}")
 
 
 def grid_words(

@@ -1,26 +1,30 @@
-"""Predictions from a calibration: an ensemble whose keys are drawn from the posterior."""
+"""Run a scene with the keys that were calibrated drawn from their posterior: how often it sticks.
+
+Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+"""
 
 from __future__ import annotations
 
 import json
-import os
-from concurrent.futures import Executor
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Unpack
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.dataset import dimension_names
-from gearidae.runs.execution import Execution
-from gearidae.runs.running import prepare
+from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweeping import run_study
+from gearidae.studies.declared import ensemble
+from gearidae.studies.declared.calibrate import calibrated_keys
 from gearidae.studies.design import check_design
 from gearidae.studies.members import along_members, member_plan
-from gearidae.studies.products import calibrated_keys
+from gearidae.studies.products import open_posterior
+from gearidae.studies.study import Call, Option
 
 if TYPE_CHECKING:
-    from gearidae.progress import SweepProgress
     from gearidae.scene import Scene
 
 
@@ -30,13 +34,7 @@ def predict(
     size: int,
     *,
     seed: int = 0,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
+    **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Run a scene with the keys that were calibrated drawn from their posterior.
 
@@ -50,8 +48,9 @@ def predict(
         Number of members.
     seed : int, optional
         Of the draws.
-    executor, jobs, backend, progress, archive, overwrite, resume
-        As for `gearidae.sweep`.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
+        `gearidae.sweep`.
 
     Returns
     -------
@@ -66,8 +65,7 @@ def predict(
         On Ctrl-C, with the runs so far as its ``dataset``.
     """
     check_design(size, "random", seed, indices=False)
-    base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    base, how = prepared(scene, options, samples="off")
     values = posterior_draws(posterior, size, seed)
     source = dict.fromkeys(values, "the posterior")
     plan = member_plan(base, values, source)
@@ -117,3 +115,25 @@ def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str
         width = axis[1] - axis[0]
         values[key] = axis[place] + width * (generator.random(size) - 0.5)
     return values
+
+
+def _call(
+    *,
+    posterior: Annotated[Path, Option("Posterior, from gearidae calibrate.")],
+    size: Annotated[int, Option("Number of runs.")],
+    seed: Annotated[int, Option("Seed of the draws.")] = 0,
+) -> Call:
+    known = open_posterior(posterior)
+    keys = calibrated_keys(known)
+    words = f"{size} runs, {' and '.join(keys)} drawn from the posterior"
+    return Call((known, size), {"seed": seed}, words, keys, size)
+
+
+STUDY = replace(
+    ensemble.STUDY,
+    title="Prediction",
+    suffix="predicted",
+    run="predict",
+    command=_call,
+    examples=("gearidae predict mine.toml --posterior known.nc --size 64 --set drive.torque=6e-18",),
+)

@@ -1,13 +1,16 @@
-"""Calibration: what observations of real gears say about keys that are not known."""
+"""Find out what observations of gears say about keys that are not known: their posterior.
+
+Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
+"""
 
 from __future__ import annotations
 
 import json
 import logging
-import os
+import math
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Unpack
 
 import numpy as np
 import xarray as xr
@@ -17,15 +20,17 @@ from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
-from gearidae.runs.execution import Execution, run_kept
-from gearidae.runs.running import prepare
+from gearidae.runs.execution import RunOptions, prepared, run_kept
 from gearidae.scene import describe_key
-from gearidae.studies._ensemble import figure_names
+from gearidae.scene.literal import literal
+from gearidae.scene.pairs import texts
+from gearidae.studies.declared.ensemble import figure_names
 from gearidae.studies.distributions import read_distributions
+from gearidae.studies.observation_files import observation_of, read_observations
 from gearidae.studies.observations import STICKS, Observation
-from gearidae.studies.posterior import grid_posterior, sampled_posterior
-from gearidae.studies.predicting import Predictor
+from gearidae.studies.posterior import SUMMARY, grid_posterior, sampled_posterior
 from gearidae.studies.products import open_posterior
+from gearidae.studies.study import Call, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -38,6 +43,9 @@ _ONE_CELL: Final = 0.9
 """Share of a posterior in one cell of its grid above which the cell is wider than the posterior."""
 _FAR: Final = 4.0
 """Uncertainties beyond all runs from which an observation is far from them."""
+_EXAMPLE: Final = "'sticks=true; drive.torque=4.2e-18' or 'ring_frequency=5.2 kHz +- 0.1 kHz'"
+_STEPS_WANTED: Final = 50
+"""Steps to keep of each walker, over the autocorrelation time, for that time to be found (emcee's own advice)."""
 METHODS: Final = ("auto", "grid", "emcee")
 
 
@@ -50,13 +58,7 @@ def calibrate(
     points: int = 41,
     steps: int = 500,
     seed: int = 0,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
+    **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Posterior of some keys, given observations.
 
@@ -77,8 +79,9 @@ def calibrate(
         Of each of emcee's walkers, of which there are 16, or four a key; the first quarter is not kept.
     seed : int, optional
         Of emcee.
-    executor, jobs, backend, progress, archive, overwrite, resume
-        As for `gearidae.sweep`. With `archive`, finished runs are kept beside it until the posterior is written.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
+        `gearidae.sweep`. With ``archive``, finished runs are kept beside it until the posterior is written.
 
     Returns
     -------
@@ -106,12 +109,13 @@ def calibrate(
     ...     scene, {"surface.asperity_radius": "normal(450 nm, 50 nm)"}, seen
     ... )  # doctest: +SKIP
     """
-    base = prepare(scene, rtol=None, t_end=None, samples=None, backend=backend)
+    from gearidae.studies.predicting import Predictor
+
+    base, how = prepared(scene, options)
     distributions = read_distributions(base, priors)
     keys = tuple(each.key for each in distributions)
     chosen = _check(method, len(keys), points, steps, seed)
     seen = _checked(observations, base, keys)
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     settings = {"method": chosen, "points": points, "steps": steps, "seed": seed}
     about = _attributes(base, distributions, seen, settings)
     predictor = Predictor(base, keys, seen, how)
@@ -129,10 +133,10 @@ def calibrate(
     def work(kept: KeptRuns | None) -> xr.Dataset:
         predictor.kept = kept
         if chosen == "grid":
-            ds = grid_posterior(distributions, names, points, lambda values: likelihood(values, progress))
+            ds = grid_posterior(distributions, names, points, lambda values: likelihood(values, how.progress))
             _doubt(ds["weight"], dict(zip(names, keys, strict=True)))
         else:
-            with sweep_progress(progress, steps) as report:
+            with sweep_progress(how.progress, steps) as report:
                 allowed = _where_allowed(base, keys, likelihood)
                 ds = sampled_posterior(distributions, names, steps, seed, allowed, report)
         for key, name in zip(keys, names, strict=True):
@@ -238,3 +242,136 @@ def _attributes(
         "summary": f"Posterior of {', '.join(each.key for each in priors)}, given {len(seen)} observations.",
         "calibration": json.dumps(settings_used),
     }
+
+
+def calibrated_keys(posterior: xr.Dataset) -> tuple[str, ...]:
+    """Return the keys that a posterior is about.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no posterior.
+    """
+    try:
+        keys = tuple(map(str, json.loads(posterior.attrs["calibration"])["priors"]))
+        names = dimension_names(keys).values()
+        whole = bool(keys) and all(name in posterior.variables for name in names)
+        if whole and ("weight" in posterior or "draw" in posterior.dims):
+            return keys
+    except (AttributeError, KeyError, TypeError, ValueError):
+        pass
+    raise SceneError("posterior", type(posterior).__name__, "must be a posterior, from studies.calibrate")
+
+
+def _call(
+    *,
+    vary: Annotated[
+        list[str],
+        Option(
+            "Key and what was known of it, key=normal(450 nm, 50 nm), as for ensemble; repeatable.",
+            repeatable=True,
+            completes="keys",
+        ),
+    ],
+    seen: Annotated[
+        list[str] | None,
+        Option(
+            "Observation and its conditions: 'sticks=true; drive.torque=4.2e-18', "
+            "'ring_frequency=5.2 kHz +- 0.1 kHz'; repeatable.",
+            repeatable=True,
+        ),
+    ] = None,
+    observations: Annotated[Path | None, Option("File with more of them: .toml or .csv.")] = None,
+    method: Annotated[
+        Literal["auto", "grid", "emcee"], Option("By default a grid for up to two keys, else emcee.")
+    ] = "auto",
+    points: Annotated[int, Option("Cells a key of the grid.")] = 41,
+    steps: Annotated[int, Option("Steps of each of emcee's walkers.")] = 500,
+    seed: Annotated[int, Option("Seed of emcee.")] = 0,
+) -> Call:
+    priors = texts(vary, "--vary", "coating.sam_fraction=uniform(0.4, 0.7)")
+    listed = [_observation(text) for text in seen or []]
+    listed += [] if observations is None else read_observations(observations)
+    if not listed:
+        raise SceneError("--seen", "(missing)", f"give what was observed, {_EXAMPLE}, or --observations FILE")
+    return Call(
+        (priors, listed),
+        {"method": method, "points": points, "steps": steps, "seed": seed},
+        f"{' and '.join(priors)} from {len(listed)} observation{'s' if len(listed) > 1 else ''}",
+        priors,
+        len(listed) * points,
+    )
+
+
+def _observation(text: str) -> Observation:
+    """Read ``figure=value +- uncertainty; key=value; misjudged=share``."""
+    given: dict[str, Any] = {}
+    for place, pair in enumerate(text.split(";")):
+        name, equals, value = (part.strip() for part in pair.partition("="))
+        if not (name and equals and value) or name in given:
+            raise SceneError("--seen", text, f"must read figure=value and conditions, such as {_EXAMPLE}")
+        if place == 0:
+            measured, _, uncertainty = (
+                part.strip() for part in value.replace("\u00b1", "+-").partition("+-")
+            )
+            given = {"of": name, "value": literal(measured)}
+            given |= {"uncertainty": literal(uncertainty)} if uncertainty else {}
+        else:
+            given[name] = literal(value)
+    try:
+        return observation_of(given)
+    except SceneError as error:
+        raise SceneError(f"--seen {error.key}", error.value, f"{error.allowed}; in {text!r}") from None
+
+
+def _sentence(ds: xr.Dataset) -> str:
+    words = []
+    for key in ds["parameter"].values.tolist():
+        low, _, middle, _, high = (
+            _in_unit(value, key) for value in ds["quantiles"].sel(parameter=key).values
+        )
+        words.append(f"{key} is {middle}, 95 % in {low} .. {high}")
+    return f"{'; '.join(words)}."
+
+
+def _rows(ds: xr.Dataset) -> Rows:
+    """Mean, deviation and quantiles of each key; of draws, how many are independent."""
+    count = len(json.loads(ds.attrs["calibration"])["observations"])
+    yield str(ds.attrs["title"]), "", f"{count} observation{'s' if count > 1 else ''}"
+    for key in ds["parameter"].values.tolist():
+        one = ds.sel(parameter=key)
+        low, inner_low, middle, inner_high, high = (_in_unit(each, key) for each in one["quantiles"].values)
+        spread = f"{_in_unit(float(one['mean']), key)} +- {_in_unit(float(one['standard_deviation']), key)}"
+        yield key, spread, f"median {middle}, 68 % in {inner_low} .. {inner_high}, 95 % in {low} .. {high}"
+    if "autocorrelation_time" in ds.attrs:
+        time, draws = float(ds.attrs["autocorrelation_time"]), ds.sizes["draw"]
+        many = f"{draws / max(time, 1.0):.2g}"
+        if ds.attrs.get("steps_kept", math.inf) < _STEPS_WANTED * time:
+            independent = f"fewer than {many} independent: few --steps"
+        else:
+            independent = f"some {many} of them independent"
+        yield "draws", str(draws), independent
+
+
+def _in_unit(value: float, key: str) -> str:
+    unit = describe_key(key).unit
+    return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
+
+
+STUDY = Study(
+    kind="posterior",
+    words="posterior",
+    maker="calibrate",
+    title="Posterior",
+    run="calibrate",
+    command=_call,
+    examples=(
+        'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
+        'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',
+    ),
+    columns=SUMMARY,
+    check=calibrated_keys,
+    sentence=_sentence,
+    rows=_rows,
+    pictures=(Picture("posterior", "Posterior of each key, and of each two"),),
+)

@@ -1,20 +1,14 @@
-"""Sticking threshold: where a gear begins to stick, and how that depends on how long one waits.
+"""Search where the gear begins to stick, against the number of mesh exits waited for."""
 
-Every mesh exit is a tooth that adhesion may hold back, so that a verdict holds for the exits that were waited for. One
-run that sticks after k exits answers for all numbers of exits: it passes up to k of them and no more.
-"""
+# Every mesh exit is a tooth that adhesion may hold back, so that a verdict holds for the exits that were waited for.
+# One run that sticks after k exits answers for all numbers of exits: it passes up to k of them and no more.
 
 from __future__ import annotations
 
-import json
 import math
-import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -22,17 +16,18 @@ import xarray as xr
 from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
-from gearidae.progress import SweepProgress, sweep_progress
-from gearidae.runs.estimates import steady_speed
-from gearidae.runs.execution import Execution, origin_of, run_kept, solutions
+from gearidae.runs.execution import RunOptions, SideBySide, prepared
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.running import prepare
 from gearidae.scene.keys import find_key
-from gearidae.studies.products import open_product
+from gearidae.scene.pairs import sweep_values
+from gearidae.studies.bracket import bracket
 from gearidae.studies.requirements import require_gears
+from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from gearidae.scene import Scene
 
 _PARTS = 4
@@ -51,13 +46,7 @@ def sticking_threshold(
     exits: int = 100,
     *,
     width: float | None = None,
-    executor: Executor | None = None,
-    jobs: int | None = None,
-    backend: str = "auto",
-    progress: bool | SweepProgress = False,
-    archive: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
+    **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Value of a key at which the gear begins to stick, against the number of mesh exits waited for.
 
@@ -74,10 +63,9 @@ def sticking_threshold(
         Mesh exits to wait for.
     width : float, optional
         Width at which a bracket is narrow enough, in the key's SI unit; by default 1/256 of that of `between`.
-    executor, jobs, backend, progress, overwrite, resume
-        As for `sweep`. With `archive`, finished runs are kept beside it until it is written.
-    archive : path, optional
-        netCDF file to write.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
+        With ``archive``, finished runs are kept beside it until it is written.
 
     Returns
     -------
@@ -108,13 +96,12 @@ def sticking_threshold(
     >>> found = gd.studies.sticking_threshold(scene, between=(0.4, 0.7), exits=5)  # doctest: +SKIP
     >>> float(found.limit.sel(exits=5))  # doctest: +SKIP
     """
-    base = prepare(scene, rtol=None, t_end=None, samples="off", backend=backend)
+    base, how = prepared(scene, options, samples="off")
     ends = _ends(base, over, between)
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
     _check(base, exits, width)
     if not is_scheduled(base.to_dict()):  # a schedule has a time of its own
         base = base.replace({"run.duration": _window(base, exits)})
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
     most = 2 + (_PARTS - 1) * rounds * len(waits)
@@ -124,23 +111,11 @@ def sticking_threshold(
         return _dataset(scene, over, runs, waits, ends, width)
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
-        with sweep_progress(progress, most) as report, how.computing(most) as computing:
-            pool = _Pool(base, over, exits, how.backend, computing, kept, partial(_tell, report, most), runs)
-            _search(pool, ends, waits, width)
+        with how.side_by_side(kept, most) as compute:
+            _search(_Pool(base, over, exits, compute, runs), ends, waits, width)
         return so_far()
 
-    return run_kept(
-        how,
-        lambda target: KeptRuns(target, base, how.driver),
-        work,
-        {**origin_of(scene), "settings": json.dumps([over, *ends, exits, width])},
-        read=lambda path: open_product(path, "sticking_threshold")[0],
-        so_far=so_far,
-    )
-
-
-def _tell(report: SweepProgress, most: int, done: int) -> None:
-    report(float(done), most)
+    return STUDY.compute(how, base, work, [over, *ends, exits, width], origin=scene, so_far=so_far)
 
 
 @dataclass
@@ -150,10 +125,7 @@ class _Pool:
     scene: Scene
     over: str
     exits: int
-    backend: str
-    executor: Executor | None
-    kept: KeptRuns | None
-    report: Callable[[int], None]
+    compute: SideBySide
     runs: list[ThresholdRun]
 
     def run(self, values: Sequence[float]) -> None:
@@ -161,12 +133,11 @@ class _Pool:
         done = {each.value for each in self.runs}
         todo = sorted({value for value in values if value not in done})
         scenes = [self.scene.replace({self.over: value}) for value in todo]
-        found = solutions(self.kept, self.executor, run_until, scenes, self.exits, self.backend)
+        found = self.compute(run_until, scenes, self.exits)
         for value, (solution, _) in zip(todo, found, strict=True):
             run = ThresholdRun.of(value, solution)
             _refuse_short(self.scene, run, self.exits)
             self.runs.append(run)
-            self.report(len(self.runs))
 
 
 def _refuse_short(scene: Scene, run: ThresholdRun, exits: int) -> None:
@@ -197,14 +168,9 @@ def _search(pool: _Pool, ends: tuple[float, float], waits: Sequence[int], width:
 
 def _bracket(runs: Sequence[ThresholdRun], exits: int) -> tuple[float, float]:
     """Value nearest to the passing end at which a run sticks within so many exits, and the next beyond it."""
-    ordered = sorted(runs, key=lambda run: run.value)
-    if ordered[0].passed > ordered[-1].passed:  # go from the end that sticks to the other
-        ordered.reverse()
-    bracket = (math.nan, math.nan)
-    for one, high in pairwise(ordered):
-        if one.passed < exits <= high.passed:
-            bracket = (one.value, high.value)
-    return bracket
+    first, last = (pick(runs, key=lambda run: run.value) for pick in (min, max))
+    passed = {run.value: run.passed >= exits for run in runs}
+    return bracket(passed, falling=first.passed > last.passed)
 
 
 def _check_ends(pool: _Pool, ends: tuple[float, float]) -> None:
@@ -226,50 +192,26 @@ def _dataset(
     width: float,
 ) -> xr.Dataset:
     """Make the dataset of brackets and runs."""
-    brackets = (
-        np.array([_bracket(runs, exits) for exits in waits]) if runs else np.full((len(waits), 2), np.nan)
-    )
+    brackets = np.array([_bracket(runs, each) for each in waits] if runs else [(np.nan, np.nan)] * len(waits))
     ordered = sorted(runs, key=lambda run: run.value)
-    unit = find_key(type(scene), over).unit or "1"
-    return xr.Dataset(
-        {
-            "limit": (
-                "exits",
-                brackets.mean(axis=1),
-                {"units": unit, "long_name": f"sticking limit of {over}"},
-            ),
-            "sticks": (
-                "exits",
-                brackets[:, 0],
-                {"units": unit, "long_name": f"{over} at which the gear sticks"},
-            ),
-            "passes": ("exits", brackets[:, 1], {"units": unit, "long_name": f"{over} at which it does not"}),
-            "value": ("run", np.array([run.value for run in ordered]), {"units": unit, "long_name": over}),
-            "exits_passed": (
-                "run",
-                np.array([run.passed for run in ordered], dtype=np.int64),
-                {"units": "1", "long_name": "mesh exits until the gear stuck, or the run was over"},
-            ),
-            "stick_time": (
-                "run",
-                np.array([run.stick_time for run in ordered]),
-                {"units": "s", "long_name": "when the gear stuck"},
-            ),
-            "simulated_time": (
-                "run",
-                np.array([run.window for run in ordered]),
-                {"units": "s", "long_name": "simulated time"},
-            ),
-        },
-        coords={"exits": ("exits", np.array(waits), {"units": "1", "long_name": "mesh exits waited for"})},
-        attrs={
-            **provenance(scene, "searched the sticking threshold", swept=(over,)),
-            "title": f"{scene.name}: sticking threshold",
-            "summary": f"Limit of {over} at which the gear begins to stick, against mesh exits waited for.",
-            "between": list(ends),
-            "width": width,
-        },
-    )
+    values = {
+        "exits": np.array(waits),
+        "limit": brackets.mean(axis=1),
+        "sticks": brackets[:, 0],
+        "passes": brackets[:, 1],
+        "value": np.array([run.value for run in ordered]),
+        "exits_passed": np.array([run.passed for run in ordered], dtype=np.int64),
+        "stick_time": np.array([run.stick_time for run in ordered]),
+        "simulated_time": np.array([run.window for run in ordered]),
+    }
+    attributes = {
+        **provenance(scene, "searched the sticking threshold", swept=(over,)),
+        "title": f"{scene.name}: sticking threshold",
+        "summary": f"Limit of {over} at which the gear begins to stick, against mesh exits waited for.",
+        "between": list(ends),
+        "width": width,
+    }
+    return STUDY.dataset(values, attributes, over=over, unit=find_key(type(scene), over).unit or "1")
 
 
 def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, float]:
@@ -294,6 +236,8 @@ def _window(scene: Scene, exits: int) -> float:
     """Simulated time that a run gets [s]."""
     assert scene.gears is not None
     assert scene.initial is not None
+    from gearidae.runs.estimates import steady_speed
+
     speed = steady_speed(scene)
     if not 0.0 < speed < math.inf:
         speed = scene.initial.gear_speed
@@ -301,3 +245,129 @@ def _window(scene: Scene, exits: int) -> float:
         allowed = "must turn the gear, or initial.gear_speed be positive"
         raise SceneError("drive.torque", scene.drive.torque if scene.drive else 0.0, allowed)
     return _PATIENCE * (exits + 1) * 2.0 * math.pi / (scene.gears.gear_teeth * speed)
+
+
+def _call(
+    *,
+    over: Annotated[
+        str, Option("Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7.")
+    ],
+    exits: Annotated[int, Option("Mesh exits to wait for.")] = 100,
+) -> Call:
+    ((key, ends),) = sweep_values([over]).items()
+    if len(ends) != 2 or ends[0] == ends[1]:
+        raise SceneError(
+            "--over", over, f"needs two different values, at one of which the gear sticks: {key}=0.4,0.7"
+        )
+    words = f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits"
+    return Call((key, (ends[0], ends[1]), exits), announcement=words)
+
+
+def _sentence(ds: xr.Dataset) -> str:
+    key, one = _key(ds), ds.isel(exits=-1)
+    exits = int(ds["exits"][-1])
+    if np.isnan(one["limit"]):
+        return f"No run has stuck within {exits} mesh exits so far."
+    sticks, passes = _ends_in_words(one)
+    return f"Within {exits} mesh exits the gear sticks at {key} = {sticks} and not at {passes}."
+
+
+def _rows(ds: xr.Dataset) -> Rows:
+    """Limit and bracket for each number of exits."""
+    yield f"Sticking limit of {_key(ds)}", "", ""
+    for exits in ds["exits"].values:
+        one = ds.sel(exits=exits)
+        waited = f"within {exits} mesh exit{'s' if exits > 1 else ''}"
+        if np.isnan(one["limit"]):
+            yield waited, "-", "no run has stuck so early"
+            continue
+        sticks, passes = _ends_in_words(one)
+        yield waited, _number(float(one["limit"]), one), f"sticks at {sticks}, passes at {passes}"
+    yield "runs", str(ds.sizes["run"]), ""
+
+
+def _key(ds: xr.Dataset) -> str:
+    return str(ds["limit"].attrs["long_name"]).removeprefix("sticking limit of ")
+
+
+def _ends_in_words(one: xr.Dataset) -> tuple[str, str]:
+    return _number(float(one["sticks"]), one), _number(float(one["passes"]), one)
+
+
+def _number(value: float, one: xr.Dataset) -> str:
+    """Write a value of a bracket with as many digits as distinguish its ends, four at least."""
+    sticks, passes, unit = float(one["sticks"]), float(one["passes"]), str(one["limit"].attrs["units"])
+    digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
+    return f"{value:.{digits}g}" + ("" if unit == "1" else f" {unit}")
+
+
+def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the limit at which a gear begins to stick against the mesh exits waited for, with its bracket.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.sticking_threshold`.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    SceneError
+        If the dataset is no sticking threshold.
+    """
+    from gearidae.drawing.parameter_axis import parameter_axis
+    from gearidae.drawing.style import NEGATIVE, POSITIVE, new_axes, tidy
+
+    STUDY.require(ds)
+    ax = new_axes(ax, height=3.8)
+    ds = ds.isel(exits=np.isfinite(ds["limit"].values))
+    if not ds.sizes["exits"]:
+        raise SceneError("plot", "sticking_threshold", "no run has stuck")
+    exits = ds["exits"].values
+    together = xr.concat([ds[name].drop_attrs() for name in ("passes", "limit", "sticks")], "end")
+    along = parameter_axis(together.rename(_key(ds).rpartition(".")[2]).assign_attrs(ds["limit"].attrs))
+    passes, limit, sticks = along.places
+    ax.plot(exits, passes, "^", color=POSITIVE, markersize=5, label="passes")
+    ax.plot(exits, limit, color="0.3", linewidth=1.2, label="limit")
+    ax.plot(exits, sticks, "X", color=NEGATIVE, markersize=5, label="sticks")
+    ax.set_xscale("log")
+    ax.set_xticks(exits, [str(number) for number in exits])
+    ax.minorticks_off()
+    ax.set_xlabel("mesh exits waited for")
+    ax.set_ylabel(along.label)
+    tidy(ax)
+    ax.margins(x=0.03)
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+STUDY = Study(
+    kind="sticking_threshold",
+    words="sticking threshold",
+    maker="threshold",
+    title="Threshold",
+    command=_call,
+    examples=("gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",),
+    columns={
+        "exits": Column(("exits",), "1", "mesh exits waited for", required=False),
+        "limit": Column(("exits",), "{unit}", "sticking limit of {over}"),
+        "sticks": Column(("exits",), "{unit}", "{over} at which the gear sticks"),
+        "passes": Column(("exits",), "{unit}", "{over} at which it does not"),
+        "value": Column(("run",), "{unit}", "{over}", required=False),
+        "exits_passed": Column(
+            ("run",), "1", "mesh exits until the gear stuck, or the run was over", required=False
+        ),
+        "stick_time": Column(("run",), "s", "when the gear stuck", required=False),
+        "simulated_time": Column(("run",), "s", "simulated time", required=False),
+    },
+    sentence=_sentence,
+    rows=_rows,
+    pictures=(
+        Picture("sticking_threshold", "Sticking limit against the mesh exits waited for", draw=picture),
+    ),
+)

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import gearidae as gd
-from gearidae.plot.picture import Picture, PictureAxes
+from gearidae.drawing.picture import Picture, PictureAxes
 
 SCENE = gd.preset("roller_slow").replace({"run.samples": 201})
 

@@ -1,0 +1,1 @@
+"""What pictures are made of: figures, axes, colours, scales. The pictures are in `gearidae.plot` and of studies."""

@@ -1,0 +1,335 @@
+"""Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
+
+Of a population (contact.model = population): the distribution over its gears, whose torque rises slowly until each
+has turned one pitch.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from gearidae.errors import SceneError
+from gearidae.scene.pairs import sweep_values
+from gearidae.scene.prefixes import with_prefix
+from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from gearidae.scene import Scene
+
+SEEDS: Final = 20
+"""Gears of a population by default."""
+SLOW_ENOUGH: Final = 0.1
+"""Change of the median by half the rate below which a rate is slow enough."""
+_FRACTION: Final = "coating.sam_fraction"
+_ALONG: Final = ("sam_fraction",)
+
+
+def _call(
+    *,
+    over: Annotated[
+        str | None,
+        Option("SAM fractions, coating.sam_fraction=1:0.4:-0.1. Default: the coating of the case as it is."),
+    ] = None,
+    impacts: Annotated[int, Option("Pitches to be turned, each with its mesh exit.")] = 3,
+    lowest: Annotated[
+        float | None, Option("Lowest torque to try in N m. Default: 0.001 of the drive's own.")
+    ] = None,
+    tolerance: Annotated[float, Option("Relative width at which the search ends.")] = 0.1,
+    seeds: Annotated[
+        int | None, Option("Gears of a population, with seeds from contact.seed on. Default: 20.")
+    ] = None,
+) -> Call:
+    fractions: Any = "own"
+    if over is not None:
+        ((key, fractions),) = sweep_values([over]).items()
+        if key != _FRACTION:
+            raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
+
+    def announcement(scene: Scene, _: int | None) -> str:
+        coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
+        if scene.contact.model != "population":
+            return f"{coatings}; one torque is tried after the other"
+        return (
+            f"{seeds or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
+        )
+
+    options = {"impacts": impacts, "lowest": lowest, "tolerance": tolerance, "seeds": seeds}
+    return Call((fractions,), options, announcement)
+
+
+def _sentence(ds: xr.Dataset) -> str:
+    if ds.sizes["sam_fraction"] > 1:
+        torques = _simulated(ds).values
+        low, high = (with_prefix(float(f(torques)), "N m", 4) for f in (np.nanmin, np.nanmax))
+        return f"A gear at rest starts at {low} to {high} on the pinion, by its coating."
+    torque, drive = float(_simulated(ds)[0]), float(ds.attrs.get("drive_torque", math.nan))
+    if torque == float(ds["simulated_stuck"][0]):
+        return f"Adhesion does not hold a gear at rest: it starts at {with_prefix(torque, 'N m', 4)} on the pinion."
+    starts = f"A gear at rest starts at {with_prefix(torque, 'N m', 4)} on the pinion"
+    if not drive > 0.0:
+        return f"{starts}."
+    own = "starts it" if drive >= torque else "does not start it"
+    return f"{starts}: the drive's own {with_prefix(drive, 'N m', 4)} {own}."
+
+
+def _simulated(ds: xr.Dataset) -> xr.DataArray:
+    """Simulated torques; static ones if none have been simulated."""
+    simulated = ds["simulated_torque"]
+    return simulated if np.isfinite(simulated).any() else ds["static_torque"]
+
+
+def _rows(ds: xr.Dataset) -> Rows:
+    """Torques at each coverage."""
+    yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
+    for number in range(ds.sizes["sam_fraction"]):
+        one = ds.isel(sam_fraction=number)
+        turns, sticks, static = (
+            with_prefix(float(one[name]), "N m", 4)
+            for name in ("simulated_torque", "simulated_stuck", "static_torque")
+        )
+        yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, f"sticks at {sticks}, static {static}"
+
+
+def _gears_sentence(ds: xr.Dataset) -> str:
+    """Say what the gears of the worst coverage need, and how many of them the drive starts."""
+    worst = ds.isel(sam_fraction=int(np.argmin(ds["sam_fraction"].values)))
+    count, coated = _followed(worst), f"SAM {100.0 * float(worst['sam_fraction']):.4g} %"
+    middle = _torque(worst["quantiles"].sel(quantile=0.5), worst)
+    sentence = f"{coated}: half of {count} gears of this design start at {middle} on the pinion"
+    drive = float(ds.attrs.get("drive_torque", math.nan))
+    if not drive > 0.0:
+        return f"{sentence}."
+    started = int(worst["starts"].sum())
+    return f"{sentence}; the drive's own {with_prefix(drive, 'N m', 4)} starts {started} of them."
+
+
+def _gears_rows(ds: xr.Dataset) -> Rows:
+    """Quantiles, gears that did not start, chance at the drive's own torque, and rate, at each coverage."""
+    drive = float(ds.attrs.get("drive_torque", math.nan))
+    for number in range(ds.sizes["sam_fraction"]):
+        one = ds.isel(sam_fraction=number)
+        count = _followed(one)
+        yield f"Starting torque of {count} gears, SAM {100.0 * float(one['sam_fraction']):.4g} %", "", ""
+        for share in one["quantile"].values.tolist():
+            below = f"{100.0 * share:.0f} % of the gears start below"
+            yield below, _torque(one["quantiles"].sel(quantile=share), one), ""
+        if failed := one.sizes["seed"] - count:
+            yield "left out", f"{failed} of {one.sizes['seed']}", "their runs could not be finished"
+        rests = round(float(one["not_started"]) * count)
+        yield "not started", f"{rests} of {count}", f"when the ramp ended at {_torque(one['ramp_end'], one)}"
+        if drive > 0.0:
+            started = int(one["starts"].sum())
+            own = f"turn one pitch at the drive's own {with_prefix(drive, 'N m', 4)}, there at once"
+            yield "chance of starting", f"{started / count:.3g}", f"{started} of {count} {own}"
+        change = float(one["median_change"])
+        words = f"twice this rate changes the median by {100.0 * change:.2g} %"
+        words += "" if change < SLOW_ENOUGH else ": not slow enough to rely on it"
+        yield "rate of the torque", f"{with_prefix(1e-3 * float(one['rate']), 'N m', 3)} per ms", words
+        yield (
+            "damping of the mesh",
+            f"{float(one['damping']):.3g} N s/m",
+            "at least 3 % of critical in this study",
+        )
+
+
+def _followed(one: xr.Dataset) -> int:
+    """Gears whose runs could be finished."""
+    return one.sizes["seed"] - (int(one["failed"].sum()) if "failed" in one else 0)
+
+
+def _torque(value: xr.DataArray, one: xr.Dataset) -> str:
+    if np.isfinite(value):
+        return with_prefix(float(value), "N m", 3)
+    return f"more than {with_prefix(float(one['ramp_end']), 'N m', 3)}"
+
+
+def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the starting torque against the SAM fraction.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.analysis.starting_torque`.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        On a logarithmic scale; fractions at which adhesion does not hold the gear have no point.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is none of starting torques, or adhesion holds the gear nowhere.
+    """
+    from matplotlib.ticker import StrMethodFormatter
+
+    from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
+
+    STUDY.require(ds)
+    ax = new_axes(ax, height=3.8)
+    percent = 100.0 * ds["sam_fraction"].values
+    drawn = False
+    for number, (name, label) in enumerate(
+        (("static_torque", "static: without inertia"), ("simulated_torque", "simulated: from rest"))
+    ):
+        torque = ds[name].values
+        held = np.isfinite(torque) & (torque > 0.0)
+        if held.any():
+            drawn = True
+            ax.plot(
+                percent[held],
+                torque[held],
+                color=COLOURS[number],
+                linestyle=LINE_STYLES[number],
+                marker=".",
+                linewidth=1.2,
+                label=label,
+            )
+    if not drawn:
+        raise SceneError(
+            "plot", "starting_torque", "adhesion does not hold the gear at any of these fractions"
+        )
+    ax.set_yscale("log")
+    ax.set_xlabel("SAM (%)")
+    ax.set_ylabel("starting torque on the pinion (N m)")
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    tidy(ax)
+    if len(percent) > 1:
+        ax.set_xlim(percent.min(), percent.max())
+    else:
+        ax.set_xticks(percent)
+    if ds.attrs.get("drive_torque", 0.0) > 0.0:
+        ax.axhline(
+            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
+        )
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the distribution function of a population's starting torques, a line for each coverage.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.starting_torque` of a scene with a population.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        With the drive's own torque; gears that did not start are missing from the top of their line.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is something else, or no gear has started.
+    """
+    from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter
+
+    from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
+
+    GEARS.require(ds)
+    if not np.isfinite(ds["starting_torque"]).any():
+        raise SceneError("plot", "starting_torques", "no gear has started")
+    ax = new_axes(ax, height=3.8)
+    count = ds.sizes["seed"]
+    for number in range(ds.sizes["sam_fraction"]):
+        one = ds["starting_torque"].isel(sam_fraction=number)
+        torque = np.sort(one.values[np.isfinite(one.values)])
+        ax.step(
+            torque,
+            np.arange(1, torque.size + 1) / count,
+            where="post",
+            color=COLOURS[number % len(COLOURS)],
+            linestyle=LINE_STYLES[number % len(LINE_STYLES)],
+            marker=".",
+            linewidth=1.2,
+            label=f"SAM {100.0 * float(one['sam_fraction']):.4g} %",
+        )
+    ax.set_xscale("log")
+    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.set_ylim(0.0, 1.02)
+    ax.set_xlabel("starting torque on the pinion (N m)")
+    ax.set_ylabel(f"share of {count} gears")
+    tidy(ax)
+    if ds.attrs.get("drive_torque", 0.0) > 0.0:
+        ax.axvline(
+            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
+        )
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+STUDY = Study(
+    kind="starting_torque",
+    words="study of starting torques",
+    maker="starting-torque",
+    title="Starting torque",
+    command=_call,
+    examples=(
+        "gearidae starting-torque mine.toml",
+        "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
+    ),
+    columns={
+        "static_torque": Column(_ALONG, "N m", "starting torque without inertia"),
+        "simulated_torque": Column(
+            _ALONG, "N m", "smallest simulated torque at which the gear turns from rest"
+        ),
+        "simulated_stuck": Column(_ALONG, "N m", "largest simulated torque at which the gear sticks"),
+    },
+    sentence=_sentence,
+    rows=_rows,
+    pictures=(
+        Picture("starting_torque", "Smallest torque at which a gear at rest begins to turn", draw=picture),
+    ),
+)
+GEARS = Study(
+    kind="starting_torques",
+    words="study of a population's starting torques",
+    maker="starting-torque",
+    columns={
+        "starting_torque": Column(
+            (*_ALONG, "seed"), "N m", "torque at the last moment of rest; NaN if the gear did not start"
+        ),
+        "starts": Column(
+            (*_ALONG, "seed"), "1", "whether the drive's own torque turns the gear from rest by one pitch"
+        ),
+        "failed": Column(
+            (*_ALONG, "seed"),
+            "1",
+            "whether the run of the gear could not be finished: shares are those of the others",
+            required=False,
+        ),
+        "place": Column(("seed",), "1", "place of the start, in pitches", required=False),
+        "quantiles": Column(
+            (*_ALONG, "quantile"),
+            "N m",
+            "quantiles of the starting torque, gears that did not start included; NaN beyond the ramp",
+        ),
+        "not_started": Column(_ALONG, "1", "share that had not started when the ramp ended"),
+        "chance": Column(_ALONG, "1", "share that the drive's own torque starts"),
+        "rate": Column(_ALONG, "N m s-1", "rise of the torque"),
+        "ramp_end": Column(_ALONG, "N m", "torque at which the ramp ended", required=False),
+        "median_change": Column(_ALONG, "1", "relative change of the median from twice this rate"),
+        "damping": Column(_ALONG, "N s m-1", "damping of the mesh"),
+        "seed": Column(("seed",), "1", "contact.seed of the gear", required=False),
+        "quantile": Column(("quantile",), "1", "share of the gears below", required=False),
+    },
+    sentence=_gears_sentence,
+    rows=_gears_rows,
+    pictures=(
+        Picture("starting_torques", "Share of the gears that start below a torque", draw=picture_of_gears),
+    ),
+)

@@ -1,0 +1,295 @@
+"""What a study is: a question about a scene, how it is answered, and what its file says to those who read it.
+
+The command, the kind of the file, ``gearidae info``, the report, the pictures and the tables of the reference follow
+from a `Study`. The files that declare one are in `gearidae.studies.declared`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import xarray as xr
+
+from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.library import loaded
+from gearidae.errors import SceneError
+
+if TYPE_CHECKING:
+    from gearidae.runs.execution import Execution
+    from gearidae.runs.kept_runs import KeptRuns
+    from gearidae.scene import Scene
+
+_HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
+"""How netCDF files begin, those of version 4 and the older ones."""
+Rows: TypeAlias = Iterator[tuple[str, str, str]]
+"""Names, values and remarks; a row without a value is a heading."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A variable of a study's dataset, or a coordinate, whose only dimension has its name.
+
+    Attributes
+    ----------
+    dims : tuple of str
+    units, words : str
+        Its unit, empty where it differs along the variable, and what it is. ``{name}`` stands for what `Study.dataset`
+        is given for that name.
+    required : bool, optional
+        Whether a file without it is something else.
+    """
+
+    dims: tuple[str, ...]
+    units: str
+    words: str
+    required: bool = True
+
+    def attributes(self, **named: str) -> dict[str, str]:
+        """Attributes of the variable."""
+        found = {"units": self.units.format(**named), "long_name": self.words.format(**named)}
+        return {name: text for name, text in found.items() if text}
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """How a parameter of a study's command is written, as the metadata of its annotation.
+
+    Attributes
+    ----------
+    help : str
+        What it is.
+    repeatable : bool, optional
+        Whether the option stands in front of each of its values.
+    many : bool, optional
+        Whether several values follow the option.
+    completes : str, optional
+        Function of `gearidae.cli.completing` that offers the shell its values.
+    """
+
+    help: str
+    repeatable: bool = False
+    many: bool = False
+    completes: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call of a study's function, as its command makes one.
+
+    Attributes
+    ----------
+    arguments, options
+        Of the function, after the scene.
+    announcement : str or callable
+        What will be run, in words; a callable gets the scene and the number of simultaneous runs (None on a cluster).
+    keys, members : optional
+        What differs between the members of an ensemble, and how many they are.
+    """
+
+    arguments: tuple[Any, ...]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    announcement: str | Callable[[Scene, int | None], str] = ""
+    keys: Mapping[str, Any] | Sequence[str] = ()
+    members: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture of what a study has found.
+
+    Attributes
+    ----------
+    name : str
+        In `gearidae.plot`.
+    caption : str
+    needs : callable, optional
+        Whether a dataset has something to draw.
+    draw : callable, optional
+        Draws a dataset; without one, `gearidae.plot` has a file with the function of that name.
+    """
+
+    name: str
+    caption: str
+    needs: Callable[[xr.Dataset], bool] = bool
+    draw: Callable[..., Any] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Study:
+    """A study.
+
+    Attributes
+    ----------
+    kind : str
+        Of its file.
+    words : str
+        What the file is.
+    maker : str
+        Command that makes one.
+    sentence : callable
+        Answers the question in a sentence, from the dataset.
+    rows : callable
+        Rows of the summary and the report, from the dataset.
+    pictures : tuple of Picture
+        The one that says most first.
+    columns : mapping of str to Column, optional
+        What the dataset has beside the variables of runs.
+    check : callable, optional
+        Raises a `SceneError` if a dataset is something else, in place of a look at the columns.
+    run : str, optional
+        The function of `gearidae.studies`, by default that of the kind's name.
+    title, suffix : str, optional
+        What the command calls it, and the end of the name of its file.
+    command : callable, optional
+        Makes the `Call` of the options on the command line, its keyword arguments.
+    examples : tuple of str, optional
+        Command lines.
+    member_columns : tuple of str, optional
+        Variables that the report lists for each member.
+    rows_are_drawn : bool, optional
+        Whether the picture shows what the rows say, so that the report needs no rows.
+    viewer : str, optional
+        Of the report, see `gearidae.report.page`.
+    """
+
+    kind: str
+    words: str
+    maker: str
+    sentence: Callable[[xr.Dataset], str]
+    rows: Callable[[xr.Dataset], Rows]
+    pictures: tuple[Picture, ...]
+    columns: Mapping[str, Column] = field(default_factory=dict)
+    check: Callable[[xr.Dataset], object] | None = None
+    run: str = ""
+    title: str = ""
+    suffix: str = ""
+    command: Callable[..., Call] | None = None
+    examples: tuple[str, ...] = ()
+    member_columns: tuple[str, ...] = ()
+    rows_are_drawn: bool = False
+    viewer: str = ""
+
+    def require(self, ds: xr.Dataset) -> xr.Dataset:
+        """Return a dataset of this study.
+
+        Raises
+        ------
+        SceneError
+            If it is something else.
+        """
+        if self.check is not None:
+            self.check(ds)
+            return ds
+        lacking = [
+            name
+            for name, column in self.columns.items()
+            if column.required
+            and (
+                name not in ds.variables
+                or ds[name].dims[:1] != column.dims[:1]
+                or not ds.sizes[column.dims[0]]
+            )
+        ]
+        if lacking:
+            allowed = f"is no {self.words}: it lacks {', '.join(lacking)}; make one with {self.maker}"
+            raise SceneError("dataset", type(ds).__name__, allowed)
+        return ds
+
+    def open(self, path: str | os.PathLike[str]) -> xr.Dataset:
+        """Read a file of this study.
+
+        Raises
+        ------
+        SceneError
+            If it cannot be read or is something else.
+        """
+        ds = self.read(path)
+        try:
+            return self.require(ds)
+        except SceneError as error:
+            raise SceneError(self._file, path, error.allowed) from None
+
+    def read(self, path: str | os.PathLike[str]) -> xr.Dataset:
+        """Read a netCDF file, whatever is in it; errors say that it is no file of this study."""
+        source = Path(path)
+        if not source.is_file():
+            raise SceneError(self._file, path, "there is no such file")
+        try:
+            with source.open("rb") as file:
+                head = file.read(8)
+        except OSError as error:
+            raise SceneError(self._file, path, f"cannot be read ({error.strerror})") from error
+        if not head.startswith(_HEADERS):
+            allowed = f"is no {self.words} but another kind of file; make one with {self.maker}"
+            raise SceneError(self._file, path, allowed)
+        try:
+            return loaded(source)
+        except Exception as error:
+            raise SceneError(self._file, path, f"is damaged ({error})") from error
+
+    @property
+    def _file(self) -> str:
+        """What errors call the file: ``map``."""
+        return self.kind.rpartition("_")[2]
+
+    def dataset(self, values: Mapping[str, Any], attributes: Mapping[str, Any], **named: str) -> xr.Dataset:
+        """Make the dataset of what was found.
+
+        Parameters
+        ----------
+        values : mapping of str to array_like
+            Of the columns; of those that are missing the dataset has none.
+        attributes : mapping of str to object
+            Of the dataset.
+        **named
+            What the columns' units and words name in braces.
+        """
+        made = {
+            name: (column.dims, values[name], column.attributes(**named))
+            for name, column in self.columns.items()
+            if name in values
+        }
+        coords = {name: one for name, one in made.items() if one[0] == (name,)}
+        return xr.Dataset(
+            {name: one for name, one in made.items() if name not in coords}, coords, dict(attributes)
+        )
+
+    def compute(
+        self,
+        how: Execution,
+        base: Scene,
+        work: Callable[[KeptRuns | None], xr.Dataset],
+        settings: object,
+        *,
+        origin: Scene | None = None,
+        keep: Keep = EVERYTHING,
+        **more: Any,
+    ) -> xr.Dataset:
+        """Compute the dataset by `work`, whose runs are kept beside the archive until it is written.
+
+        Parameters
+        ----------
+        base : Scene
+            Any of the runs.
+        settings : object
+            What the result depends on besides the scene, ready for JSON.
+        origin : Scene, optional
+            The scene that the question was about; by default `base`.
+        keep : Keep, optional
+            What each run leaves behind.
+        **more
+            As for `gearidae.runs.execution.run_kept`, whose errors these are too.
+        """
+        from gearidae.runs.execution import origin_of, run_kept
+        from gearidae.runs.kept_runs import KeptRuns
+
+        def store(target: Path) -> KeptRuns:
+            return KeptRuns(target, base, how.driver, keep)
+
+        about = {**origin_of(base if origin is None else origin), "settings": json.dumps(settings)}
+        return run_kept(how, store, work, about, read=self.open, **more)
