@@ -246,6 +246,8 @@ def _rounding(time: Floats) -> float:
     largest = float(np.abs(time).max())
     decade = math.floor(math.log10(largest))
     last = time[np.abs(time) >= 10.0**decade]  # where a number of digits leaves the largest step
+    if len(last) <= _MANY:
+        return 0.0
     for digits in _DIGITS:
         step = 10.0 ** (decade + 1 - digits)
         counts = np.rint(last / step)
