@@ -204,8 +204,8 @@ MUTANTS = (
     Mutant(
         "phase of a harmonic torque left out",
         "engine/torques/harmonic.py",
-        "value += m.tables[k] * math.cos(m.tables[k + 1] * x + m.tables[k + 2])",
-        "value += m.tables[k] * math.cos(m.tables[k + 1] * x)",
+        "* math.cos(m.tables[k + 1] * x + m.tables[k + 2])\n        k += 3\n    return value\n",
+        "* math.cos(m.tables[k + 1] * x)\n        k += 3\n    return value\n",
         SHAFTS,
     ),
     Mutant(

@@ -194,7 +194,7 @@ def test_an_unfinished_run_says_nothing_and_no_ring_is_impossible():
         ({"value": 1.0}, "value"),
         ({"value": True, "misjudged": 0.0}, "misjudged"),
         ({"value": 5e3, "of": "ring_frequency"}, "uncertainty"),
-        ({"value": "5 km", "of": "ring_frequency", "uncertainty": 1.0}, "value"),
+        ({"value": "5 km", "of": "ring_frequency", "uncertainty": "1 Hz"}, "value"),
         ({"value": np.nan, "of": torque, "uncertainty": 1.0}, "value"),
         ({"value": 1.0, "of": torque, "uncertainty": 0.0}, "uncertainty"),
         ({"value": 1870.0, "of": "ring_frequency", "uncertainty": "0.01 kHz"}, "uncertainty"),
