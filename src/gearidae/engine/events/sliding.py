@@ -39,6 +39,8 @@ STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
 AT_ONCE: Final = 1e-7
 """Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest, if they stay."""
+A_WHILE: Final = 1e3
+"""Time over tau, long beside a vibration, for which friction must hold gears that creep, so that they come to rest."""
 REVERSALS_HIGH: Final = 100_000
 """Changes of sliding from one mesh mark to the next, beyond which they are too many to follow."""
 PASSES_HIGH: Final = 20
@@ -209,11 +211,12 @@ def follow_creeping(m: Model, t: float, y: Floats, events: Floats, count: int) -
 def stop_creeping(m: Model, t: float, y: Floats) -> bool:
     """Bring gears to rest that creep towards it, by less than a tolerance, and whom friction then holds.
 
-    Without a vibration no sliding turns round, so that no guard falls.
+    Without a vibration no sliding turns round, so that no guard falls. What a rising torque draws along creeps as
+    slowly, and is held for a moment only.
     """
     slow = max(AT_ONCE, 1.0 / m.rows[m.scene.error_weights_at + V])
     fastest = max(abs(pinion_speed(m, y)[0]), abs(y[W]))
-    if m.state.hold == AT_REST or fastest > slow or not _rests(m, t, y):
+    if m.state.hold == AT_REST or fastest > slow or not (_rests(m, t, y) and _rests(m, t + A_WHILE, y)):
         return False
     _decide_at_rest(m, t, y)
     return True
