@@ -14,8 +14,8 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import record
-from gearidae.engine.friction.forces import has_gear_element, has_hubs, solve_shafts
-from gearidae.engine.friction.pairs import RUBS, levers
+from gearidae.engine.friction.forces import Shafts, has_gear_element, has_hubs, solve_shafts
+from gearidae.engine.friction.pairs import RUBS, lever_rate, levers
 from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
 from gearidae.engine.model.record_types import (
     AT_REST,
@@ -281,9 +281,19 @@ def _let_go(m: Model, t: float, y: Floats) -> None:
         _set_slip(m, kind, state.held_pair, slip)
         if kind == HELD_PAIR and has_hubs(m):  # hubs that nearly lock may need less friction for more load
             found = solve_shafts(m, t, y, turn, pinion, gear)
-            first, second = _levers_of(m, kind, state.held_pair)
-            if slip * (first * found.pinion + second * found.gear) < 0.0:
+            if slip * _sliding_rate(m, state.held_pair, turn, y[W], found) < 0.0:
                 _set_slip(m, kind, state.held_pair, -slip)
+
+
+@compiled
+def _sliding_rate(m: Model, history: int, turn: float, w: float, shafts: Shafts) -> float:
+    """Rate of the sliding speed of a pair: by the accelerations, and as its levers change along the path."""
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        if noted.history == history:
+            first, second = levers(m, noted.position)
+            return first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, turn, w)
+    return 0.0
 
 
 @compiled
