@@ -12,7 +12,7 @@ from gearidae.engine.events.sliding import REVERSALS_HIGH, begin_sliding, rest_r
 from gearidae.engine.followers.rubbing import note_rubbing
 from gearidae.engine.friction.hubs import consistent_loads
 from gearidae.engine.integrate.start import set_rates
-from gearidae.engine.model.record_types import AT_REST, HELD_PAIR
+from gearidae.engine.model.record_types import AT_REST, HELD_PAIR, STUCK
 from gearidae.engine.model.state import COAST, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
@@ -261,6 +261,51 @@ def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip():
             if slide in (-1, 1):
                 assert slide * slides >= -1e-9 * size
     assert moving > 100
+
+
+def test_a_rolling_pair_that_is_let_go_slides_as_its_speed_goes_on():
+    """Just beyond the drive that friction holds: the levers change along the path, and the sliding speed with them."""
+    rng, sliding = np.random.default_rng(9), 0
+    while sliding < 30:
+        m, y = drawn(rng)
+        forces_at_shafts(m, 0.0, y)
+        which = int(np.argmax(m.work.notes.pair["limit"][: m.work.notes.count]))
+        turn = 10.0 ** rng.uniform(0.0, 1.5)
+        y[W] = turn * ratio_of_levers(m, which)
+        y[V] = turn - y[W]
+        drives = np.linspace(-2.0, 4.0, 25) * float(m.scene.torque[1].constant)
+        stuck = [slide_at(m, y, drive, which) == STUCK for drive in drives]
+        if True not in stuck or stuck[-1]:
+            continue
+        last = int(np.flatnonzero(stuck)[-1])
+        low, high = drives[last], drives[last + 1]
+        for _ in range(40):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if slide_at(m, y, middle, which) == STUCK else (low, middle)
+        slide, rates, speeds, h = slide_at(m, y, high, which), np.zeros_like(y), [], 1e-6
+        if slide == 0:
+            continue
+        sliding += 1
+        set_rates(m, 0.0, y, rates)
+        for time in (-h, h):
+            state = y + time * rates
+            forces_at_shafts(m, 0.0, state)
+            speeds.append((state[V] + state[W]) * ratio_of_levers(m, which) - state[W])
+        assert slide * (speeds[1] - speeds[0]) / (2.0 * h) >= -1e-6 * turn
+        assert int(m.state.reversals) < 10
+
+
+def ratio_of_levers(m, which):
+    """Surface velocity of the gear over that of the pinion at which a pair of the notes rolls."""
+    own, r1 = m.scene.friction, float(m.scene.start_radius + m.work.notes.pair[which]["position"])
+    return float(own.pinion_lever * r1 / (own.gear_lever * (own.radii - r1)))
+
+
+def slide_at(m, y, drive, which):
+    """How a pair that rolls goes on under a drive."""
+    m.scene.torque[0].constant = drive
+    begin_sliding(m, 0.0, y)
+    return int(m.state.history[int(m.work.notes.pair[which]["history"])].slide)
 
 
 # -- runs ------------------------------------------------------------------------------------------------------------

@@ -81,6 +81,18 @@ def test_a_run_cut_in_two_is_the_uninterrupted_one_to_the_last_bit(case, model, 
     assert second.attrs["t_end"] == 2 * half
 
 
+def test_a_run_with_friction_that_is_cut_where_a_pair_pulls_is_the_uninterrupted_one():
+    """A pair that pulls has no friction at the cut, which is seen only with the forces of its stretched asperities."""
+    half = 2.0**-4
+    scene = LOW.replace({"contact.friction": 0.1, "run.duration": half})
+    first = gd.simulate(scene)
+    second = gd.simulate(scene, start=first)
+    both = {"run.duration": 2 * half, "run.samples": 2 * SAMPLES - 1, "run.checkpoints": [half]}
+    whole = gd.simulate(scene.replace(both))
+    assert_continued(first, second, whole)
+    assert (second.event_kind == EventKind.MESH_EXIT).any()
+
+
 @pytest.mark.parametrize("backend", DRIVERS)
 def test_a_knot_at_the_cut_is_an_event_of_the_second_part(backend):
     half = 2.0**-7

@@ -37,6 +37,14 @@ def test_exposures_of_a_window_are_those_of_its_cycles():
     assert found.extremes.mesh_exits == 4
 
 
+def test_a_window_with_friction_goes_on_over_all_its_parts():
+    """Its first part ends where one pair pulls."""
+    cycles = Cycles(1, 2)
+    scene = LOW.replace({"coating.sam_fraction": 0.6, "contact.friction": 0.1})
+    found, word = run_window(window_scene(scene, cycles, 4), cycles, "native")
+    assert (word, found.extremes.mesh_exits) == ("turns", 3)
+
+
 def test_a_window_goes_on_until_the_motion_is_steady():
     """At 66 % the gear loses speed for some tens of cycles; 19 cycles after 6 show 14 % less than the steady ones."""
     scene = LOW.replace({"coating.sam_fraction": 0.66})

@@ -12,7 +12,7 @@ from gearidae.engine.followers.balance import carry_balance
 from gearidae.engine.followers.exposures.bins import exposure_table
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
-from gearidae.engine.pairs.tooth_pairs import set_joined
+from gearidae.engine.pairs.tooth_pairs import set_all_branches, set_joined
 from gearidae.engine.setup.problem import Problem
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
@@ -110,6 +110,7 @@ def take_over(source: Model, m: Model) -> None:
     for coast, h in histories:
         if h.pair != EMPTY:
             assign(m.state.history[coast * own + (int(h.pair) & (own - 1))], h)
+    set_all_branches(m)
     carry_exposures(source, m)
 
 

@@ -14,8 +14,8 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import record
-from gearidae.engine.friction.forces import has_gear_element, has_hubs, solve_shafts
-from gearidae.engine.friction.pairs import RUBS, levers
+from gearidae.engine.friction.forces import Shafts, has_gear_element, has_hubs, solve_shafts
+from gearidae.engine.friction.pairs import RUBS, lever_rate, levers
 from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
 from gearidae.engine.model.record_types import (
     AT_REST,
@@ -39,6 +39,8 @@ STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
 AT_ONCE: Final = 1e-7
 """Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest, if they stay."""
+A_WHILE: Final = 1e3
+"""Time over tau, long beside a vibration, for which friction must hold gears that creep, so that they come to rest."""
 REVERSALS_HIGH: Final = 100_000
 """Changes of sliding from one mesh mark to the next, beyond which they are too many to follow."""
 PASSES_HIGH: Final = 20
@@ -209,11 +211,12 @@ def follow_creeping(m: Model, t: float, y: Floats, events: Floats, count: int) -
 def stop_creeping(m: Model, t: float, y: Floats) -> bool:
     """Bring gears to rest that creep towards it, by less than a tolerance, and whom friction then holds.
 
-    Without a vibration no sliding turns round, so that no guard falls.
+    Without a vibration no sliding turns round, so that no guard falls. What a rising torque draws along creeps as
+    slowly, and is held for a moment only.
     """
     slow = max(AT_ONCE, 1.0 / m.rows[m.scene.error_weights_at + V])
     fastest = max(abs(pinion_speed(m, y)[0]), abs(y[W]))
-    if m.state.hold == AT_REST or fastest > slow or not _rests(m, t, y):
+    if m.state.hold == AT_REST or fastest > slow or not (_rests(m, t, y) and _rests(m, t + A_WHILE, y)):
         return False
     _decide_at_rest(m, t, y)
     return True
@@ -278,9 +281,19 @@ def _let_go(m: Model, t: float, y: Floats) -> None:
         _set_slip(m, kind, state.held_pair, slip)
         if kind == HELD_PAIR and has_hubs(m):  # hubs that nearly lock may need less friction for more load
             found = solve_shafts(m, t, y, turn, pinion, gear)
-            first, second = _levers_of(m, kind, state.held_pair)
-            if slip * (first * found.pinion + second * found.gear) < 0.0:
+            if slip * _sliding_rate(m, state.held_pair, turn, y[W], found) < 0.0:
                 _set_slip(m, kind, state.held_pair, -slip)
+
+
+@compiled
+def _sliding_rate(m: Model, history: int, turn: float, w: float, shafts: Shafts) -> float:
+    """Rate of the sliding speed of a pair: by the accelerations, and as its levers change along the path."""
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        if noted.history == history:
+            first, second = levers(m, noted.position)
+            return first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, turn, w)
+    return 0.0
 
 
 @compiled

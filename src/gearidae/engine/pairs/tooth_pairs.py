@@ -360,6 +360,13 @@ def set_branches(m: Model, k: int, material: int) -> None:
         m.rows[energy_branch(m, k, material) + B_PIECES] = 0.0
 
 
+def set_all_branches(m: Model) -> None:
+    """Work out the branches of all histories, where these come from a checkpoint or from another model."""
+    for k in range(m.scene.histories):
+        for material in range(MATERIALS):
+            set_branches(m, k, material)
+
+
 @compiled
 def force_branch(m: Model, k: int, material: int) -> int:
     """Place of a material's branch of the force law at a history's joined height, among the rows."""

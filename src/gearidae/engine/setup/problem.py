@@ -16,7 +16,6 @@ from gearidae.engine.model.state import (
     DRIVE,
     GEARS,
     LOAD,
-    MATERIALS,
     SPEED,
     Floats,
     Model,
@@ -26,7 +25,7 @@ from gearidae.engine.model.state import (
     blank_work,
     copied,
 )
-from gearidae.engine.pairs.tooth_pairs import set_branches
+from gearidae.engine.pairs.tooth_pairs import set_all_branches
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
 from gearidae.engine.torques.harmonic import fastest_harmonic
@@ -237,9 +236,7 @@ class Problem:
         joined = checkpoints.unpack(m, checkpoint, state)
         blank_work(m.work)
         restore_asperities(m, state, joined)
-        for k in range(m.scene.histories):
-            for material in range(MATERIALS):
-                set_branches(m, k, material)
+        set_all_branches(m)
         time = float(m.state.time)
         m.work.quadrature.time = m.work.resistance.time = m.work.lag_time = time
         m.work.driver.time = time
