@@ -152,3 +152,25 @@ def test_drawn_runs_are_judged_as_from_samples_alone(seed):
         0.05 if seed % 2 else 0.0,
     )
     assert ("moves" if moves else outcome.verdict) == wanted, json.dumps(scene.to_dict()["drive"])
+
+
+def test_a_gear_that_starts_as_free_gears_do_has_not_stood():
+    """It leaves two zeros, the later one by a standstill that has ended earlier."""
+    sizes = {"pinion": 40e-6, "gear": 100e-6}
+    solid = {f"gears.{name}_inertia": 0.5 * math.pi * 2330.0 * 2e-6 * r**4 for name, r in sizes.items()}
+    own = {"gears.pinion_teeth": 24, "gears.gear_teeth": 60, "gears.pinion_base_radius": 40e-6, **solid}
+    start = {
+        "initial.gear_speed": 0.0,
+        "initial.gap": "0.1 um",
+        "coating.sam_fraction": 0.5,
+        "run.samples": "off",
+    }
+    ramp = {"drive.torque": 0.0, "drive.schedule": [(0.0, 0.0), (2.0, 4.8e-18), (2.1, 3.8e-16)]}
+    scene = gd.preset("teodorescu2009_low_speed").replace(own | start | ramp | {"load.torque": 3e-18})
+    table = gd.simulate(scene.replace({"run.duration": 2.1})).gearidae.standstills()
+    np.testing.assert_allclose(table["begin"], [0.0, 1.824], atol=1e-3)
+    np.testing.assert_allclose(
+        table["end"], [0.5, 2.0326], atol=1e-3
+    )  # 0.5 s: the torque is that of the dry load
+    assert table["verdict"].tolist() == ["stops", "sticks"]
+    assert (table["held_torque"] > 0.0).tolist() == (table["free_advance"] > 0.0).tolist() == [False, True]

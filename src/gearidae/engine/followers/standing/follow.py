@@ -156,8 +156,8 @@ def leave(m: Model, t: float, speed: float, position: float) -> None:
     i = standing_since(m, time, place, m.scene.end * unit)
     if i >= 0:
         if s.zero[i].spent == 0:
-            z = s.zero[i]
-            _note_standstill(m, i, i, time, distance(z, place), free_advance(z, time))
+            z = s.zero[SPARE]
+            _note_standstill(m, i, time, distance(z, place), free_advance(z, time))
     else:
         note_stood(m, time)
     drop_left(m, position)
@@ -175,16 +175,16 @@ def note_stood(m: Model, limit: float) -> None:
             if time > 0.0:
                 if free == 0.0:
                     s.zero[SPARE].excess = s.zero[SPARE].driven_time = 0.0
-                _note_standstill(m, i, SPARE, time, way, free)
+                _note_standstill(m, i, time, way, free)
                 return
         i += 1
 
 
 @compiled
-def _note_standstill(m: Model, i: int, k: int, time: float, way: float, free: float) -> None:
-    """Note a standstill from zero `i` to a time [s]; of the drive since then the place `k` knows."""
+def _note_standstill(m: Model, i: int, time: float, way: float, free: float) -> None:
+    """Note a standstill from zero `i` to a time [s]; of the drive since then `SPARE` knows."""
     s = m.state.standing
-    z, drive = s.zero[i], s.zero[k]
+    z, drive = s.zero[i], s.zero[SPARE]
     start, rest = standstill_begin(m, z), s.rest_time - z.rest_time
     for j in range(s.zero_count):
         if s.zero[j].time <= time:
@@ -311,6 +311,7 @@ def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
         note_stood(m, time)
     out[0] = 1.0 if i >= 0 else 0.0
     if s.zero_count > 0:
+        follow_free(m, max(i, 0), t, math.inf)
         z = s.zero[max(i, 0)]
         never = s.left == 0 and s.zero[0].start != 0
         out[1], out[2] = s.zero[0].time if never else z.time, float(s.zero[0].exits if never else z.exits)

@@ -157,13 +157,18 @@ def drop_left(m: Model, position: float) -> None:
 
 @compiled
 def standing_since(m: Model, time: float, position: float, length: float) -> int:
-    """First zero from which the gear stands until a time at a position, in a run of a length [s]; -1 if none."""
+    """First zero from which the gear stands until a time at a position, in a run of a length [s]; -1 if none.
+
+    `SPARE` is then that zero with its free gears at that time. The zeros stay as they are, because the gear may leave
+    another one later whose standstill has ended earlier.
+    """
     s = m.state.standing
     for i in range(s.zero_count):
-        z = s.zero[i]
-        if z.time > time:
+        if s.zero[i].time > time:
             break
-        follow_free(m, i, time / m.scene.time_unit, math.inf)
+        copy_zero(m, SPARE, i)
+        z = s.zero[SPARE]
+        follow_free(m, SPARE, time / m.scene.time_unit, math.inf)
         if _stands(distance(z, position), free_advance(z, time), time - z.time, length):
             return i
     return -1
