@@ -107,3 +107,15 @@ def test_what_cannot_be_analysed_is_named(data, options, message):
 def test_overlap_is_checked():
     with pytest.raises(gd.SceneError, match="overlap = 1"):
         spectrogram(signal(np.ones(100)), overlap=1.0)
+
+
+@pytest.mark.parametrize("spectrum", [power_spectrum, spectrogram])
+def test_a_record_that_is_sampled_too_slowly_for_its_contact_warns_with_both_frequencies(spectrum):
+    scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.02, "run.samples": "2 kHz"})
+    slow = gd.simulate(scene)
+    own = gd.analysis.contact_resonance(scene)
+    with pytest.warns(UserWarning, match=f"sampling at 2000 Hz .* contact, {own / 1e3:.0f}.* Hz") as caught:
+        spectrum(slow, segment=0.01)
+    assert caught[0].filename == __file__
+    spectrum(gd.simulate(scene, samples="4 kHz"), segment=0.01)
+    spectrum(slow.gear_speed, segment=0.01)  # whose scene is not known

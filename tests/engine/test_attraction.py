@@ -164,7 +164,7 @@ def test_nothing_changes_where_no_material_has_a_constant():
 def test_estimates_have_it_too():
     """The static law of a pair and the drawn teeth pull as the run does."""
     scene = GEARS.replace({"coating.thickness": 0.0, "coating.hamaker": HAMAKER})
-    from gearidae.runs.pair_contact import pair_contact
+    from gearidae.mesh.pair_contact import pair_contact
     from gearidae.studies.equilibrium import pair_law
 
     contact = pair_contact(scene)

@@ -175,7 +175,7 @@ def test_another_thickness_and_pairing_may_go_on():
 def test_estimates_count_every_material_at_its_own_gap():
     """The resting gap carries the load by the readable law of each material."""
     from gearidae.contact.line import line_force
-    from gearidae.runs.pair_contact import pair_contact
+    from gearidae.mesh.pair_contact import pair_contact
     from gearidae.studies.equilibrium import pair_law
 
     scene = coated(LOW, 0.3, 0.5, thickness="1 nm")

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import gearidae as gd
+from gearidae.mesh.pair_contact import pair_contact
 from gearidae.runs.estimates import mean_drive_torque
-from gearidae.runs.pair_contact import pair_contact
 from gearidae.runs.run_time import run_time
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))

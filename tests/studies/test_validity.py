@@ -12,7 +12,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.contact import line_force
-from gearidae.runs.pair_contact import pair_contact
+from gearidae.mesh.pair_contact import pair_contact
 from gearidae.runs.validity import validity_attribute, validity_rows
 from gearidae.scene.validity_row import holds_rows, mean_note, rows_from_json
 

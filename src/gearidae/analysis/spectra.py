@@ -17,6 +17,7 @@ import numpy as np
 import scipy
 import xarray as xr
 
+from gearidae.analysis.aliasing import warn_of_aliasing
 from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -63,11 +64,17 @@ def power_spectrum(
     ------
     SceneError
         If the variable is missing, the time is not uniform, or the segment or the window is not allowed.
+
+    Warns
+    -----
+    UserWarning
+        If the sampling rate is below twice the frequency of the loaded contact.
     """
     if not (isinstance(padding, int) and 1 <= padding <= _MOST_PADDING):
         raise SceneError("padding", shorten(padding), f"must be a whole number in 1..{_MOST_PADDING}")
     batch = signals(data, variable)
     size, rate = _segment(batch, segment, 0.5), batch.signals[0].rate
+    warn_of_aliasing(data, rate)
     taper = _taper(window, size)
     long = padding * size
     rows = [
@@ -117,12 +124,18 @@ def spectrogram(
     ------
     SceneError
         If the variable is missing, the time is not uniform, or a setting is not allowed.
+
+    Warns
+    -----
+    UserWarning
+        As `power_spectrum` does.
     """
     if not 0.0 <= overlap < 1.0:
         raise SceneError("overlap", overlap, "must lie in 0..1, below 1")
     batch = signals(data, variable)
     first = batch.signals[0]
     size = _segment(batch, segment, 1.0 / _PIECES)
+    warn_of_aliasing(data, first.rate)
     shared = min(size - 1, round(overlap * size))
     taper = _taper(window, size)
     longest = max(len(each.values) for each in batch.signals)

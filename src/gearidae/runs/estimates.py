@@ -10,7 +10,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.runs.pair_contact import PairContact, pair_contact
+from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.rubbing import transmitted_share
 from gearidae.scene import Drive, Gears, Load, Scene
 

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from gearidae.mesh.friction import hub_share, loss_fraction
-from gearidae.runs.pair_contact import pair_contact
+from gearidae.mesh.pair_contact import pair_contact
 from gearidae.scene.friction import friction_values, has_flank_friction
 
 if TYPE_CHECKING:

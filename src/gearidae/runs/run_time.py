@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from gearidae.asperities.tip import asperity_of
+from gearidae.mesh.pair_contact import PairContact, asperity_stiffness
 from gearidae.runs.estimates import balanced_speed, mean_drive_torque, rest_of
-from gearidae.runs.pair_contact import PairContact, asperity_stiffness
 from gearidae.scene.limits import stays_rigid
 
 if TYPE_CHECKING:

@@ -97,6 +97,10 @@ def simulate(
     """
     scene = prepare(scene, rtol=rtol, samples=samples, backend=backend)
     begin = started_from(start, scene)
+    if (
+        begin.scene is not None and begin.scene.initial is not None
+    ):  # where the angles of the chain count from
+        scene = scene.replace({"initial.mesh_phase": begin.scene.initial.mesh_phase})
     if t_end is not None:
         scene = _ending(scene, t_end, begin.time)
     log_doubts(scene)

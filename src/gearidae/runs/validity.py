@@ -29,9 +29,9 @@ from gearidae.contact.surroundings import (
     film_damping,
     thermal_amplitude,
 )
+from gearidae.mesh.pair_contact import PairContact
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
 from gearidae.runs.locking import locking_rows
-from gearidae.runs.pair_contact import PairContact
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 

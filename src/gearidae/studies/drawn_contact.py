@@ -19,9 +19,9 @@ from scipy.optimize import brentq, minimize_scalar
 from gearidae.arrays import Floats
 from gearidae.asperities import tip_law
 from gearidae.asperities.registry import TipLaw
+from gearidae.mesh.pair_contact import PairContact
 from gearidae.populations.flanks import FlankAsperities
 from gearidae.populations.materials import materials_at
-from gearidae.runs.pair_contact import PairContact
 from gearidae.scene import MATERIAL_NAMES, Scene
 
 _FIRST = 32

@@ -14,9 +14,9 @@ import numpy as np
 
 from gearidae.archive.dataset import reached
 from gearidae.asperities.tip import asperity_of
+from gearidae.mesh.pair_contact import asperity_stiffness
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
-from gearidae.runs.pair_contact import asperity_stiffness
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 
 if TYPE_CHECKING:

@@ -95,7 +95,7 @@ def pull_off(
 
 def _part(scene: Scene, seeds: Sequence[int], load: float) -> list[PullOff]:
     """Part the pairs of some seeds."""
-    from gearidae.runs.pair_contact import pair_contact
+    from gearidae.mesh.pair_contact import pair_contact
     from gearidae.studies.drawn_contact import DrawnContact
 
     contact, arc = pair_contact(scene), 0.0
