@@ -9,6 +9,7 @@ import pytest
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.earlier import OLD, earlier_verdict, is_earlier
+from gearidae.archive.select import run_scene
 from gearidae.errors import SceneError
 from gearidae.records import Extremes
 
@@ -17,7 +18,7 @@ STOOD = Extremes(stick_time=0.2, turned_back=0.0, last_min_gear_speed=0.0)
 NEW = (
     *("advance", "free_advance", "driven_time", "held_torque", "holding", "free_turned_back", "back_time"),
     *("standstills", "standing_time", "standing_rest_time", "start_time", "breakaway_torque"),
-    *("followed_time", "standstill_list"),
+    *("rest_time", "followed_time", "standstill_list"),
 )
 
 
@@ -73,3 +74,19 @@ def test_a_verdict_of_the_former_rule_says_so():
     (outcome,) = outcomes(old)
     assert outcome.verdict == "stops"
     assert outcome.words.endswith(OLD)
+
+
+def test_labels_of_another_run_are_refused_by_their_key():
+    """What `xarray.concat` joins has the scene of its first run."""
+    run = gd.simulate(LOW.replace({"run.samples": 11, "run.duration": 0.01}))
+    assert len(outcomes(run.assign_coords(duration=0.01))) == 1
+    other = run.assign_coords(duration=0.02)
+    for read in (outcomes, run_scene):
+        with pytest.raises(SceneError, match=r"^run\.duration = 0\.02: is not that of its scene, 0\.01"):
+            read(other)
+    swept = gd.sweep(
+        LOW.replace({"run.samples": 11, "run.duration": 0.01}), {"drive.torque": [4e-18, 5e-18]}, jobs=1
+    )
+    assert len(outcomes(swept)) == 2
+    assert outcomes(swept.isel(torque=1))[0].label == {}
+    assert swept.isel(torque=1).gearidae.scene.drive.torque == 5e-18

@@ -57,7 +57,9 @@ def test_extremes_are_those_of_a_million_samples(scene):
     assert kept.smallest_separation == pytest.approx(smallest, abs=1e-3 * scene.surface.roughness)
     settled = speed[round(0.05 * (speed.size - 1)) :]
     assert kept.settled_spread == pytest.approx(np.ptp(settled), rel=1e-4, abs=1e-6 * speed.max())
-    assert kept.settled_gear_speed == pytest.approx(np.trapezoid(settled) / (settled.size - 1), rel=1e-6)
+    # one period of the harmonic is 1e-4 s, and the start-up 1e-5 s of 2e-4 s
+    whole = settled[: round((speed.size - 1) / 2) + 1] if scene.drive.harmonic else settled
+    assert kept.settled_gear_speed == pytest.approx(np.trapezoid(whole) / (whole.size - 1), rel=1e-6)
     fall = np.max(np.maximum.accumulate(settled) - settled)
     assert kept.speed_fall == pytest.approx(fall, rel=1e-4, abs=1e-6 * speed.max())
 
@@ -133,7 +135,8 @@ def test_adhesion_loss_is_the_integral_of_the_contact_length(model, asperity, rt
     solution = dense(scene, 400_001)
     geometry, sigma = scene.geometry, scene.surface.roughness
     gap = (0.5 * scene.mesh.backlash - solution.samples["transmission_error"]) / sigma
-    radius = curvature_radii(geometry, geometry.base_radius_gear * solution.samples["gear_angle"])[2]
+    place = 0.8 * geometry.base_pitch + geometry.base_radius_gear * solution.samples["gear_angle"]
+    radius = curvature_radii(geometry, place)[2]
     lost = at_last_length = 0.0
     for surface in (scene.surface, scene.coated_surface):
         law = law_of_tip(asperity, asperity_of(surface), sigma)

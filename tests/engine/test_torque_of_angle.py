@@ -192,7 +192,8 @@ def test_the_angle_counts_from_the_start(free):
         }
     )
     run = solve(scene)
-    assert run.samples["pinion_angle"][0] == pytest.approx(0.0, abs=1e-15)
+    for name in ("pinion_angle", "gear_angle"):
+        assert run.samples[name][0] == pytest.approx(0.0, abs=1e-15)
     speed = run.samples["pinion_speed"]
     np.testing.assert_allclose(run.samples["pinion_angle"], speed[0] * run.time, rtol=1e-7, atol=1e-9)
 

@@ -24,7 +24,9 @@ class SampledWork:
         kinetic = 0.5 * self._gears.pinion_inertia * piece["pinion_speed"] ** 2
         kinetic += 0.5 * self._gears.gear_inertia * speed**2
         self.kinetic_change = float(kinetic[-1] - kinetic[0])
-        gear, pinion = np.diff(piece["gear_angle"]), np.diff(self._pinion_angle(piece["gear_angle"], u))
+        start = scene.initial.mesh_phase * scene.geometry.base_pitch / self._gear_radius
+        gear = np.diff(piece["gear_angle"])
+        pinion = np.diff(self._pinion_angle(start + piece["gear_angle"], u))
         rate = self._pinion_radius * piece["pinion_speed"] - self._gear_radius * speed
         resisting = np.maximum(prescribed_torque(self._load, time), 0.0)
         for name, torque, turned in (

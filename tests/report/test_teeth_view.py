@@ -100,7 +100,8 @@ def test_embedded_states_are_samples_of_the_record(single):
             rel=1e-6,
             abs=0.0,
         )
-        travel = sample.gear_angle.item() * SCENE.geometry.base_radius_gear / SCENE.geometry.base_pitch
+        turned = sample.gear_angle.item() * SCENE.geometry.base_radius_gear / SCENE.geometry.base_pitch
+        travel = SCENE.initial.mesh_phase + turned
         assert phase == pytest.approx(travel % 1.0, abs=1e-6)
         (state,) = tooth_contacts(single, sample.time.item())
         told = {(one.pair, one.flank): one for one in state.contacts}

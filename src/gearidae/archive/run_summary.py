@@ -1,8 +1,8 @@
 """Run summary: time to speed, times at rest and trapped by adhesion, largest force, and energies of one run.
 
 Read from a dataset of any length in pieces; it stands beside the other readers of datasets, because the report needs it
-as well as the runs do. Times at rest come from the stick and slip events and are as exact as these. Extremes, the time
-held by adhesion and energies are those that the engine kept at its own steps; a run that is not at its end has extremes
+as well as the runs do. Extremes, times at rest and held by adhesion, what holds the gear, and energies are those that
+the engine kept at its own steps; a run that is not at its end has extremes
 of its newest checkpoint and no energies. `Account.time_to_speed` always is that of a sample.
 """
 
@@ -24,6 +24,7 @@ from gearidae.arrays import Floats
 from gearidae.records import EventKind, Extremes
 from gearidae.records.energy import LOSSES
 from gearidae.records.quantity import Totals
+from gearidae.records.standing import Holding
 from gearidae.scene import Scene
 from gearidae.scene.friction import has_flank_friction, has_hub_friction
 
@@ -31,7 +32,7 @@ PIECE = 2**18
 """Samples, or events, looked at together."""
 AT_SPEED = 0.95
 """Share of its largest sampled speed from which a gear counts as up to speed."""
-OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "time_at_rest", "impacts"})
+OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "impacts"})
 """Rows of the run summary that begin with a run that goes on from another; everything else goes on over the chain."""
 
 
@@ -50,13 +51,14 @@ class Account(Totals):
     sticks, slips : int
         How often dry resistance, with friction in the gear's hub, took hold of the gear, and gave way.
     time_at_rest : float
-        Held at rest by them, or by friction of two pairs of flanks [s].
+        Held at rest by all that is dry: dry resistance, friction of the gear's hub, or friction of flanks and hubs. The
+        engine has counted it since the start of the chain; of archives of version 0.2 it is that of stick and slip
+        events of the run [s].
     time_adhering : float
         Held by adhesion [s]: turned back by teeth that cling to each other, again and again within half a pitch.
         Counted from one turning back to the next there, and to the end if the gear is there still.
     held_by : str
-        What holds the gear at the end: ``dry resistance``, ``hub friction``, ``flank friction``, those that act
-        together joined by "and", ``adhesion``, or nothing.
+        What holds the gear at the end, in the words of `gearidae.records.standing.Holding`; empty if nothing does.
     impacts : int
         Contacts made.
     largest_force, largest_force_time : float
@@ -110,6 +112,9 @@ def account(ds: xr.Dataset) -> Account | None:
     end = float(ds.attrs["t_end"]) if ds.attrs["status"] == "finished" else 0.0
     end, still = max(end, incidents.time, float(np.nan_to_num(last))), found.final_speed == 0.0
     at_rest, resting = incidents.rest(end, still=still)
+    held_by = incidents.holds() if resting else "adhesion" if found.turn_backs > 1 else ""
+    if not math.isnan(found.rest_time):  # else an archive of version 0.2, or without a checkpoint yet
+        at_rest, held_by = found.rest_time, Holding(found.holding).words
     return Account(
         top_speed=found.max_gear_speed,
         time_to_speed=_time_to_speed(ds, top),
@@ -117,7 +122,7 @@ def account(ds: xr.Dataset) -> Account | None:
         slips=incidents.counts[EventKind.SLIP],
         time_at_rest=at_rest,
         time_adhering=found.time_adhering,
-        held_by=incidents.holds() if resting else "adhesion" if found.turn_backs > 1 else "",
+        held_by=held_by,
         impacts=incidents.counts[EventKind.ONSET],
         largest_force=force,
         largest_force_time=force_time,

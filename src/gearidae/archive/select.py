@@ -13,7 +13,7 @@ import xarray as xr
 from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
-from gearidae.archive.variables import EXTREMES, PLACES, columns
+from gearidae.archive.variables import EXTREMES, PLACES, SAMPLES, columns
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
 
@@ -106,6 +106,7 @@ def run_scene(run: xr.Dataset) -> Scene:
     if (dims := swept_dims(run)) and any(run.sizes[dim] != 1 for dim in dims):
         raise SceneError("dataset", f"runs along {', '.join(dims)}", "must be a single run: pick one")
     run = run.squeeze(dims) if dims else run
+    refuse_other_labels(run)
     scene = Scene.from_dict(scene_of(run))
     if "scene" in run.variables:
         return scene
@@ -120,16 +121,62 @@ def run_scene(run: xr.Dataset) -> Scene:
                 raise SceneError("dataset", f"{dim} {value}", f"must number one of {len(swept[key])} values")
             value = swept[key][value]
         changes[key] = value
-    return _of_its_labels(scene.replace(changes), run)
+    return scene.replace(changes)
 
 
-def _of_its_labels(scene: Scene, run: xr.Dataset) -> Scene:
-    """Refuse the scene of another run, which `xarray.concat` leaves with all."""
-    fraction = run.coords.get("sam_fraction")
-    if fraction is not None and not fraction.dims and float(fraction) != scene.coating.sam_fraction:
-        allowed = f"is not that of its scene, {scene.coating.sam_fraction:g}: join runs by gearidae.concat"
-        raise SceneError("coating.sam_fraction", float(fraction), allowed)
-    return scene
+def refuse_other_labels(ds: xr.Dataset) -> None:
+    """Refuse a dataset whose labels are not those of its scene, which `xarray.concat` takes from the first run.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run, a sweep, or a selection from one. A coordinate is a label if it has the name of one key of the
+        scene that has a number, as `gearidae.archive.dataset.dimension_names` gives it; swept keys are left out.
+
+    Raises
+    ------
+    SceneError
+        With the key whose label differs.
+    """
+    if "scene" in ds.variables and ds["scene"].dims:
+        return  # each run has its own
+    scene = scene_of(ds)
+    swept = {} if "scene" in ds.variables else json.loads(ds.attrs.get("swept", "{}"))
+    keys = {key: value for key, value in _numbers_in(scene, "") if key not in swept}
+    others = {"time", "event", *PLACES, *dimension_names(swept).values()}
+    for key, name in dimension_names(list(keys)).items():
+        label = ds.coords.get(name)
+        if label is None or label.dtype.kind not in "fiu" or name in others:
+            continue
+        other = label.values[label.values != keys[key]]
+        if other.size:
+            allowed = f"is not that of its scene, {keys[key]:g}: join runs by gearidae.concat"
+            raise SceneError(key, float(other.flat[0]), allowed)
+
+
+def _numbers_in(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, float]]:
+    """Go through the keys of a scene that have a number."""
+    for name, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _numbers_in(value, f"{above}{name}.")
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            yield f"{above}{name}", value
+
+
+def first_travel(run: xr.Dataset, scene: Scene) -> float:
+    """Travel of the gear along the line of action where its angle is zero [m].
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        One run of a gear pair; in archives of version 0.2 the angle itself begins at the mesh phase.
+    scene : Scene
+        Its scene.
+    """
+    if run["gear_angle"].attrs.get("comment") != SAMPLES["gear_angle"].comment:
+        return 0.0
+    assert scene.initial is not None
+    return scene.initial.mesh_phase * scene.geometry.base_pitch
 
 
 def motion_samples(run: xr.Dataset) -> int:

@@ -8,7 +8,7 @@ import xarray as xr
 
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.select import own_events, run_scene, swept_dims
-from gearidae.archive.variables import OF_SWEPT_RUN, PLACES, RUN
+from gearidae.archive.variables import OF_SWEPT_RUN, PLACES, RUN, SAM_FRACTION
 
 
 def single_run(ds: xr.Dataset) -> xr.Dataset:
@@ -39,6 +39,7 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     swept = [str(name) for name in ds.coords if name not in ("time", "event", "sam_fraction", *PLACES)]
     gone = {*found, *swept, *(f"event_{name}" for name in swept)}
     single = ds.drop_vars([name for name in gone if name in ds.variables])
+    single["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
     single.attrs = {
         **provenance(scene, ""),

@@ -34,10 +34,13 @@ class Column(NamedTuple):
     since: str = ""
 
 
+OF_CHAIN: Final = "of the first run of a chain; not wrapped"
+"""Of both angles; in archives of version 0.2 that of the gear began at the mesh phase."""
+
 GEAR_SAMPLES: Final = (
     Column("gear_speed", "rad s-1", "angular speed of the gear"),
     Column("pinion_speed", "rad s-1", "angular speed of the pinion"),
-    Column("gear_angle", "rad", "rotation of the gear since the start", "not wrapped"),
+    Column("gear_angle", "rad", "rotation of the gear since the start", OF_CHAIN),
     Column(
         "transmission_error",
         "m",
@@ -68,7 +71,7 @@ GEAR_SAMPLES: Final = (
         "pinion_angle",
         "rad",
         "rotation of the pinion since the start",
-        "of the first run of a chain; not wrapped",
+        OF_CHAIN,
         "0.2",
     ),
 )

@@ -56,9 +56,17 @@ ASPERITY_COUNTS: Final = (
 )
 """Of populations."""
 SPEEDS_NOW: Final = (
-    _speed("settled_gear_speed", "mean speed of the gear after the first twentieth of the run"),
+    _speed(
+        "settled_gear_speed",
+        "mean speed of the gear after the first twentieth of the run",
+        comment="over whole periods of the slowest harmonic, as far as there are any",
+    ),
     _speed("settled_spread", "its largest speed less its smallest from then on"),
-    _speed("late_gear_speed", "mean speed of the gear in the second half of the run"),
+    _speed(
+        "late_gear_speed",
+        "mean speed of the gear in the second half of the run",
+        comment="over whole periods of the slowest harmonic, as far as there are any",
+    ),
     _speed("late_spread", "its largest speed less its smallest there"),
     _speed("last_min_gear_speed", "smallest speed of the gear in the last twentieth of the run"),
     _speed("final_speed", "speed of the gear where the run ended"),

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.select import first_travel
 from gearidae.arrays import Floats
 from gearidae.asperities import tip_law
 from gearidae.mesh.involute import curvature_radii, flank_arc
@@ -105,7 +106,7 @@ class JoinedAsperities:
             self._of_pair[one, side] = np.flatnonzero(first.ravel() == number)
         self._flanks: dict[tuple[int, int], MetFlank] = {}
         self.first_motion = (
-            float(run["gear_angle"][0]) * scene.geometry.base_radius_gear,
+            float(run["gear_angle"][0]) * scene.geometry.base_radius_gear + first_travel(run, scene),
             float(run["transmission_error"][0]),
         )
         digest = flanks_digest(flanks_of(scene))

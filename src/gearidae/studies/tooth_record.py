@@ -19,6 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from gearidae.archive.select import first_travel
 from gearidae.arrays import Floats
 from gearidae.contact.history import joined_height
 from gearidae.errors import SceneError
@@ -64,7 +65,7 @@ class ToothRecord:
         self._half_backlash = 0.5 * scene.mesh.backlash
         self._relief_radius = scene.mesh.tip_relief_radius
         self.time = read("time")
-        self.travel = read("gear_angle") * self.geometry.base_radius_gear
+        self.travel = read("gear_angle") * self.geometry.base_radius_gear + first_travel(run, scene)
         self.u = read("transmission_error")
         self._furthest = np.maximum.accumulate(self.travel)
         self.gear_speed, self.mesh_force = read("gear_speed"), read("mesh_force")

@@ -18,7 +18,7 @@ from gearidae.analysis.verdict.table import Outcomes, Shown
 from gearidae.archive.energy import doubt, imbalance, imbalance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
-from gearidae.archive.select import is_roller, run_value, runs, scene_of, swept_dims
+from gearidae.archive.select import is_roller, refuse_other_labels, run_value, runs, scene_of, swept_dims
 from gearidae.errors import SceneError
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import Holding
@@ -213,8 +213,9 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     Raises
     ------
     SceneError
-        If the dataset carries no scene.
+        If the dataset carries no scene, or that of a run with other labels.
     """
+    refuse_other_labels(ds)
     if "verdict" in ds.variables:  # judged when the run ended, of which not everything is there
         return _kept(ds)
     if is_roller(ds):

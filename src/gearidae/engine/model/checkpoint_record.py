@@ -88,6 +88,10 @@ _PART_FIELDS: Final = (  # from where the part begins to where the run stands
     Quantity("highest", "highest speed of the gear", SPEED),
     Quantity("time", "when it began", TIME),
     Quantity("position", "how far the gear had turned by then", PITCHES),
+    Quantity(
+        "whole_time", "end of its last whole period of the slowest harmonic; its beginning before", TIME
+    ),
+    Quantity("whole_position", "how far the gear had turned by then", PITCHES),
 )
 
 EXTREMES_FIELDS: Final = (  # at accepted times and located extrema

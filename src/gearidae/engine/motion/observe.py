@@ -6,7 +6,7 @@ import math
 
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.motion.separation import separation
 from gearidae.engine.motion.shafts import friction_at_gear, is_stuck, resisting_force
@@ -52,7 +52,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     radius = m.scene.gear_radius
     row[GEAR.gear_speed] = w * speed / radius
     row[GEAR.pinion_speed] = (v + w) * speed / (m.scene.pinion_radius * (1.0 - e1))
-    row[GEAR.gear_angle] = (m.state.turns + phase) * m.scene.base_pitch / radius
+    row[GEAR.gear_angle] = angle_of_shaft(m, LOAD, u, phase)
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
     contact, resistance = force + mesh.relief, 0.0

@@ -11,6 +11,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
+from gearidae.engine.followers.standing.free_torques import slowest_period
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.motion.dry_limit import is_pulled_back
@@ -37,11 +38,14 @@ def note_speed(m: Model, w: float) -> None:
 
 @compiled
 def next_part(m: Model) -> float:
-    """Time at which the coming part of the run begins."""
+    """Time at which the coming part of the run begins, or a whole period of the slowest harmonic has passed in one."""
+    time, period = math.inf, slowest_period(m)
     for i in range(len(RUN_PARTS)):
         if m.state.extremes.part[i].begun == 0:
-            return float(m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start))
-    return math.inf
+            return min(time, m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start))
+        if period > 0.0:
+            time = min(time, m.state.extremes.part[i].whole_time + period)
+    return time
 
 
 @compiled(inline=True)
@@ -118,11 +122,17 @@ def note_hold(m: Model, t: float) -> None:
 
 @compiled
 def _begin_parts(m: Model, last: Record, now: Record) -> None:
-    """Begin those parts of the run whose time has come."""
-    e, scale = m.state.extremes, m.scene.phase_rate
+    """Begin those parts of the run whose time has come, and note the whole periods that have passed in others."""
+    e, period = m.state.extremes, slowest_period(m)
     h = now.time - last.time
     for i in range(len(RUN_PARTS)):
         time = m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start)
+        if e.part[i].begun != 0 and period > 0.0:
+            passed = math.floor((now.time - e.part[i].whole_time) / period)
+            if passed > 0.0:
+                e.part[i].whole_time += passed * period
+                share = min(max((e.part[i].whole_time - last.time) / h, 0.0), 1.0) if h > 0.0 else 1.0
+                e.part[i].whole_position = _place_within(m, last, now, share)
         if e.part[i].begun != 0 or now.time < time:
             continue
         share = (time - last.time) / h if h > 0.0 else 1.0
@@ -130,10 +140,18 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
         w = cubic(share, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         note_speed(m, w)
         e.part[i].begun, e.part[i].time = 1, time
-        e.part[i].position = cubic(
-            share, h, last.position, scale * last.speed, now.position, scale * now.speed
-        )
+        e.part[i].position = _place_within(m, last, now, share)
+        e.part[i].whole_time, e.part[i].whole_position = time, e.part[i].position
         e.part[i].lowest = e.part[i].highest = w
         if i == 0:
             e.top = e.bottom = w
     m.work.track.next_part = next_part(m)
+
+
+@compiled
+def _place_within(m: Model, last: Record, now: Record, share: float) -> float:
+    """How far the gear had turned after a share of a step."""
+    scale = m.scene.phase_rate
+    return cubic(
+        share, now.time - last.time, last.position, scale * last.speed, now.position, scale * now.speed
+    )

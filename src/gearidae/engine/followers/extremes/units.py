@@ -73,8 +73,13 @@ def _speeds(e: SimpleNamespace, rate: float, time: float, position: float) -> di
 
 
 def _mean(part: SimpleNamespace, rate: float, time: float, position: float) -> float:
-    """Mean speed over a part of the run, scaled; `rate` is that of the phase at the speed 1."""
-    span = time - part.time
+    """Mean speed over the whole periods of harmonics in a part of the run, over all of it without one, scaled.
+
+    `rate` is that of the phase at the speed 1.
+    """
     if not part.begun:
         return math.nan
+    if part.whole_time > part.time:
+        time, position = part.whole_time, part.whole_position
+    span = time - part.time
     return float((position - part.position) / (span * rate) if span > 0.0 else part.lowest)

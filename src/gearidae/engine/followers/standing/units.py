@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from gearidae.engine.followers.standing.follow import STANDING_NUMBERS, standing_at
+from gearidae.engine.model.record_types import HELD_GEAR
 from gearidae.engine.model.state import Floats, Model, plain
 from gearidae.records.standing import Holding
 
@@ -34,7 +35,11 @@ def standing_now(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]
     s, e, now = plain(m.state.standing), m.state.extremes, time * float(m.scene.time_unit)
     turned, free_turned, back_time, back_exits, turn_time = back
     gone = turned > 0.0 and (turn_time == 0.0 or turn_time <= now - period)
-    holding = _holding(m, bool(at_rest) or rest > 0.5 * (now - begin), held) if stands else Holding(0)
+    holding = (
+        _holding(m, bool(at_rest) or rest > 0.5 * (now - begin), held) if stands or at_rest else Holding(0)
+    )
+    if at_rest and m.state.hold == HELD_GEAR:
+        holding &= ~Holding.FLANK_FRICTION  # the pinion moves
     rows = [_row(m, plain(one)) for one in s.standstill[: s.stand_count]]
     if stands:
         rows.append([begin, math.nan, advance, free, held, float(holding), driven, rest])
@@ -55,6 +60,7 @@ def standing_now(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]
         "standing_rest_time": s.standing_rest + (rest if stands else 0.0),
         "start_time": math.nan if not s.left else s.last_end,
         "breakaway_torque": s.breakaway if s.left else math.nan,
+        "rest_time": s.rest_time,
         "followed_time": now,
         "standstill_list": array("d", [number for row in rows for number in row]),
     }
