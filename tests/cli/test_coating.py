@@ -52,14 +52,14 @@ def test_info_says_what_is_in_a_map(chart, folder, capfd):
 
 
 def test_map_over_torque(folder, capfd):
-    over = ["coating.sam_fraction=1,0.8", "drive.torque=4e-18,5e-18 N m"]
+    over = ["coating.sam_fraction=1,0.8", "drive.torque=4e-18 N m,5e-18 N m"]
     assert main(["coating-map", CASE, "--over", *over, "-o", "map.nc"]) == 0
     assert "torque = 5e-18" in capfd.readouterr().out
     assert gd.analysis.open_map("map.nc").characteristic_frequency.dims == ("torque", "sam_fraction")
 
 
 def test_a_map_without_impacts_says_so(folder, capfd):
-    over = ["coating.sam_fraction=1,0.8", "drive.torque=4e-18,5e-18 N m"]
+    over = ["coating.sam_fraction=1,0.8", "drive.torque=4e-18 N m,5e-18 N m"]
     arguments = ["coating-map", CASE, "--over", *over, "-o", "map.nc", "--set", "run.duration=5 ms"]
     assert main(arguments) == 0
     printed = capfd.readouterr().out
