@@ -46,7 +46,6 @@ FELT = 0.1  # of the tolerance of a speed
 FOLLOWED = (
     1.25  # radians of the fastest harmonic in a step at most; Adams' formulas have about one of their own
 )
-LAW_STEPS = 10_000  # in a run with a registered law, at least
 
 
 @dataclass(slots=True)
@@ -133,8 +132,6 @@ class Problem:
             )
             steepest = max(fastest_schedule(own, m.tables, 0.0) for own in s.schedule)
             fastest = max(steepest, float(s.torque_omega) / FOLLOWED)
-            if m.work.torque_law.any():
-                fastest = max(fastest, LAW_STEPS / float(s.end - s.start))
             s.longest_step = 1.0 / fastest if fastest > 0.0 else 0.0
             s.free_step = self._longest_free_step()
         return m
