@@ -128,8 +128,11 @@ def rest_step(m: Model, t: float, y: Floats) -> tuple[float, int]:
 
 @compiled
 def longest_step(m: Model) -> float:
-    """Longest step of an integration that starts with what is held now; 0 for any."""
+    """Longest step of an integration that starts with what is held now; 0 for any.
+
+    Registered laws bound none: what is known of them is the duration of a run, on which its steps must not depend.
+    """
     longest, look = m.scene.longest_step, m.scene.rest_look
-    if holds_anything(m) and look < np.inf:
+    if holds_anything(m) and look < np.inf and m.scene.rest_bend < np.inf:
         return min(longest, look) if longest > 0.0 else look
     return longest
