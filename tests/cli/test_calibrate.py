@@ -48,7 +48,7 @@ def calibrate(*given, code=0):
 def test_a_posterior_is_written_shown_drawn_and_predicted_from(folder, expected, capsys):
     calibrate("--seen", SEEN)
     printed = capsys.readouterr()
-    assert printed.err == ""
+    assert printed.err == "the most likely coating.sam_fraction is at the edge of its prior\n"
     row = next(line for line in printed.out.splitlines() if "coating.sam_fraction" in line and "+-" in line)
     assert f"{float(expected['mean'][0]):.4g} +- {float(expected.standard_deviation[0]):.4g}" in row
     found = gd.studies.open_posterior(f"{CASE}_posterior.nc")

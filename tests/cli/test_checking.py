@@ -94,11 +94,11 @@ def test_check_says_that_a_resistance_is_cut_off(capfd):
 
 def test_smallest_speed_of_a_gear_at_rest_is_zero(capfd):
     """It swings about its rest by less than the tolerance resolves beside its largest speed."""
-    scene = gd.preset("teodorescu2009").replace({"drive.torque": 5e-12, "initial.gear_speed": 0.0})
+    scene = gd.preset("teodorescu2009").replace({"drive.torque": 4.4e-12, "initial.gear_speed": 0.0})
     ds = gd.simulate(scene.replace({"run.samples": "off"}))
     assert -1e-6 * float(ds.max_gear_speed) < float(ds.min_gear_speed) < 0.0
     show_outcomes(ds)
-    assert re.search(r"mesh exits\) 0 rad/s 262\.7 rad/s ", words(capfd))
+    assert re.search(r"held by dry resistance 0 rad/s 243\.4 rad/s ", words(capfd))
     assert ">0 rad/s<" in outcome_table(ds)
     turned_back = ds.assign(min_gear_speed=-1e-5 * ds.max_gear_speed)
     show_outcomes(turned_back)

@@ -54,10 +54,13 @@ def test_a_signal_to_end_is_named_and_what_is_done_is_kept(number, word, code, m
         time.sleep(1.0)
 
     monkeypatch.setattr(command_line, "app", SimpleNamespace(meta=stopped))
-    usual = signal.getsignal(number)
-    assert main(["keys"]) == code
-    assert capsys.readouterr().err == f"gearidae: {word}\n"
-    assert signal.getsignal(number) is usual
+    before = signal.signal(number, signal.SIG_DFL)  # under nohup this process ignores it
+    try:
+        assert main(["keys"]) == code
+        assert capsys.readouterr().err == f"gearidae: {word}\n"
+        assert signal.getsignal(number) is signal.SIG_DFL
+    finally:
+        signal.signal(number, before)
 
 
 @pytest.mark.parametrize("columns", ["1", "10", "100000000"])

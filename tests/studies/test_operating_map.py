@@ -17,7 +17,7 @@ from sweeps import without_times
 RATTLING = gd.preset("teodorescu2009_low_speed").replace(
     {"run.duration": 0.06, "drive.harmonic": {"amplitude": 0.0, "frequency": "1 kHz"}}
 )
-OVER = {"drive.harmonic.amplitude": [0.0, 1e-16, 2e-16], "coating.sam_fraction": [0.9, 1.0]}
+OVER = {"drive.harmonic.amplitude": [0.0, 1e-16, 2e-15], "coating.sam_fraction": [0.9, 1.0]}
 
 
 @pytest.fixture(scope="module")
