@@ -103,7 +103,10 @@ def test_a_travel_that_is_rounded_is_not_warned_of():
 
 
 def test_a_heavy_gear_is_known_no_better_than_its_speed():
-    """A flywheel on the pinion's shaft: the tolerance of its speed is worth more energy than contacts have."""
+    """A flywheel on the pinion's shaft: the tolerance of its speed is worth more energy than contacts have.
+
+    The residual stays far below that: steps follow the harmonic of the drive, however slowly the gears turn.
+    """
     scene = HIGH.replace(
         {
             "gears.pinion_inertia": 1e-10,
@@ -121,7 +124,7 @@ def test_a_heavy_gear_is_known_no_better_than_its_speed():
     problem = make_problem(scene)
     unit = problem.model.scene.length_unit / problem.model.scene.time_unit
     assert speed == pytest.approx(unit, rel=1e-3)
-    assert bound(scene, replace(heavy, speed_work=0.0)) < abs(heavy.residual) <= bound(scene, heavy)
+    assert abs(heavy.residual) <= bound(scene, replace(heavy, speed_work=0.0)) < bound(scene, heavy)
 
 
 @pytest.mark.parametrize(
