@@ -118,6 +118,8 @@ def _begins(part: xr.Dataset, whole: xr.Dataset) -> bool:
 
 def in_a_process(work: Callable[[], str]) -> str:
     """What some work returns in a copy of this process, or the signal or exit code that ended it."""
+    if sys.platform == "win32":
+        raise NotImplementedError("a process cannot be copied there")
     reader, writer = os.pipe()
     child = os.fork()
     if not child:
