@@ -25,7 +25,7 @@ def life(scene):
 
 
 @pytest.mark.parametrize("key", SCHEDULES)
-@pytest.mark.parametrize("study", [threshold, life])
+@pytest.mark.parametrize("study", [life])
 def test_a_schedule_is_named_with_the_way_out(study, key):
     with pytest.raises(gd.SceneError, match=r"needs (a )?constant.*use sweep") as error:
         study(LOW.replace(SCHEDULES[key]))

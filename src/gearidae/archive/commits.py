@@ -163,9 +163,9 @@ def intact(file: Any, commits: list[Commit], path: Path) -> Commit:
     raise ValueError("its values have been altered")
 
 
-def checksum_of(variable: Any, length: int) -> int:
-    """Checksum of the first values of a variable in an open file."""
-    found = 0
+def checksum_of(variable: Any, length: int, before: int = 0) -> int:
+    """Checksum of the first values of a variable in an open file, after those of another checksum."""
+    found = before
     for start in range(0, length, COPIED):
         found = _checksum(variable[start : min(start + COPIED, length)], found)
     return found
@@ -182,7 +182,7 @@ def _constants(file: Any) -> int:
     for name, variable in file.variables.items():
         if not {"time", "event"} & set(variable.dimensions) and name not in (RECORDS, *COUNTS):
             found = _checksum(variable[...], found)
-    return _checksum(file["time"][...], found) if "time" in file.variables else found
+    return checksum_of(file["time"], file["time"].size, found) if "time" in file.variables else found
 
 
 def _read(text: bytes) -> Commit | None:
