@@ -144,12 +144,19 @@ def test_no_pulse_of_the_drive_is_missed(frequency, method):
     assert_all_slips(solve(scene), scene, frequency)
 
 
-@gd.register_torque("rest_wave", parameters=("middle", "amplitude", "frequency"))
 def wave(t, speed, p):
     """A harmonic that the engine does not know as one."""
     return p[0] + p[1] * math.cos(2.0 * math.pi * p[2] * t)
 
 
+@pytest.fixture
+def rest_wave():
+    gd.register_torque("rest_wave", parameters=("middle", "amplitude", "frequency"))(wave)
+    yield
+    gd.unregister_torque("rest_wave")
+
+
+@pytest.mark.usefixtures("rest_wave")
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_no_dip_of_a_registered_law_is_missed(backend):
     scene = dipping(200.0, 0.3, 0.1)

@@ -62,11 +62,13 @@ def _read(path: str | os.PathLike[str]) -> str:
     def refuse(reason: str) -> SceneError:
         return SceneError("case file", shorten(os.fspath(path)), reason)
 
-    if Path(path).exists() and not (Path(path).is_file() or Path(path).is_dir()):
-        raise refuse("is a pipe or a device, which may have no end: write it to a file first")
     try:
+        if Path(path).exists() and not (Path(path).is_file() or Path(path).is_dir()):
+            raise refuse("is a pipe or a device, which may have no end: write it to a file first")
         with Path(path).open("rb") as file:
             content = file.read(_LARGEST + 1)
+    except SceneError:
+        raise
     except FileNotFoundError as error:
         raise refuse("no such file") from error
     except IsADirectoryError as error:
