@@ -140,12 +140,13 @@ def check_gaps(scene: Scene) -> None:
     mesh, initial, sigma = scene.mesh, scene.initial, scene.surface.roughness
     assert mesh is not None
     assert initial is not None
-    if scene.contact.model == "population" and sigma > mesh.backlash:
+    deepest = mesh.backlash + scene.surface.asperity_radius
+    if scene.contact.model == "population" and sigma > deepest:
         raise SceneError(
             "surface.roughness",
             sigma,
-            f'must be at most mesh.backlash, {mesh.backlash:g} m, with contact.model = "population":'
-            " both flanks would be pressed onto thousands of asperities, and no step would end",
+            f"must be at most mesh.backlash and surface.asperity_radius together, {deepest:.3g} m, with contact.model ="
+            ' "population": both flanks would be pressed onto thousands of asperities, deeper than their radius',
         )
     if mesh.backlash > WIDEST_BACKLASH * sigma:
         raise SceneError(
