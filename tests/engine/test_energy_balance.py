@@ -171,7 +171,8 @@ def test_energies_of_the_sampled_motion():
         run.samples[name] for name in ("transmission_error", "gear_angle", "gear_speed", "pinion_speed")
     )
     gap = (0.5 * scene.mesh.backlash - u) / sigma
-    radius = curvature_radii(geometry, geometry.base_radius_gear * angle)[2]
+    place = 0.8 * geometry.base_pitch + geometry.base_radius_gear * angle
+    radius = curvature_radii(geometry, place)[2]
     adhesion_loss = 0.0
     stored = np.zeros(times.size)
     for surface, share in ((scene.surface, 0.5), (scene.coated_surface, 0.5)):

@@ -333,8 +333,9 @@ def test_gears_stay_at_rest_inside_the_zonotope_and_move_outside(hub):
         if abs(worst) < 1e-9 * load:
             continue
         inside += worst > 0.0
-        assert held == (worst > 0.0)
-        assert (not rates.any()) == (worst > 0.0)
+        # a friction that is held loads the hub, too, so that it holds more: the exact edge is in test_hub_load
+        assert held == (worst > 0.0) if hub == 0.0 else held or worst < 0.0
+        assert (not rates.any()) == held
     assert 100 < inside < 900
 
 
@@ -492,7 +493,8 @@ def test_a_pinion_that_starts_alone_is_not_brought_back_to_rest():
     )
     solution = run(scene)
     assert solution.status == "finished"
-    assert not solution.events.kind.size
+    assert EventKind.STICK not in solution.events.kind
+    assert solution.events.time.max(initial=0.0) < 1e-12  # a slip at the start, as the damping draws the gear along
     mass = scene.gears.pinion_inertia / R1**2 + scene.gears.gear_inertia / R2**2
     speed = scene.drive.torque / R1 * 1e-3 / mass
     assert solution.samples["gear_speed"][-1] * R2 == pytest.approx(speed, rel=1e-4, abs=0)
