@@ -494,7 +494,9 @@ def test_a_pinion_that_starts_alone_is_not_brought_back_to_rest():
     solution = run(scene)
     assert solution.status == "finished"
     assert EventKind.STICK not in solution.events.kind
-    assert solution.events.time.max(initial=0.0) < 1e-12  # a slip at the start, as the damping draws the gear along
+    assert (
+        solution.events.time.max(initial=0.0) < 1e-12
+    )  # a slip at the start, as the damping draws the gear along
     mass = scene.gears.pinion_inertia / R1**2 + scene.gears.gear_inertia / R2**2
     speed = scene.drive.torque / R1 * 1e-3 / mass
     assert solution.samples["gear_speed"][-1] * R2 == pytest.approx(speed, rel=1e-4, abs=0)
