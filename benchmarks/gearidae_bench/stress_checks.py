@@ -172,8 +172,10 @@ def _damping(scene: Scene, row: Floats) -> tuple[float, float]:
 def _pairs(scene: Scene, u: float, angle: float) -> tuple[Floats, Floats, Floats, Floats]:
     """Flank (1 drive, -1 coast), gap, slope of the tip relief and reduced radius of every pair near the mesh."""
     assert scene.mesh
+    assert scene.initial
     geometry, relief = scene.geometry, scene.mesh.tip_relief_radius
-    pitch, travel = geometry.base_pitch, geometry.base_radius_gear * angle
+    pitch = geometry.base_pitch
+    travel = geometry.base_radius_gear * angle + scene.initial.mesh_phase * pitch
     middle = round(travel / pitch)
     number = np.arange(middle - 40, middle + 41)
     drive = travel - number * pitch

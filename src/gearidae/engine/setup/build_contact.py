@@ -117,7 +117,7 @@ def add_contact(
             push, stored = loading_pieces(law, kernel, float(own.gap_offset))
             loading[material], potential[material] = force * push, force * stored
             limits.add(s, tables, material, surface, law)
-            for floor, gap in reach.items():
+            for floor, gap in reach.items() if force * widest > 0.0 else ():  # a share may be too small
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
                 reach[floor] = max(gap, widest_gap - float(own.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
