@@ -84,8 +84,6 @@ def _rows(ds: xr.Dataset) -> Rows:
 
 
 def _surviving_rows(ds: xr.Dataset) -> Rows:
-    from gearidae.studies._surviving_share import surviving_share
-
     found = surviving_share(ds)
     passages, shares = found["passages"].values, found["share"].values
     followed = max(passages[-1], np.nanmax(ds["passages_turning"].values))
