@@ -30,7 +30,7 @@ _PASSES: Final = 2
 @compiled(inline=True)
 def comes_to_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether gears that have moved up to an accepted time are at rest from there on."""
-    if y[W] != 0.0 or m.scene.kind != GEARS:
+    if m.scene.kind != GEARS or y[W] != 0.0:
         return False
     if abs(y[V]) * m.rows[m.scene.error_weights_at + V] >= 1.0 or m.work.driver.resting != 0:
         return False
