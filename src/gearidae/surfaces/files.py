@@ -99,6 +99,9 @@ def _read(path: Path, unit: str | None) -> tuple[Scan, bool]:
     ending = path.suffix.lower()
     try:
         check_regular(path, _LARGEST)
+    except (ValueError, OSError) as error:
+        raise _no_heights(path, error) from None
+    try:
         if ending == ".npy":
             return Scan(_array(path) * _factor(unit or "m"), None), False
         if ending in _TEXTS:
@@ -106,7 +109,7 @@ def _read(path: Path, unit: str | None) -> tuple[Scan, bool]:
     except SceneError:
         raise
     except (ValueError, TypeError, EOFError, OSError) as error:
-        refusal = SceneError("surface scan", path, f"is no table of heights: {error}")
+        refusal = _no_heights(path, error)
         if ending not in _TEXTS or not _is_of_another_program(path):
             raise refusal from None
         try:
@@ -117,6 +120,10 @@ def _read(path: Path, unit: str | None) -> tuple[Scan, bool]:
             reason = f"{refusal.allowed}; a file of another program {other.allowed}"
             raise SceneError("surface scan", path, reason) from None
     return _by_surface_topography(path, unit), True
+
+
+def _no_heights(path: Path, error: Exception) -> SceneError:
+    return SceneError("surface scan", path, f"is no table of heights: {error}")
 
 
 def _is_of_another_program(path: Path) -> bool:
@@ -212,7 +219,9 @@ def _length(path: Path, text: str) -> float:
 def _by_surface_topography(path: Path, unit: str | None) -> Scan:
     """Read a microscope's file with heights and sizes in their units, as far as it has any."""
     try:
-        from SurfaceTopography import read_topography
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # it warns that it does without MPI
+            from SurfaceTopography import read_topography
     except ImportError:
         endings = ", ".join((".npy", *_TEXTS))
         raise SceneError(
