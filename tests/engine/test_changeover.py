@@ -1,11 +1,10 @@
 """What a change from the asperity model to the elastic one carries over."""
 
 import numpy as np
-import pytest
 
 import gearidae as gd
 from gearidae.engine.changeover import change_over
-from gearidae.engine.events.dry_resistance import dry_guard
+from gearidae.engine.model.record_types import HELD_GEAR
 from gearidae.engine.model.state import STATE, W
 from gearidae.engine.setup.build import make_problem
 
@@ -34,25 +33,9 @@ def carried(change, speed=0.0):
     return rigid, bodies, state
 
 
-@pytest.mark.parametrize(("slipping", "allowance"), [(0, 2.0), (1, 0.0)])
-@pytest.mark.parametrize("slip", [-1.0, 1.0])
-def test_a_gear_that_has_just_begun_to_slip_keeps_its_allowance(slip, slipping, allowance):
-    """A slip too slow to be told from rest may turn back a little; one that has been faster may not."""
-
-    def begin_slip(state):
-        state.slip, state.slipping = slip, slipping
-
-    rigid, bodies, y = carried(begin_slip, speed=0.1 * slip)
-    state = bodies.model.state
-    assert (state.slip, state.slipping) == (slip, slipping)
-    expected = 0.1 + allowance * bodies.model.scene.rest_speed
-    assert dry_guard(bodies.model, 0.0, y) == pytest.approx(expected, rel=1e-12, abs=0)
-    assert rigid.model.scene.rest_speed == bodies.model.scene.rest_speed > 0.0
-
-
 def test_all_of_the_state_is_carried_over():
     def mark(state):
-        state.slipping, state.last_flank, state.roots, state.last_root = 1, 1, 7, -0.25
+        state.hold, state.last_flank, state.roots, state.last_root = HELD_GEAR, 1, 7, -0.25
         for place, name in enumerate(
             STATE["energy"].names, 1
         ):  # apart from each other, and as they can be together

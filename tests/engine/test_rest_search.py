@@ -12,8 +12,9 @@ import gearidae as gd
 from balances import assert_balanced
 from gearidae.engine import solve
 from gearidae.engine.events.rest_search import rest_until
+from gearidae.engine.model.record_types import HELD_GEAR
 from gearidae.engine.model.state import LOAD, U
-from gearidae.engine.motion.dry_limit import push_on_gear
+from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.torques.harmonic import common_period
 from gearidae.records import EventKind
@@ -267,12 +268,12 @@ def resting(harmonics, knots):
     )
     problem = make_problem(scene)
     m, y = problem.model, problem.start.copy()
-    m.state.slip, m.state.segment[LOAD] = 0.0, 1
+    m.state.hold, m.state.slip, m.state.segment[LOAD] = HELD_GEAR, 0.0, 1
     unit = float(m.scene.force_unit * m.scene.gear_radius)
 
     def push(u):
         y[U] = u
-        return push_on_gear(m, 0.0, y) * unit - PUSH
+        return forces_at_shafts(m, 0.0, y)[2] * unit - PUSH
 
     y[U] = brentq(push, y[U] - 10.0, y[U] + 4.0)
     return m, y, PUSH + push(y[U])

@@ -217,9 +217,9 @@ MUTANTS = (
     ),
     Mutant(
         "dry resistance that holds twice as much as it should",
-        "engine/events/dry_resistance.py",
-        "return dry_limit(m, t, y) + 2.0",
-        "return 2.0 * dry_limit(m, t, y) + 2.0",
+        "engine/friction/forces.py",
+        "return max(torque_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
+        "return 2.0 * max(torque_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
         ("properties/test_event_times.py",),
     ),
     Mutant(

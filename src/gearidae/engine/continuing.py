@@ -27,9 +27,8 @@ from gearidae.engine.changeover import (
 )
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import join_at_start
-from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.events.sliding import begin_sliding, settle_start
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS, exposure_table, exposures_of
@@ -296,20 +295,14 @@ def _begin_balance(m: Model, y: Floats) -> None:
 
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
-    """Set the direction of slip where there was no dry resistance, or none is left, or less than holds the gear."""
-    s = m.state
+    """Set the directions of slip where other elements resist than before, or what holds the gears no longer does."""
     if m.scene.kind != GEARS:
         return
-    if m.scene.friction.on != 0:
-        if source.scene.friction.on != 0:
-            settle_start(m, time, y, False)
-        else:
-            begin_sliding(m, time, y)
-        return
-    s.hold = FREE
-    if m.scene.dry == 0:
-        s.slip, s.slipping = 1.0, 0
-    elif source.scene.dry == 0 or source.scene.friction.on != 0:
-        s.slip, s.slipping = float(np.sign(y[W])), int(abs(y[W]) > m.scene.rest_speed)
-    if m.scene.dry != 0 and s.slip == 0.0 and dry_guard(m, time, y) <= 0.0:
-        stick_or_slip(m, time, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)
+    if m.scene.friction.on == 0:
+        m.state.hold, m.state.slip = FREE, 1.0
+    elif m.scene.friction.rubs == source.scene.friction.rubs and (m.scene.dry != 0) == (
+        source.scene.dry != 0
+    ):
+        settle_start(m, time, y, False)
+    else:
+        begin_sliding(m, time, y)

@@ -14,11 +14,10 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import asperity_guard
-from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import pair_guard
 from gearidae.engine.events.run_stop import stop_guard
-from gearidae.engine.events.sliding import REVERSALS_HIGH, sliding_guard
+from gearidae.engine.events.sliding import REVERSALS_HIGH, dry_guard
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
@@ -53,8 +52,6 @@ def guard(m: Model, t: float, y: Floats) -> float:
         if m.scene.stop != 0:
             least = min(least, stop_guard(m, t, y))
         if m.scene.friction.on != 0:
-            least = min(least, sliding_guard(m, t, y))
-        elif m.scene.dry != 0:
             least = min(least, dry_guard(m, t, y))
         if m.state.near[COAST] == 0:
             least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
@@ -106,9 +103,6 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
             m.state.light = 1
         # the force of a pair there jumps, or it would part unseen
         restart = not in_flight(m) and (m.scene.radius_force != 0 or outruns_relief(m, t, y))
-    if m.scene.friction.on == 0 and m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0:
-        restart = True
-        count = stick_or_slip(m, t, y, events, count)
     return count, crossed, restart
 
 

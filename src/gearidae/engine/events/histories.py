@@ -8,9 +8,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.histories import follow_nodes, init_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import join_at_start
-from gearidae.engine.events.dry_resistance import dry_guard, note_slip, stick_or_slip
 from gearidae.engine.events.mesh_marks import set_marks
-from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import begin_sliding
 from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
@@ -28,7 +26,6 @@ from gearidae.engine.population.candidates import forget
 def accept(m: Model, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     m.state.time = t
-    note_slip(m, y)
     for coast in range(1 if m.scene.kind == ROLLER else 2):
         if nearest_gap(m, coast, y) < m.scene.cutoff:
             m.state.near[coast] = 1
@@ -98,7 +95,3 @@ def begin(m: Model, t: float, y: Floats) -> None:
         join_at_start(m, y)
     if m.scene.friction.on != 0:
         begin_sliding(m, t, y)
-    elif (
-        m.scene.dry != 0 and m.state.slip == 0.0 and dry_guard(m, t, y) <= 0.0
-    ):  # nothing holds it from the start
-        stick_or_slip(m, t, y, np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS)), 0)

@@ -23,7 +23,6 @@ import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.events.dry_resistance import dry_guard
 from gearidae.engine.events.sliding import sliding_guard
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U
 from gearidae.engine.pairs.shaft_angle import torque_angle
@@ -47,7 +46,7 @@ _EPS: Final = 2.0 * float(np.finfo(float).eps)
 def _margin(m: Model, t: float, y: Floats) -> float:
     """What is left of what holds gears at rest."""
     m.state.progress.guard_evaluations += 1
-    return sliding_guard(m, t, y) if m.scene.friction.on != 0 else dry_guard(m, t, y)
+    return sliding_guard(m, t, y)
 
 
 @compiled_once(SOLVER)

@@ -1,6 +1,6 @@
-"""Events of friction: a flank begins to rub or ends, sliding turns round, sticks and slips, and gears come to rest.
+"""Events of all that is dry: a flank begins to rub or ends, sliding turns round, sticks and slips, gears come to rest.
 
-The directions of slip are part of the state. Each element that slips has its speed for a guard, and what is held the
+Friction of flanks, hubs and the dry resistance at the gear are set-valued elements. The directions of slip are part of the state. Each element that slips has its speed for a guard, and what is held the
 distance of its friction from the limit. A guard that has fallen is dealt with by one decision: alone, an element is
 held if its friction needs to be no larger than its limit; where both gears stand still, all elements are decided on at
 once (`gearidae.engine.friction.rest`).
@@ -14,7 +14,7 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import record
-from gearidae.engine.friction.forces import Shafts, has_gear_element, has_hubs, solve_shafts
+from gearidae.engine.friction.forces import NO_FORCE, Shafts, has_gear_element, has_hubs, solve_shafts
 from gearidae.engine.friction.pairs import RUBS, lever_rate, levers
 from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
 from gearidae.engine.model.record_types import (
@@ -26,7 +26,6 @@ from gearidae.engine.model.record_types import (
     STUCK,
 )
 from gearidae.engine.model.state import Floats, Model, Record, V, W
-from gearidae.engine.motion.dry_limit import NO_FORCE
 from gearidae.engine.motion.shafts import forces_at_shafts, pinion_speed
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.records import EventKind, Flank
@@ -56,6 +55,14 @@ def _sliding_speed(m: Model, noted: Record, turn: float, w: float) -> float:
 @compiled(inline=True)
 def _is_known(m: Model, noted: Record) -> bool:
     return bool(m.state.history[noted.history].pair == noted.pair)
+
+
+@compiled(inline=True)
+def dry_guard(m: Model, t: float, y: Floats) -> float:
+    """Least guard of all that is dry; that of a gear which slips under its load alone needs no force."""
+    if m.scene.friction.rubs == 0 and m.state.hold == FREE:
+        return m.state.slip * y[W] + STILL
+    return sliding_guard(m, t, y)
 
 
 @compiled_once(FRICTION)
@@ -157,8 +164,10 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
     bool
         Whether forces have jumped, so that the integration must begin anew.
     """
-    turn, pinion, gear = forces_at_shafts(m, t, y)
     state, w = m.state, y[W]
+    if m.scene.friction.rubs == 0 and state.hold == FREE and not _has_fallen(state.slip, w, fresh):
+        return False
+    turn, pinion, gear = forces_at_shafts(m, t, y)
     jumped = _drop_unloaded(m)
     kind, history = FREE, 0
     for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):

@@ -37,9 +37,9 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.kinetic import kinetic_energy
 from gearidae.engine.energy.radius import radius_power
-from gearidae.engine.events.dry_resistance import dry_guard
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
+from gearidae.engine.events.sliding import dry_guard
 from gearidae.engine.followers.joining import joining_lag
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import (
@@ -141,7 +141,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
-    if m.scene.population.flanks != 0 or m.scene.friction.on != 0:  # forces jump
+    if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0:  # forces jump
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
         return False

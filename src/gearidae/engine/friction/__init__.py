@@ -1,1 +1,1 @@
-"""Friction of flanks and hubs: limits, accelerations with set-valued friction, and what holds the gears at rest."""
+"""All that is dry, friction of flanks and hubs and the dry load: limits, accelerations, and what holds gears at rest."""

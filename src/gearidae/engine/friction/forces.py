@@ -31,6 +31,10 @@ RETURN: Final = 0.05
 """Rate at which the sliding that errors have brought about in a pair that rolls is taken out again, over 1/tau."""
 
 
+NO_FORCE: Final = 1e-12
+"""Of the reference load: less than this neither holds a gear nor moves it from rest."""
+
+
 @compiled(inline=True)
 def has_gear_element(m: Model) -> bool:
     """Whether dry resistance or a hub may hold the gear."""

@@ -65,7 +65,7 @@ def rest_margin(m: Model, pinion: float, gear: float) -> float:
     """How far the forces at both base circles are from those that the listed elements do not hold together.
 
     Below zero where no frictions balance them. Without hubs it is the least distance: the forces that are held are a
-    zonotope, with one inequality for each element, perpendicular to it.
+    zonotope, with one inequality for each element, perpendicular to it, and one along it, as all may be parallel.
     """
     found = m.work.rubbing
     if found.count == 0:
@@ -75,13 +75,19 @@ def rest_margin(m: Model, pinion: float, gear: float) -> float:
     least = math.inf
     for i in range(found.count):
         one = found.element[i]
-        x, y = -one.gear, one.pinion
-        held = 0.0
-        for j in range(found.count):
-            other = found.element[j]
-            held += other.limit * abs(x * other.pinion + y * other.gear)
-        least = min(least, (held - abs(x * pinion + y * gear)) / math.hypot(x, y))
+        least = min(least, _held_along(m, -one.gear, one.pinion, pinion, gear))
+        least = min(least, _held_along(m, one.pinion, one.gear, pinion, gear))
     return least
+
+
+@compiled(inline=True)
+def _held_along(m: Model, x: float, y: float, pinion: float, gear: float) -> float:
+    """How much more force all elements hold along a direction than is there."""
+    found, held = m.work.rubbing, 0.0
+    for j in range(found.count):
+        other = found.element[j]
+        held += other.limit * abs(x * other.pinion + y * other.gear)
+    return (held - abs(x * pinion + y * gear)) / math.hypot(x, y)
 
 
 class Way(NamedTuple):

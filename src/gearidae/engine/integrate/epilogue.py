@@ -5,7 +5,6 @@ from __future__ import annotations
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.asperity_events import flip_asperities, record_flips
-from gearidae.engine.events.dry_resistance import dry_guard, stick_or_slip
 from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
@@ -80,7 +79,7 @@ def finish_step(
             afresh = True
         else:
             driver.done = 1
-    if m.scene.friction.on != 0 and m.state.hold != FREE:
+    if m.state.hold != FREE:
         driver.events, stopped = follow_creeping(m, t, y, events, driver.events)
         afresh |= stopped
     if driver.done != 0 or driver.error != 0:
@@ -110,14 +109,6 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
         count, too_many = record_flips(m, t, events, count)
         if too_many:
             driver.error = MANY_EVENTS
-        if (
-            m.scene.friction.on == 0
-            and m.scene.dry != 0
-            and m.state.slip == 0.0
-            and dry_guard(m, t, y) <= 0.0
-        ):
-            # the force has jumped past what holds the gear, and no root would show it
-            count = stick_or_slip(m, t, y, events, count)
     if m.scene.friction.on != 0:
         count, jumped = follow_sliding(m, t, y, events, count)
         restart |= jumped

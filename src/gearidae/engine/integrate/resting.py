@@ -42,7 +42,7 @@ def is_at_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether nothing moves, or nothing by more than a tolerance."""
     if m.scene.kind != GEARS or y[W] != 0.0:
         return False
-    if m.scene.friction.on != 0 and m.state.hold == AT_REST:
+    if m.state.hold == AT_REST:
         return y[V] == 0.0
     if not (_holds_gear(m) and is_steady(m, DRIVE, t)):
         return False
@@ -55,20 +55,14 @@ def is_at_rest(m: Model, t: float, y: Floats) -> bool:
 @compiled
 def holds_anything(m: Model) -> bool:
     """Whether dry resistance or friction holds anything."""
-    if m.scene.friction.on != 0:
-        return bool(m.state.hold != FREE)
-    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
+    return bool(m.state.hold != FREE)
 
 
 @compiled
 def _holds_gear(m: Model) -> bool:
     """Whether the gear is held at rest, and the pinion by nothing but its teeth, whose bodies are rigid."""
-    if m.scene.nodes > 0:
-        return False
-    own = m.scene.friction
-    if own.on != 0:
-        return bool(m.state.hold == HELD_GEAR and own.flanks == 0 and own.pinion_hub == 0.0)
-    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
+    bare = m.scene.friction.flanks == 0 and m.scene.friction.pinion_hub == 0.0
+    return bool(m.state.hold == HELD_GEAR and bare and m.scene.nodes == 0)
 
 
 @compiled

@@ -198,7 +198,6 @@ STATE_FIELDS: Final = (
     ),
     Quantity("mark_high", "phase of the nearest one above", PITCHES, high=COUNT_HIGH),
     Quantity("slip", "direction of the gear's slip against dry resistance, -1 or +1; 0 while it is stuck"),
-    flag("slipping", "1 once a slip has become faster than `rest_speed`"),
     flag("near", "1 for a flank close enough for any pair to touch", shape=(2,)),
     count("last_flank", "flank of the last onset, -1 before the first", low=-1, high=1),
     flag("bound_exceeded", "1 once a pair has been below the lowest gap"),

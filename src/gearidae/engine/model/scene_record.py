@@ -81,7 +81,8 @@ POPULATION: Final = record_type(
 )
 
 FRICTION: Final = record_type(  # of flanks and hubs
-    ("on", INT),  # 1 if anything has friction
+    ("on", INT),  # 1 if anything dry resists: flanks, hubs or the load
+    ("rubs", INT),  # 1 if flanks or hubs do, whose friction depends on the forces of the pairs
     ("flanks", INT),  # 1 if flanks have
     ("even", REAL),  # coefficient of all materials; 0 where they differ, or the law is another [1]
     ("scale", REAL, (MATERIALS,)),  # limits of the materials' friction, as `force_scale` [F]
@@ -196,7 +197,6 @@ SCENE: Final = record_type(
     ("stop", INT),  # what ends the run before its time: see `STOPS`
     ("stop_from", REAL),  # position of the gear from which its turns are counted [pb]
     ("stop_pitches", REAL),  # pitches of the turns that end the run [pb]
-    ("rest_speed", REAL),  # smallest slip speed that counts as motion [sigma/tau]
     ("root_limit", INT),  # roots in succession allowed to be closer than `root_spacing` [1]
     ("root_spacing", REAL),  # times 1 + t [tau]
     ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]

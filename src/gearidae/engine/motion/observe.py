@@ -6,10 +6,11 @@ import math
 
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import SOLVER
+from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.motion.separation import separation
-from gearidae.engine.motion.shafts import friction_at_gear, is_stuck, resisting_force
+from gearidae.engine.motion.shafts import friction_at_gear, resisting_force
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
 from gearidae.engine.population.forces import asperities_joined
@@ -55,10 +56,14 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.gear_angle] = angle_of_shaft(m, LOAD, u, phase)
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
-    contact, resistance = force + mesh.relief, 0.0
-    if m.scene.friction.on != 0:
+    contact = force + mesh.relief
+    if m.scene.friction.rubs != 0:
         friction, resistance = friction_at_gear(m, t, y)
         contact += friction
+    elif m.state.hold == FREE:
+        resistance = resisting_force(m, t, u, phase, w)
+    else:
+        resistance = contact
     row[GEAR.gear_contact_torque] = radius * contact * m.scene.force_unit
     drive_gap = coast_gap = math.inf
     touching = 0
@@ -75,8 +80,6 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.pairs_in_contact] = touching
     turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
     drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
-    if m.scene.friction.on == 0:
-        resistance = force + mesh.relief if is_stuck(m) else resisting_force(m, t, u, phase, w)
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)

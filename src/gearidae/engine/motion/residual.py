@@ -66,7 +66,7 @@ def residual(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
 def motion_slopes(m: Model, t: float, y: Floats) -> AccelerationSlopes:
     """Slopes of the accelerations at a state, at fixed deflections; the forces of the pairs are noted."""
     mesh = mesh_forces(m, t, y, False)
-    if m.scene.friction.on != 0:
+    if m.scene.friction.rubs != 0:
         note_limits(m, t, y)
     return acceleration_slopes(m, y, mesh)
 

@@ -15,7 +15,7 @@ from gearidae.engine.friction.forces import (
     without_drag,
 )
 from gearidae.engine.friction.pairs import direction, levers, set_limits
-from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR
+from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR, HELD_PAIR
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.pair_force import MeshForces
@@ -71,27 +71,23 @@ def pinion_speed(m: Model, y: Floats) -> tuple[float, float]:
 def resisting_force(m: Model, t: float, u: float, phase: float, w: float) -> float:
     """Resistance at the gear over R2, scaled: dry in the direction of slip, and both drags (Eq. 2)."""
     force = m.scene.drag * w * abs(w) + m.scene.viscous * w
-    if m.scene.dry != 0 and m.state.slip != 0.0:
+    if m.scene.dry != 0:
         angle = torque_angle(m, LOAD, u, phase)
         force += m.state.slip * max(torque_force(m, LOAD, t, angle, w), 0.0)
     return force
 
 
-@compiled
-def is_stuck(m: Model) -> bool:
-    """Whether dry resistance holds the gear at rest."""
-    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
-
-
 @compiled(inline=True)
 def accelerations(m: Model, t: float, y: Floats, s: Shafts) -> tuple[float, float]:
     """Accelerations of both base circles, with friction and the resistance at the gear."""
-    if m.scene.friction.on != 0:
+    if m.scene.friction.rubs != 0:
         return rubbed_accelerations(m, t, y, s.turn, s.pinion, s.gear)
-    gear = 0.0
-    if not is_stuck(m):
+    pinion, gear = m.scene.pinion_inverse_mass * s.pinion, 0.0
+    if m.state.hold == FREE:
         gear = m.scene.gear_inverse_mass * (s.gear - resisting_force(m, t, y[U], y[PHASE], y[W]))
-    return m.scene.pinion_inverse_mass * s.pinion, gear
+    elif m.state.hold == AT_REST:
+        pinion = 0.0
+    return pinion, gear
 
 
 # -- slopes ----------------------------------------------------------------------------------------------------------
@@ -149,7 +145,7 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
     f = Slopes(
         m.scene.pinion_inverse_mass,
         0.0,
-        0.0 if is_stuck(m) else a2,
+        a2 if m.state.hold == FREE else 0.0,
         0.0,
         0.0,
         0.0,
@@ -159,7 +155,7 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
         0.0,
         0.0,
     )
-    if m.scene.friction.on != 0:
+    if m.scene.friction.rubs != 0:
         f = _friction_slopes(m, y)
     drag = 2.0 * m.scene.drag * abs(y[W]) + m.scene.viscous
     gain, damping = m.scene.speed_gain, m.scene.damping

@@ -124,7 +124,6 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     _set_resistances(s, mesh.damping, drive, load)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
     s.dry = int(load.is_dry)
-    s.rest_speed = 10.0 * scene.run.rtol
     widest = math.sqrt(0.25 / float(s.sum_curvature))
     unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
     if scene.contact.model == "population":
@@ -143,7 +142,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     # an error in the phase matters by the gap it opens where tip relief is steepest
     steepest = float(s.relief_curvature * s.reach)
     model = _model(s, tables, [1.0, 1.0, 1.0 / steepest if steepest > 0.0 else 1.0, 1.0])
-    model.state.slip = np.sign(start.gear_speed) if s.dry else 1.0
+    model.state.slip = 1.0
     for which in range(SCHEDULES):
         ends = segment_ends(s.schedule[which], model.tables)
         model.state.segment[which] = int((ends <= s.start).sum())
@@ -325,7 +324,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         make_part_ready(FRICTION)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
-    s.follow.friction = int(scene.run.balance and s.friction.on != 0)
+    s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
     if s.follow.balance != 0:
         open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]

@@ -28,9 +28,10 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
     """
     own = s.friction
     s.noting = int(scene.run.exposures > 0 or has_friction(scene))
-    if not has_friction(scene):
+    own.rubs, own.flanks = int(has_friction(scene)), int(has_flank_friction(scene))
+    own.on = int(own.rubs != 0 or s.dry != 0)
+    if own.rubs == 0:
         return
-    own.on, own.flanks = 1, int(has_flank_friction(scene))
     own.pinion_lever = float(s.base_pitch) / float(s.pinion_radius)
     own.gear_lever = float(s.base_pitch) / float(s.gear_radius)
     own.radii = 1.0 / float(s.sum_curvature)

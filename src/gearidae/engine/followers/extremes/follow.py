@@ -8,13 +8,13 @@ from gearidae.engine.followers.extremes.forces import first_force, follow_force,
 from gearidae.engine.followers.extremes.speeds import (
     come_to_stand,
     follow_speed,
+    is_pulled_back,
     next_part,
     note_hold,
     note_speed,
 )
 from gearidae.engine.followers.standing import follow as standing
 from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
-from gearidae.engine.motion.dry_limit import is_pulled_back
 from gearidae.engine.motion.separation import rigid_separation, separation
 
 

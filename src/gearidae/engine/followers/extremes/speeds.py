@@ -9,12 +9,14 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from gearidae.compiled import compiled
+from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap
+from gearidae.engine.compiling import SOLVER
 from gearidae.engine.followers.standing.free_torques import slowest_period
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
-from gearidae.engine.model.state import Floats, Model, Record
-from gearidae.engine.motion.dry_limit import is_pulled_back
+from gearidae.engine.friction.forces import NO_FORCE, dry_force
+from gearidae.engine.model.state import Floats, Model, Record, U, V
+from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.records import RUN_PARTS
 
 HELD_WITHIN: Final = 0.5
@@ -94,6 +96,15 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
         else:
             high = middle
     return high
+
+
+@compiled_once(SOLVER)
+def is_pulled_back(m: Model, t: float, y: Floats) -> bool:
+    """Whether the drive flank pulls a gear back whose speed falls to zero, by more than dry resistance holds."""
+    mesh = forces_at(m, t, y)
+    pull = -(mesh.force + mesh.relief)
+    held_up_to = m.scene.damping * y[V] + (dry_force(m, t, y) + NO_FORCE if m.scene.dry != 0 else 0.0)
+    return bool(y[U] > 0.0 and pull > max(held_up_to, 0.0))
 
 
 @compiled

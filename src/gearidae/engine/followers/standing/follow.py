@@ -99,9 +99,7 @@ def resume(m: Model, t: float, y: Floats, before: float) -> None:
 @compiled
 def is_at_rest(m: Model) -> bool:
     """Whether all that is dry holds the gear."""
-    if m.scene.friction.on != 0:
-        return bool(m.state.hold == AT_REST or m.state.hold == HELD_GEAR)
-    return bool(m.scene.dry != 0 and m.state.slip == 0.0)
+    return bool(m.state.hold == AT_REST or m.state.hold == HELD_GEAR)
 
 
 @compiled_once(SOLVER)

@@ -16,8 +16,8 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.followers.standing.free_torques import enter_segments, excess, free_torque
 from gearidae.engine.formulas.interpolation import cubic
+from gearidae.engine.friction.forces import NO_FORCE
 from gearidae.engine.model.state import DRIVE, LOAD, Model
-from gearidae.engine.motion.dry_limit import NO_FORCE
 
 TOLERANCE: Final = 1e-5
 """Relative error of speed and travel in a step; of the travel also this many tenths of a pitch."""

@@ -91,6 +91,6 @@ def _holding(m: Model, at_rest: bool, held: float) -> Holding:
         found |= Holding.HUB_FRICTION
     if at_rest and friction.flanks != 0:
         found |= Holding.FLANK_FRICTION
-    if not at_rest or (held > 0.0 and friction.on == 0):
+    if not at_rest or (held > 0.0 and friction.rubs == 0):
         found |= Holding.ADHESION
     return found
