@@ -15,6 +15,7 @@ from gearidae.engine.model.record_types import (
     SCHEDULES,
     record_type,
 )
+from gearidae.records.quantity import Unit
 
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # force per sqrt(radius / pb), with the material's share of the surface [F]
@@ -108,6 +109,12 @@ FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
     ("exposures", INT),  # exposures of the flanks
 )
 
+_PER_SPEED: Final = Unit("F tau/sigma", "N s m-1", force=1, length=-1, time=1)
+KEYED: Final = {
+    "damping": ("mesh.damping", _PER_SPEED),
+}
+"""Numbers that are those of a key of the scene, in the units of the run: 0 of a roller."""
+
 SCENE: Final = record_type(
     ("follow", FOLLOW),
     ("kind", INT),  # GEARS or ROLLER
@@ -131,7 +138,7 @@ SCENE: Final = record_type(
     ("start_radius", REAL),  # pinion's radius of curvature where contact begins [pb]
     ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature [1/pb]
     ("radius_force", INT),  # 1 if a force pays for the changing contact length
-    ("damping", REAL),  # viscous mesh damping [F tau/sigma]
+    *((name, REAL) for name in KEYED),
     ("drag", REAL),  # force per squared surface velocity [F tau^2/sigma^2]
     ("viscous", REAL),  # force per surface velocity [F tau/sigma]
     ("dry", INT),  # 1 if there is dry resistance at the gear

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from operator import attrgetter
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS
+from gearidae.engine.model.scene_record import KEYED
 from gearidae.engine.model.state import (
     DRIVE,
     GEARS,
@@ -121,7 +123,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
         geometry.base_pitch / float(s.gear_radius),
     )
     s.radius_force = int(mesh.radius_force)
-    _set_resistances(s, mesh.damping, drive, load)
+    _set_keyed(s, scene)
+    _set_resistances(s, drive, load)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
     s.dry = int(load.is_dry)
     widest = math.sqrt(0.25 / float(s.sum_curvature))
@@ -207,10 +210,15 @@ def _set_units(s: Record, scene: Scene) -> None:
     s.pinion_inverse_mass, s.gear_inverse_mass = mass / pinion_mass, mass / gear_mass
 
 
-def _set_resistances(s: Record, damping: float, drive: Drive, load: Load) -> None:
-    """Set forces per speed: of mesh damping [N s/m], of both drags and of a drive that holds a speed."""
+def _set_keyed(s: Record, scene: Scene) -> None:
+    """Set the numbers that a key of the scene says."""
+    for name, (key, unit) in KEYED.items():
+        s[name] = attrgetter(key)(scene) / unit.in_si(s)
+
+
+def _set_resistances(s: Record, drive: Drive, load: Load) -> None:
+    """Set forces per speed: of both drags and of a drive that holds a speed."""
     speed, force = float(s.length_unit) / float(s.time_unit), float(s.force_unit)
-    s.damping = damping * speed / force
     s.drag = load.drag / float(s.gear_radius) ** 3 * speed**2 / force
     s.viscous = load.viscous / float(s.gear_radius) ** 2 * speed / force
     s.speed_gain = drive.speed_gain / float(s.pinion_radius) ** 2 * speed / force
