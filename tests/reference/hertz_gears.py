@@ -19,9 +19,9 @@ from gearidae.mesh import curvature_radii, separation
 class HertzGears:
     """Equations of motion of a scene whose asperities do not adhere."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, film_reach=0.0):
         assert scene.contact.asperity == "hertz"
-        self.scene, self.geometry = scene, scene.geometry
+        self.scene, self.geometry, self.film_reach = scene, scene.geometry, film_reach
         sigma = scene.surface.roughness
         self.far, self.deepest = 12.0 * sigma, -30.0 * sigma  # trial steps only get deeper
         gaps = np.linspace(self.deepest, self.far, 6001)
@@ -46,6 +46,14 @@ class HertzGears:
             slope -= h.order * h.amplitude * math.sin(h.order * angle + h.phase)
         return e, slope
 
+    def film(self, gaps):
+        """Damping of the films [N s/m]."""
+        mesh = self.scene.mesh
+        if mesh.film_damping == 0.0:
+            return 0.0
+        damping = mesh.film_damping * (mesh.film_gap / (mesh.film_gap + np.maximum(gaps, 0.0))) ** 3
+        return np.where(gaps < self.film_reach, damping, 0.0)
+
     def rates(self, t, y):
         scene, geometry = self.scene, self.geometry
         pinion, gear, w1, w2 = y
@@ -65,6 +73,8 @@ class HertzGears:
             if near.any():
                 radius = curvature_radii(geometry, xi[near])[2]
                 load = sign * np.sqrt(radius) * np.exp(self.log_force(np.maximum(gaps[near], self.deepest)))
+                u_rate = (r1 - slope) * w1 - r2 * w2
+                load -= sign * self.film(gaps[near]) * (sign * r2 * w2 * steepness[near] - sign * u_rate)
                 along_line += load.sum()
                 on_gear += r2 * (load * (1.0 + steepness[near])).sum()
         torques = []

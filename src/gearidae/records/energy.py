@@ -27,6 +27,7 @@ ENERGY_SUMS: Final = (
     _loss("drag_loss", "energy lost to drag", archive=True, group="useful"),
     _loss("dry_loss", "energy lost to dry resistance", archive=True, group="useful"),
     _loss("damping_loss", "energy lost to the mesh's viscous damping", archive=True),
+    _loss("film_loss", "energy lost to films of gas between flanks", archive=True, since="0.3"),
     _loss("adhesion_loss", "energy lost to adhesion", archive=True),
     _loss(
         "flank_loss",

@@ -128,6 +128,15 @@ class Mesh(Group):
     damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
         default=0.0, description="viscous damping of the transmission error; it acts without contact, too"
     )
+    film_damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
+        default=0.0, description="damping of the film of gas between two flanks whose gap is zero"
+    )
+    film_gap: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, least=1e-10, shown=("nm", -9))] = (
+        Field(
+            default=0.0,
+            description="height that the film has besides the gap: its damping falls with the third power of both",
+        )
+    )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(
         default=(), description="harmonics of the static transmission error, a list of tables"
     )
@@ -135,3 +144,9 @@ class Mesh(Group):
         default=True,
         description="whether the changing radius of curvature pushes the gear, so that energy is conserved",
     )
+
+    @model_validator(mode="after")
+    def _film_has_a_height(self) -> Mesh:
+        if self.film_damping > 0.0 and self.film_gap == 0.0:
+            raise SceneError("film_gap", self.film_gap, "must be above 0 where film_damping is")
+        return self

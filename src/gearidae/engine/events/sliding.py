@@ -1,9 +1,10 @@
 """Events of all that is dry: a flank begins to rub or ends, sliding turns round, sticks and slips, gears come to rest.
 
-Friction of flanks, hubs and the dry resistance at the gear are set-valued elements. The directions of slip are part of the state. Each element that slips has its speed for a guard, and what is held the
-distance of its friction from the limit. A guard that has fallen is dealt with by one decision: alone, an element is
-held if its friction needs to be no larger than its limit; where both gears stand still, all elements are decided on at
-once (`gearidae.engine.friction.rest`).
+Friction of flanks, hubs and the dry resistance at the gear are set-valued elements, whose directions of slip are part
+of the state. Each element that slips has its speed for a guard, and what is held the distance of its friction from the
+limit. A guard that has fallen is dealt with by one decision: alone, an element is held if its friction needs to be no
+larger than its limit; where both gears stand still, all elements are decided on at once
+(`gearidae.engine.friction.rest`).
 """
 
 from __future__ import annotations

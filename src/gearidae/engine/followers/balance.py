@@ -52,6 +52,7 @@ from gearidae.engine.formulas.quadrature import (
 )
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
+from gearidae.engine.pairs.squeeze_film import film_loss
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
     gap_and_rate,
@@ -309,6 +310,11 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
         e.damping_loss += m.scene.damping * square
         e.loss_error += m.scene.damping * error
         taken += m.scene.damping * square
+    if m.scene.film_damping != 0.0:
+        lost, error = film_loss(m, h, y, yp)
+        e.film_loss += lost
+        e.loss_error += error
+        taken += lost
     _note_resistance(m, t, gear, y, yp)
     e.throughput += taken
 

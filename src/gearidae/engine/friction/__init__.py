@@ -1,1 +1,1 @@
-"""All that is dry, friction of flanks and hubs and the dry load: limits, accelerations, and what holds gears at rest."""
+"""All that is dry, friction of flanks and hubs and the dry load: limits, accelerations, gears at rest."""

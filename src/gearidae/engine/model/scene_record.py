@@ -15,7 +15,7 @@ from gearidae.engine.model.record_types import (
     SCHEDULES,
     record_type,
 )
-from gearidae.records.quantity import Unit
+from gearidae.records.quantity import LENGTH, Unit
 
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # force per sqrt(radius / pb), with the material's share of the surface [F]
@@ -112,6 +112,8 @@ FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
 _PER_SPEED: Final = Unit("F tau/sigma", "N s m-1", force=1, length=-1, time=1)
 KEYED: Final = {
     "damping": ("mesh.damping", _PER_SPEED),
+    "film_damping": ("mesh.film_damping", _PER_SPEED),
+    "film_gap": ("mesh.film_gap", LENGTH),
 }
 """Numbers that are those of a key of the scene, in the units of the run: 0 of a roller."""
 

@@ -2,7 +2,8 @@
 
 Laws are additive. The asperities of a pair have one of three: that of many surfaces on average
 (`gearidae.engine.pairs.tooth_pairs.pair_force`), the nodes of elastic bodies (`gearidae.engine.elastic`), or asperities
-one by one (`gearidae.engine.population.forces`). The curvature of the flanks and their attraction are added to it.
+one by one (`gearidae.engine.population.forces`). The curvature of the flanks, their attraction and the film of gas
+between them are added to it.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from gearidae.engine.pairs.pair_force import (
     both_forces,
     of_contact,
 )
+from gearidae.engine.pairs.squeeze_film import film_force
 from gearidae.engine.pairs.tooth_pairs import (
     PairState,
     acts,
@@ -65,6 +67,8 @@ def force_of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool
         force = both_forces(force, curvature_force(m, t, y, pair))
     if m.scene.attracts != 0:
         force = both_forces(force, attraction_force(m, y, pair))
+    if m.scene.film_damping != 0.0:
+        force = both_forces(force, film_force(m, pair))
     return force
 
 
