@@ -24,9 +24,18 @@ from gearidae.engine.model.checkpoint_record import STATE_FIELDS
 from gearidae.records import EventKind, Flank
 from gearidae.records.quantity import Quantity
 from gearidae.scene import describe_keys
+from gearidae.scene.combinations import FEATURES, REFUSED
 from gearidae.studies.declared import studies
 
-__all__ = ["command_tables", "dataset_tables", "key_table", "state_tables", "study_tables", "write_tables"]
+__all__ = [
+    "combination_tables",
+    "command_tables",
+    "dataset_tables",
+    "key_table",
+    "state_tables",
+    "study_tables",
+    "write_tables",
+]
 
 
 def write_tables(folder: Path) -> None:
@@ -38,6 +47,7 @@ def write_tables(folder: Path) -> None:
         ("commands", command_tables()),
         ("studies", study_tables()),
         ("state", state_tables()),
+        ("combinations", combination_tables()),
     ):
         target = folder / f"{name}.inc.md"
         if not target.exists() or target.read_text(encoding="utf-8") != text:
@@ -139,6 +149,17 @@ def _unit_of(declared: str) -> str:
 def state_tables() -> str:
     """List what a checkpoint carries, from the declarations in `gearidae.engine.model.checkpoint_record`."""
     return "\n".join(_record_tables("state", "STATE", STATE_FIELDS))
+
+
+def combination_tables() -> str:
+    """List the features of a scene with those that they are refused with, and the reasons."""
+    rows = []
+    for name, feature in FEATURES.items():
+        others = [other for pair in REFUSED if name in pair for other in pair if other != name]
+        rows.append((name, f"`{feature.key}`", ", ".join(others) or "none"))
+    reasons = [(f"{first}, {second}", reason) for (first, second), reason in REFUSED.items()]
+    features = _table(("feature", "key", "refused beside"), rows)
+    return f"{features}\n{_table(('pair', 'reason'), reasons)}"
 
 
 def _record_tables(access: str, title: str, fields: Iterable[Quantity]) -> Iterator[str]:

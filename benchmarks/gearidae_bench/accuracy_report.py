@@ -39,7 +39,7 @@ that the limit is correct; the tests of the elastic contact do.
 
 **Cases.** The low-speed case is run for 20 ms and the high-speed case for 0.5 ms. Run-up, braking and alternating
 torque are run for a hundredth of their duration. Their torque schedules are faster by the same factor, so that the
-gears still break away, stop and change their speed. Rollers are run with both contact models. In the names of the
+gears still break away, stop and change their speed. Rollers are run with rigid and elastic bodies. In the names of the
 cases, "whole" means full coverage, "worn" 60 % coverage and "bare" no coverage.
 """
 _ADVICE = """\

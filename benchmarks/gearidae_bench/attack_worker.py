@@ -22,8 +22,9 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.errors import SceneError
-from gearidae.records import EnergyBalance, EventKind, sampled_columns
+from gearidae.records import EnergyBalance, EventKind
 from gearidae.scene import Scene
+from gearidae.scene.sampled import columns_of
 from gearidae_bench.extreme_scenes import Extreme, extreme_friction, extreme_population, extreme_scene
 
 __all__ = [
@@ -127,12 +128,12 @@ class _Enough(Exception):  # noqa: N818 - not an error: the way out of a run tha
 
 
 def warm_up() -> None:
-    """Compile and load both drivers and both contact models."""
+    """Compile and load both drivers, with rigid and elastic bodies."""
     for backend in ("native", "sksundae"):
         for name in ("teodorescu2009", "roller_slow"):
-            for model in ("asperity", "elastic"):
+            for bodies in ("rigid", "elastic"):
                 # samples between steps: interpolation is compiled too
-                short = {"contact.model": model, "run.duration": 1e-6, "run.samples": 2001}
+                short = {"contact.bodies": bodies, "run.duration": 1e-6, "run.samples": 2001}
                 with contextlib.suppress(SceneError):  # no native driver here
                     gd.simulate(gd.preset(name).replace(short), backend=backend)
 
@@ -238,7 +239,7 @@ def run_scene(
     -------
     Followed
     """
-    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
+    columns = columns_of(scene)
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, EVENT_NUMBERS))]
     found = Followed(rows[0], events[0])
     started = time.perf_counter()

@@ -138,7 +138,7 @@ def run_benchmark(
         report("start of a new process")
         result.start = measure_start()
     for bench in scenes:
-        jumps = bench.scene.contact.model == "population"
+        jumps = bench.scene.contact.is_discrete
         chosen = [c for c in able if c.jumps or not jumps]
         reference, points, first_calls = measure_scene(bench, chosen, settings, report)
         result.references[bench.name] = reference.provenance

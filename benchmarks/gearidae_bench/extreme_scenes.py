@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from gearidae.asperities.area import AREAS
+from gearidae.asperities import has_area
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import GeometryError, mesh_geometry
 from gearidae.scene import Coating, Gears, Initial, Mesh, Roller, Run, Scene, Surface
@@ -119,7 +119,7 @@ def extreme_population(seed: int, number: int, alive: Callable[[], None] | None 
     extreme, rng = extreme_scene(seed, number, alive), np.random.default_rng([seed, number, 18])
     scene, sigma = extreme.scene, extreme.scene.surface.roughness
     changes: dict[str, Any] = {
-        "contact.model": "population",
+        "contact.roughness": "discrete",
         "contact.seed": int(rng.integers(0, 2**32)),
         "run.asperity_events": bool(rng.random() < 0.7),
     }
@@ -167,7 +167,7 @@ def extreme_friction(seed: int, number: int, alive: Callable[[], None] | None = 
     extreme = next(
         one for k in range(_TRIES) if (one := draw(seed, number + k * _APART, alive)).scene.gears is not None
     )
-    model = {"contact.model": "population" if number % 2 else "asperity"}
+    model = {"contact.bodies": "rigid", "contact.roughness": "discrete" if number % 2 else "statistical"}
     for _ in range(_TRIES):
         try:
             return Extreme(extreme.scene.replace(model | _friction(rng, extreme.scene)), extreme.backend)
@@ -179,7 +179,7 @@ def extreme_friction(seed: int, number: int, alive: Callable[[], None] | None = 
 def _friction(rng: np.random.Generator, scene: Scene) -> dict[str, Any]:
     """Draw friction of flanks, and of hubs in every second scene."""
     assert scene.gears is not None
-    if scene.contact.asperity in AREAS and rng.random() < 0.3:
+    if has_area(scene.contact.asperity) and rng.random() < 0.3:
         drawn: dict[str, Any] = {
             "contact.friction_law": "shear",
             "contact.shear_strength": 10.0 ** rng.uniform(3.0, 10.0),
@@ -290,7 +290,7 @@ def _tables(draw: _Draw, rolls: bool) -> dict[str, Any]:
             "energy": draw.value(Coating, "energy", 0.1),
         },
         "contact": {
-            "model": str(draw.rng.choice(["auto", "asperity", "elastic"])),
+            "bodies": str(draw.rng.choice(["auto", "rigid", "elastic"])),
             "asperity": str(draw.rng.choice(["jkr", "dmt", "hertz"], p=[0.6, 0.2, 0.2])),
         },
     }

@@ -43,9 +43,9 @@ PATIENCE = 120.0
 _LOW = gd.preset("teodorescu2009_low_speed")
 _SHORT = {"run.duration": "8 ms", "run.samples": 101}
 FORGED_SCENES: Final = {
-    "gears": _LOW.replace({**_SHORT, "contact.model": "asperity"}),
-    "gears, elastic": _LOW.replace({"run.duration": "2 ms", "run.samples": 101, "contact.model": "elastic"}),
-    "roller": gd.preset("roller_slow").replace({"run.samples": 101, "contact.model": "asperity"}),
+    "gears": _LOW.replace({**_SHORT, "contact.bodies": "rigid"}),
+    "gears, elastic": _LOW.replace({"run.duration": "2 ms", "run.samples": 101, "contact.bodies": "elastic"}),
+    "roller": gd.preset("roller_slow").replace({"run.samples": 101, "contact.bodies": "rigid"}),
 }
 """Scenes whose checkpoints are forged, by name."""
 _CODES = (DONE, BAD_INPUT, UNFINISHED)

@@ -113,14 +113,14 @@ def measure_elastic(name: str = "high_sam", repeats: int = 5) -> dict[str, float
     ratios = {}
     for fraction in (1.0, 0.5, 0.0):
         scene = SCENES[name].scene.replace({"coating.sam_fraction": fraction})
-        times: dict[str, list[float]] = {"asperity": [], "elastic": []}
-        for model in times:
-            _drain(scene.replace({"contact.model": model}))
+        times: dict[str, list[float]] = {"rigid": [], "elastic": []}
+        for bodies in times:
+            _drain(scene.replace({"contact.bodies": bodies}))
         for _ in range(repeats):
-            for model, own in times.items():
-                run = scene.replace({"contact.model": model})
+            for bodies, own in times.items():
+                run = scene.replace({"contact.bodies": bodies})
                 own.append(_timed(lambda run=run: _drain(run), 1))  # type: ignore[misc]
-        ratios[f"{fraction:g}"] = statistics.median(times["elastic"]) / statistics.median(times["asperity"])
+        ratios[f"{fraction:g}"] = statistics.median(times["elastic"]) / statistics.median(times["rigid"])
     return ratios
 
 

@@ -72,7 +72,7 @@ _PRESETS: Final = {"high": "teodorescu2009", "low": "teodorescu2009_low_speed"}
 
 
 def _scene(speed: str, duration: float, changes: Mapping[str, Any]) -> Scene:
-    fixed = {"contact.model": "asperity", "run.samples": "off", "run.duration": duration}
+    fixed = {"contact.bodies": "rigid", "run.samples": "off", "run.duration": duration}
     return preset(_PRESETS[speed]).replace({**fixed, **changes})
 
 

@@ -48,17 +48,17 @@ def random_scene(seed: int, number: int) -> Scene:
     """
     surface, coating = _surface(np.random.default_rng([seed, number // SCENES_PER_SURFACE, 1]))
     rng = np.random.default_rng([seed, number, 2])
-    model = "asperity"
+    deflecting = "rigid"
     if number % ELASTIC_EVERY == ELASTIC_AT:
         bodies = np.random.default_rng([seed, number, 3])
         surface |= {"youngs_modulus": _log(bodies, 2e9, 400e9)}
-        model = str(bodies.choice(["elastic", "auto"]))
+        deflecting = str(bodies.choice(["elastic", "auto"]))
     data: dict[str, Any] = {
         "name": f"stress {seed}-{number}",
         "surface": surface | {"asperity_density": _log(rng, 1e12, 1e15)},
         "coating": coating | {"sam_fraction": float(rng.choice([0.0, 1.0, rng.random()], p=[0.2, 0.2, 0.6]))},
         "contact": {
-            "model": model,
+            "bodies": deflecting,
             "asperity": str(rng.choice(["jkr", "dmt", "hertz"], p=[0.8, 0.1, 0.1])),
         },
         "run": {"duration": 1e-6, "samples": 401, "rtol": _log(rng, 1e-10, 1e-3)},

@@ -114,7 +114,7 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
         "seed": 0,
         "radius_spread": 0.0,
         "friction": 0.0,
-        "friction_law": "net",
+        "friction_law": "coulomb",
         "shear_strength": 0.0,
     },
     "gears": {"hub_friction": 0.0, "pinion_hub_radius": 0.0, "gear_hub_radius": 0.0},

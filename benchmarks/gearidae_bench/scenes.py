@@ -38,9 +38,11 @@ class BenchScene:
 
 
 def _scene(
-    name: str, title: str, start: str, changes: Mapping[str, float], model: str = "asperity"
+    name: str, title: str, start: str, changes: Mapping[str, float], roughness: str = "statistical"
 ) -> BenchScene:
-    scene = preset(start).replace({**changes, "contact.model": model, "run.samples": SAMPLES})
+    scene = preset(start).replace(
+        {**changes, "contact.bodies": "rigid", "contact.roughness": roughness, "run.samples": SAMPLES}
+    )
     return BenchScene(name, title, scene)
 
 
@@ -48,7 +50,7 @@ def _population(name: str, words: str, fraction: float) -> BenchScene:
     """Real asperities at high speed, with 5 % of critical damping: without it, motions of worn teeth are chaotic."""
     changes = {"run.duration": 0.06e-3, "mesh.damping": 7e-6, "coating.sam_fraction": fraction}
     title = f"real asperities at high speed, {words}, damped, 0.06 ms"
-    return _scene(name, title, _HIGH, changes, "population")
+    return _scene(name, title, _HIGH, changes, "discrete")
 
 
 _LOW, _HIGH = "teodorescu2009_low_speed", "teodorescu2009"

@@ -16,7 +16,7 @@ import gearidae as gd
 COVERAGES = (1.0, 0.5, 0.0)
 SCENE = gd.preset("teodorescu2009").replace(
     {
-        "contact.model": "population",
+        "contact.roughness": "discrete",
         "run.duration": 1e-3,
         "run.samples": 2001,
         "run.asperity_events": False,

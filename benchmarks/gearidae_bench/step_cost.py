@@ -164,7 +164,7 @@ def _timed_run(duration: float, rtol: float) -> float:
 
 def _blocks(duration: float, rtol: float, statistics: Statistics | None = None) -> Iterator[Block]:
     """Run the scene of the table."""
-    changes = {"run.duration": duration, "run.samples": "off", "contact.model": "asperity"}
+    changes = {"run.duration": duration, "run.samples": "off", "contact.bodies": "rigid"}
     problem = make_problem(preset("teodorescu2009").replace(changes))
     return run_blocks(problem, rtol, 0, "native", statistics or Statistics())
 

@@ -17,6 +17,7 @@ from gearidae.contact.line import line_force
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.records import EnergyBalance, ExposureRows, Extremes
 from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene.combinations import may_deflect
 from gearidae.scene.friction import has_flank_friction
 
 __all__ = ["complaint_about", "complaint_about_exposures"]
@@ -101,7 +102,7 @@ def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Ex
     work, loss = float(sums[:, rows.adhesion : rows.sliding].sum()), balance.adhesion_loss
     # a gap may widen by an error of the motion before it is taken to turn: then the balance has lost less than joined
     tolerance = max(_ADHESION_TOLERANCE, scene.run.rtol)
-    if scene.contact.model != "asperity":
+    if may_deflect(scene):
         tolerance = max(tolerance, _ELASTIC_TOLERANCE)
     if abs(work - loss) > tolerance * abs(loss) + _ADHESION_NEGLECTED * balance.throughput:
         return f"the adhesion work of all places is {work:.3e} J, the adhesion loss {loss:.3e} J"

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from gearidae.scene import dump_case as dump_case
     from gearidae.scene import load_case as load_case
     from gearidae.scene import preset as preset
+    from gearidae.scene.combinations import combinations as combinations
     from gearidae.surfaces import surface_from as surface_from
     from gearidae.testing.comparison import compare as compare
     from gearidae.torques import register_torque as register_torque

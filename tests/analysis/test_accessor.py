@@ -14,7 +14,7 @@ from gearidae.archive.select import runs
 from gearidae.records import EventKind
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 11})
-ROLLER = gd.preset("roller_slow").replace({"run.samples": 11, "contact.model": "asperity"})
+ROLLER = gd.preset("roller_slow").replace({"run.samples": 11, "contact.bodies": "rigid"})
 FRACTIONS, TORQUES = [1.0, 0.5], [4e-18, 5e-18, 6e-18]
 OVER = {"coating.sam_fraction": FRACTIONS, "drive.torque": TORQUES}
 

@@ -20,7 +20,7 @@ SCENES = {
     },
     "high": HIGH,
     "high, bare": HIGH.replace({"coating.sam_fraction": 0.0}),
-    "roller": gd.preset("roller_fast").replace({"contact.model": "asperity"}),
+    "roller": gd.preset("roller_fast").replace({"contact.bodies": "rigid"}),
 }
 
 

@@ -12,7 +12,7 @@ import gearidae as gd
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3, "run.samples": 11})
 ELASTIC = gd.preset("roller_slow").replace(
-    {"contact.model": "elastic", "run.duration": 1e-7, "run.samples": 11}
+    {"contact.bodies": "elastic", "run.duration": 1e-7, "run.samples": 11}
 )
 UNIT = re.compile(
     r"(1|(m|s|kg|N|J|Pa|Hz|rad|K)(\^?-?\d+)?([ /](m|s|kg|N|J|Pa|Hz|rad|K)(\^?-?\d+)?)*|1/m\^2|1/s)"

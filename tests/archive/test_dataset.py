@@ -209,11 +209,11 @@ def test_runs_that_end_early_are_nan_from_there_on(make_solution):
 
 def test_words_and_lists_as_swept_values(make_solution):
     harmonics = [[], [{"amplitude": 1e-19, "frequency": 10.0, "phase": 0.0}]]
-    swept = {"contact.model": ["asperity", "elastic"], "drive.harmonic": harmonics}
+    swept = {"contact.bodies": ["rigid", "elastic"], "drive.harmonic": harmonics}
     scenes = [LOW.replace(dict(zip(swept, pair, strict=True))) for pair in itertools.product(*swept.values())]
     ds = combine(LOW, swept, scenes, [make_solution(scene) for scene in scenes])
-    assert ds.model.values.tolist() == ["asperity", "elastic"]
-    assert set(ds.event_model.values.tolist()) == {"asperity", "elastic"}
+    assert ds.bodies.values.tolist() == ["rigid", "elastic"]
+    assert set(ds.event_bodies.values.tolist()) == {"rigid", "elastic"}
     assert ds.harmonic.values.tolist() == [0, 1]
     assert json.dumps(harmonics) in ds.harmonic.attrs["comment"]
     assert ds.sam_fraction.item() == 1.0

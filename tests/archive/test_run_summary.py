@@ -216,7 +216,7 @@ def test_what_friction_takes_and_holds():
     """A loaded train that rings down to rest; its drive is held by the load and by the teeth."""
     scene = gd.preset("teodorescu2009").replace(
         {
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "contact.friction": 0.5,
             "load.torque": 1e-12,
             "drive.torque": 2.6e-13,

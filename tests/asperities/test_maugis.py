@@ -167,7 +167,7 @@ def test_what_is_no_range_is_refused():
 @pytest.mark.parametrize("fraction", [0.0, 0.5, 1.0])
 def test_an_impact_loses_what_its_asperities_cost(fraction):
     scene = gd.preset("roller_slow").replace(
-        {"coating.sam_fraction": fraction, "contact.model": "asperity", "contact.asperity": "maugis"}
+        {"coating.sam_fraction": fraction, "contact.bodies": "rigid", "contact.asperity": "maugis"}
     )
     scene = scene.replace({"run.duration": 3e-5, "run.samples": 40_001, "run.rtol": 1e-9})
     run = solve(scene)
@@ -188,7 +188,7 @@ def test_an_impact_loses_what_its_asperities_cost(fraction):
 def test_gears_on_coated_teeth_run_as_an_independent_integrator_has_them():
     """Speed at 0.1 s, printed with seven digits; the rough law's error of 1e-10 and the tolerance are far below."""
     scene = gd.preset("teodorescu2009_low_speed").replace(
-        {"contact.asperity": "maugis", "contact.model": "asperity", "coating.sam_fraction": 1.0}
+        {"contact.asperity": "maugis", "contact.bodies": "rigid", "coating.sam_fraction": 1.0}
     )
     run = solve(scene.replace({"run.duration": 0.1, "run.samples": 10_001, "run.rtol": 1e-8}))
     assert run.samples["gear_speed"][-1] == pytest.approx(1.499738, abs=2e-6)

@@ -278,7 +278,7 @@ def test_elastic_bodies_lose_what_their_springs_cost(silicon, spring):
 def impact(spring):
     """A roller on springs, half of them coated."""
     scene = gd.preset("roller_slow").replace(
-        {"coating.sam_fraction": 0.5, "contact.model": "asperity", "contact.asperity": "spring"}
+        {"coating.sam_fraction": 0.5, "contact.bodies": "rigid", "contact.asperity": "spring"}
     )
     return scene.replace({"run.duration": 3e-5, "run.samples": 40_001, "run.rtol": 1e-9})
 

@@ -31,7 +31,7 @@ SCENES = {bench.name: bench for bench in accuracy_scenes()}
 )
 def test_the_scenes_are_the_shipped_cases(file, name, share):
     case, scene = gd.load_case(CASES / f"{file}.toml"), SCENES[f"{name}, worn"].scene
-    changes = {"coating.sam_fraction": 0.6, "contact.model": scene.contact.model, "name": scene.name}
+    changes = {"coating.sam_fraction": 0.6, "contact.bodies": scene.contact.bodies, "name": scene.name}
     changes |= {f"run.{key}": getattr(scene.run, key) for key in ("duration", "samples")}
     if case.drive and case.drive.schedule:
         changes["drive.schedule"] = [[share * time, torque] for time, torque in case.drive.schedule]

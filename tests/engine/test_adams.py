@@ -140,7 +140,7 @@ def test_what_vibrates_at_the_tolerance_comes_to_rest(rtol):
     """
     scene = gd.preset("teodorescu2009_low_speed").replace(
         {
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "surface.roughness": "40 nm",
             "coating.energy": "1e-4 J/m^2",
             "initial.gear_speed": 0.0,

@@ -34,7 +34,7 @@ def test_every_case_runs_the_same_in_both(name, monkeypatch):
     if name in ("low_speed", "high_speed"):
         scene = scene.replace({"coating.sam_fraction": 0.5})
     if scene.roller is not None:  # the elastic contact's linear systems are solved in another way in each
-        scene = scene.replace({"contact.model": "asperity"})
+        scene = scene.replace({"contact.bodies": "rigid"})
     duration = SHORT[name] or scene.run.duration
     runs = [solve(scene, backend=b, t_end=duration, samples=501) for b in ("native", "sksundae")]
     native, portable = runs
@@ -92,7 +92,7 @@ def test_idas_own_formulas_come_to_the_same_motion(name, monkeypatch):
     """
     scene = gd.load_case(CASES / f"{name}.toml")
     if scene.roller is not None:
-        scene = scene.replace({"contact.model": "asperity"})
+        scene = scene.replace({"contact.bodies": "rigid"})
     duration = SHORT[name] or scene.run.duration
     ordinary = solve(scene, backend="native", t_end=duration, samples=501)
     monkeypatch.setattr(native_driver, "run", partial(native_driver.run, as_ida=True))

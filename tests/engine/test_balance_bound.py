@@ -111,7 +111,7 @@ def test_a_heavy_gear_is_known_no_better_than_its_speed():
         {
             "gears.pinion_inertia": 1e-10,
             "initial.gear_speed": 1e-2,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "run.rtol": 1e-8,
             "run.duration": "1 ms",
             "run.samples": "off",

@@ -16,7 +16,7 @@ from same import assert_same
 SCENE = gd.preset("teodorescu2009_low_speed").replace(
     {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 301}
 )
-FAST = gd.preset("teodorescu2009").replace({"contact.model": "asperity"})
+FAST = gd.preset("teodorescu2009").replace({"contact.bodies": "rigid"})
 
 
 def collect(blocks):

@@ -88,7 +88,7 @@ def test_an_impact_loses_the_adhesion_energy(fraction):
     scene = gd.preset("roller_slow").replace(
         {
             "coating.sam_fraction": fraction,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "run.duration": 3e-5,
             "run.samples": 80001,
             "run.rtol": 1e-9,
@@ -108,7 +108,7 @@ def test_an_impact_loses_the_adhesion_energy(fraction):
 
 def test_hertz_asperities_lose_nothing():
     scene = gd.preset("roller_slow").replace(
-        {"contact.asperity": "hertz", "contact.model": "asperity", "run.rtol": 1e-10}
+        {"contact.asperity": "hertz", "contact.bodies": "rigid", "run.rtol": 1e-10}
     )
     run = solve(scene)
     assert run.samples["speed"][-1] == pytest.approx(-run.samples["speed"][0], rel=1e-7, abs=0)

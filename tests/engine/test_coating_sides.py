@@ -18,7 +18,7 @@ from gearidae.engine import solve
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": "off"})
 SHORT = LOW.replace({"initial.mesh_phase": 0.6, "run.duration": "15 ms", "run.samples": 31})
-ROLLER = gd.preset("roller_slow").replace({"contact.model": "asperity", "run.samples": 2, "run.rtol": 1e-9})
+ROLLER = gd.preset("roller_slow").replace({"contact.bodies": "rigid", "run.samples": 2, "run.rtol": 1e-9})
 
 
 def coated(scene, first, second, **more):
@@ -139,7 +139,7 @@ def test_an_impact_loses_what_the_asperities_of_all_materials_cost():
         ({"contact.asperity": "hertz"}, "auto"),
         ({"run.duration": "1 ms"}, "sksundae"),
         ({"run.method": "bdf"}, "auto"),
-        ({"contact.model": "elastic", "run.duration": "4 ms"}, "auto"),
+        ({"contact.bodies": "elastic", "run.duration": "4 ms"}, "auto"),
     ],
 )
 def test_energy_closes_with_every_law_driver_and_body(changes, backend):

@@ -16,7 +16,7 @@ from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at, met_teeth
 from reference.gears import SlowGears
 
-LOW = gd.preset("teodorescu2009_low_speed").replace({"contact.model": "asperity", "run.samples": "off"})
+LOW = gd.preset("teodorescu2009_low_speed").replace({"contact.bodies": "rigid", "run.samples": "off"})
 SHORT = LOW.replace({"initial.mesh_phase": 0.6, "run.duration": "15 ms", "run.samples": 31})
 RANDOM = np.random.default_rng(7)
 PINION, GEAR = RANDOM.uniform(0.2, 0.8, (19, 5)), RANDOM.uniform(0.1, 0.9, (76, 3))

@@ -14,7 +14,7 @@ from gearidae.engine.setup.build import make_problem
 
 SHORT = gd.preset("teodorescu2009_low_speed").replace(
     {
-        "contact.model": "elastic",
+        "contact.bodies": "elastic",
         "initial.mesh_phase": 0.6,
         "run.duration": "3 ms",
         "run.samples": 31,
@@ -96,7 +96,7 @@ def test_power_of_the_change_along_the_path_is_what_the_stored_energy_gains(phas
 def test_the_model_of_rigid_bodies_ends_where_the_softest_material_would_deflect_them():
     """A place may be bare however much is covered on average: the limit of a table is that of bare flanks."""
     table = np.full((19, 4), 0.95)
-    scene = SHORT.replace({"contact.model": "auto"})
+    scene = SHORT.replace({"contact.bodies": "auto"})
     worn = make_problem(scene.replace({"coating.pinion_table": table})).model.scene.lowest_gap
     bare, whole = (
         make_problem(scene.replace({"coating.sam_fraction": f})).model.scene.lowest_gap for f in (0.0, 1.0)

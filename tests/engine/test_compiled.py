@@ -217,7 +217,7 @@ import gearidae as gd
 from gearidae.compiled import numba_options
 from gearidae.engine import solve
 assert numba_options() == frozenset()
-scene = gd.preset("teodorescu2009").replace({{"contact.model": "asperity", "run.method": "bdf"}})
+scene = gd.preset("teodorescu2009").replace({{"contact.bodies": "rigid", "run.method": "bdf"}})
 runs = [solve(scene, t_end=2e-5, samples=11, backend=b) for b in ("native", "sksundae")]
 assert np.array_equal(runs[0].events.time, runs[1].events.time)
 print([r.status for r in runs], len(runs[0].events), runs[0].samples["gear_speed"][-1].hex())

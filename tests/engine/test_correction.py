@@ -15,7 +15,7 @@ SMALL = st.floats(-1.0, 1.0)
 
 
 def problem_of(name, damping):
-    scene = gd.preset(name).replace({"coating.sam_fraction": 0.5, "contact.model": "asperity"})
+    scene = gd.preset(name).replace({"coating.sam_fraction": 0.5, "contact.bodies": "rigid"})
     if scene.mesh is not None and damping:
         scene = scene.replace({"mesh.damping": 1e-9, "initial.mesh_phase": 0.02})  # a pair on its tip relief
     return make_problem(scene)

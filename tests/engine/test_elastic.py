@@ -34,7 +34,7 @@ from gearidae_bench.random_scenes import random_scene
 
 
 def roller(name, fraction=0.0, **changes):
-    keys = {"contact.model": "elastic", "coating.sam_fraction": fraction, "run.samples": 20001}
+    keys = {"contact.bodies": "elastic", "coating.sam_fraction": fraction, "run.samples": 20001}
     return gd.preset(name).replace(keys | changes)
 
 
@@ -65,7 +65,7 @@ def test_approach_and_pull_off_of_figure_2(impacts):
 
 
 def test_rigid_bodies_would_double_the_force():
-    run = solve(roller("roller_fast", **{"contact.model": "asperity"}))
+    run = solve(roller("roller_fast", **{"contact.bodies": "rigid"}))
     assert run.samples["force"].max() == pytest.approx(1.1e-3, rel=0.05, abs=0)
 
 
@@ -141,7 +141,7 @@ def meshing(gap=1.0, phase=0.3, fraction=0.5):
     """Gears with two pairs in contact: one in the middle of the path, one held off by the tip relief."""
     scene = gd.preset("teodorescu2009").replace(
         {
-            "contact.model": "elastic",
+            "contact.bodies": "elastic",
             "coating.sam_fraction": fraction,
             "initial.gap": gap * 6e-9,
             "initial.mesh_phase": phase,
@@ -263,8 +263,8 @@ def test_settled_nodes_satisfy_their_equations():
 def test_gears_in_light_contact_hardly_notice():
     changes = {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 501}
     scene = gd.preset("teodorescu2009_low_speed").replace(changes)
-    rigid = solve(scene.replace({"contact.model": "asperity"}))
-    given = solve(scene.replace({"contact.model": "elastic"}))
+    rigid = solve(scene.replace({"contact.bodies": "rigid"}))
+    given = solve(scene.replace({"contact.bodies": "elastic"}))
     # loads of 1e-12 N deflect teeth by 1e-8 roughnesses; forces in the tail change by ten times as much
     for name in ("gear_speed", "transmission_error"):
         swing = np.ptp(rigid.samples[name])
@@ -274,7 +274,7 @@ def test_gears_in_light_contact_hardly_notice():
 
 
 def test_both_backends_agree():
-    gears = gd.preset("teodorescu2009").replace({"contact.model": "elastic", "coating.sam_fraction": 0.5})
+    gears = gd.preset("teodorescu2009").replace({"contact.bodies": "elastic", "coating.sam_fraction": 0.5})
     for scene, t_end in ((roller("roller_slow"), None), (gears, 1.5e-6)):
         native, portable = (solve(scene, samples=301, t_end=t_end, backend=b) for b in ("native", "sksundae"))
         assert native.status == portable.status == "finished"
@@ -309,7 +309,7 @@ def test_bound_of_the_asperity_model():
     """Where it is left, the static force is some 5 % below that of rigid bodies, as stated."""
     scene = gd.preset("teodorescu2009").replace({"coating.sam_fraction": 1.0})
     lowest = float(make_problem(scene).model.scene.lowest_gap)
-    gears = make_problem(scene.replace({"contact.model": "elastic", "initial.gap": lowest * 6e-9}))
+    gears = make_problem(scene.replace({"contact.bodies": "elastic", "initial.gap": lowest * 6e-9}))
     deflected = gears.start[4:].max()
     assert 0.5 * elastic.RIGID_DEFLECTION < deflected < elastic.RIGID_DEFLECTION
 
@@ -318,7 +318,7 @@ def test_bound_of_the_asperity_model():
 def test_run_changes_over_to_the_elastic_model(monkeypatch, backend):
     limit = elastic.rigid_limit
     monkeypatch.setattr(build_contact, "rigid_limit", lambda *a: (limit(*a)[0], True))
-    auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 1001})
+    auto = roller("roller_fast", **{"contact.bodies": "auto", "run.samples": 1001})
     chosen = make_problem(auto)
     blocks = list(run_blocks(chosen, 1e-6, 1001, backend, Statistics()))
     assert chosen.skipped["elastic_deflection"] == 0
@@ -333,7 +333,7 @@ def test_run_changes_over_to_the_elastic_model(monkeypatch, backend):
 def test_run_resumes_from_before_and_after_the_change(monkeypatch):
     limit = elastic.rigid_limit
     monkeypatch.setattr(build_contact, "rigid_limit", lambda *a: (limit(*a)[0], True))
-    auto = roller("roller_fast", **{"contact.model": "auto", "run.samples": 501})
+    auto = roller("roller_fast", **{"contact.bodies": "auto", "run.samples": 501})
     blocks = list(run_blocks(make_problem(auto), 1e-6, 501, "native", Statistics()))
     rows = np.concatenate([block.rows for block in blocks])
     (stop, last) = [k for k, block in enumerate(blocks) if block.checkpoint is not None]

@@ -22,7 +22,7 @@ RTOL = 1e-6
 def problem(gap=1.0, softness=1.0, opening=True):
     """Gears with two pairs in contact, some asperities stretched; bodies so many times as soft as silicon."""
     keys = {
-        "contact.model": "elastic",
+        "contact.bodies": "elastic",
         "coating.sam_fraction": 0.5,
         "initial.gap": gap * 6e-9,
         "initial.mesh_phase": 0.05,
@@ -189,7 +189,7 @@ def test_a_start_knows_its_deflections():
 )
 def test_both_formulations_agree(name, changes):
     """Deflections as unknowns beside the motion by IDA's formulas, and eliminated by those of Adams."""
-    scene = gd.preset(name).replace({"contact.model": "elastic", "run.samples": 301, **changes})
+    scene = gd.preset(name).replace({"contact.bodies": "elastic", "run.samples": 301, **changes})
     exact = solve(scene.replace({"run.method": "bdf", "run.rtol": 1e-10}))
     run = solve(scene.replace({"run.rtol": 1e-8}))
     assert (exact.statistics.method, run.statistics.method) == ("bdf", "adams")

@@ -66,7 +66,7 @@ def test_marks_crossed_in_flight_are_no_chatter():
 
 
 def test_a_contact_beyond_the_force_laws_tables_says_so():
-    scene = gd.preset("roller_fast").replace({"contact.model": "asperity", "roller.speed": 60.0})
+    scene = gd.preset("roller_fast").replace({"contact.bodies": "rigid", "roller.speed": 60.0})
     run = solve(scene)
     assert run.status == "deflection"
     assert "elastic" in run.message

@@ -54,7 +54,7 @@ def numbers(surface, width, radius):
 @pytest.mark.parametrize("fraction", [0.0, 0.5])
 def test_an_impact_loses_what_its_asperities_cost(fraction):
     scene = gd.preset("roller_slow").replace(
-        {"coating.sam_fraction": fraction, "contact.model": "asperity", "run.rtol": 1e-9}
+        {"coating.sam_fraction": fraction, "contact.bodies": "rigid", "run.rtol": 1e-9}
     )
     scene = scene.replace({"run.duration": 3e-5, "run.samples": 80_001})
     run = solve(scene)
@@ -141,7 +141,7 @@ def test_work_of_torques_that_change():
 
 
 def test_gears_without_adhesion_lose_nothing():
-    scene = HIGH.replace({"contact.asperity": "hertz", "contact.model": "asperity", "run.duration": 1e-4})
+    scene = HIGH.replace({"contact.asperity": "hertz", "contact.bodies": "rigid", "run.duration": 1e-4})
     balance = check(scene, solve(scene.replace({"run.samples": "off"})))
     assert balance.adhesion_loss == 0.0
     # without the work of the changing radius the books would not balance by far
@@ -156,7 +156,7 @@ def test_energies_of_the_sampled_motion():
     scene = LOW.replace(
         {
             "coating.sam_fraction": 0.5,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "initial.mesh_phase": 0.8,  # one pair on the path of contact, no other within reach
             "initial.gap": 5.5 * 6e-9,
             "run.duration": 3e-3,
@@ -255,12 +255,12 @@ CASES_OF_ALL_KINDS = {
             "coating.sam_fraction": 0.5,
         }
     ),
-    "elastic gears": HIGH.replace({"run.duration": 2e-5, "contact.model": "elastic"}),
+    "elastic gears": HIGH.replace({"run.duration": 2e-5, "contact.bodies": "elastic"}),
     "slow roller": gd.preset("roller_slow"),
     "fast roller": gd.preset("roller_fast"),
     "coated roller": gd.preset("roller_slow").replace({"coating.sam_fraction": 1.0}),
     "stretchy roller": gd.preset("roller_slow").replace(
-        {"surface.roughness": "1 nm", "contact.model": "asperity"}
+        {"surface.roughness": "1 nm", "contact.bodies": "rigid"}
     ),
     "start-up": start_up(),
     "braking": braking(),
@@ -364,7 +364,7 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
         "drive.harmonic": [{"amplitude": amplitude, "frequency": frequency}],
         "load.drag": 0.0,
         "mesh.damping": 1e-6,
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "run.duration": 5e-5,
         "run.rtol": 1e-9,
         "run.samples": "off",
@@ -378,7 +378,7 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
 
 def test_pairs_that_turn_round_between_two_looks():
     """Steps and losses are the same wherever the balance looks, and the work of the radius nearly so."""
-    scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.model": "asperity"})
+    scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.bodies": "rigid"})
     often, seldom = make_problem(scene), make_problem(scene)
     often.model.scene.balance_span = 0.0  # at every step and every root
     balances = [

@@ -14,8 +14,8 @@ HIGH = gd.preset("teodorescu2009").replace({"coating.sam_fraction": 0.3, "run.du
 SCENES = {
     "vibrating": LOW.replace({"initial.gap": 5.2 * 6e-9}),
     "rattling": HIGH.replace({"initial.gap": 3e-8, "load.torque": 1e-11}),
-    "impact": gd.preset("roller_slow").replace({"contact.model": "asperity"}),
-    "elastic impact": gd.preset("roller_slow").replace({"contact.model": "elastic"}),
+    "impact": gd.preset("roller_slow").replace({"contact.bodies": "rigid"}),
+    "elastic impact": gd.preset("roller_slow").replace({"contact.bodies": "elastic"}),
 }
 
 

@@ -36,7 +36,7 @@ def worn():
 @pytest.fixture(scope="module")
 def sampled():
     """Without adhesion, so that forces follow from the samples alone; 200 samples to a vibration of the contact."""
-    changes = {"contact.asperity": "hertz", "contact.model": "asperity", "run.exposures": 9}
+    changes = {"contact.asperity": "hertz", "contact.bodies": "rigid", "run.exposures": 9}
     return gd.simulate(
         LOW.replace({**changes, "run.duration": 0.08, "run.samples": 80_001, "run.rtol": 1e-8})
     )
@@ -47,7 +47,7 @@ def damped():
     """The same with so much damping that nothing vibrates and steps are long; pairs relieve each other seven times."""
     changes = {
         "contact.asperity": "hertz",
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "run.exposures": 9,
         "mesh.damping": 1e-8,
     }
@@ -159,7 +159,7 @@ def test_sums_at_a_usual_tolerance_are_those_at_a_tight_one():
 @pytest.fixture(scope="module")
 def rebounding():
     """Driven so lightly that the gears fly apart, beyond all forces, and touch for a few steps at a time."""
-    changes = {**OFF, "run.exposures": 4, "run.duration": 1e-3, "run.rtol": 1e-4, "contact.model": "asperity"}
+    changes = {**OFF, "run.exposures": 4, "run.duration": 1e-3, "run.rtol": 1e-4, "contact.bodies": "rigid"}
     light = {"drive.torque": 1e-17, "load.torque": 0.0, "mesh.backlash": "0.2 um", "initial.gap": "90 nm"}
     return gd.simulate(gd.preset("teodorescu2009").replace({**changes, **light}))
 
@@ -170,7 +170,7 @@ def test_contacts_count_that_come_and_turn_between_two_looks(rebounding):
     assert total(rebounding) == pytest.approx(_loss(rebounding), rel=1e-12, abs=0)
 
 
-LIGHT = {**OFF, "load.torque": 0.0, "run.exposures": 4, "contact.model": "asperity"}
+LIGHT = {**OFF, "load.torque": 0.0, "run.exposures": 4, "contact.bodies": "rigid"}
 SLOW = {"drive.torque": 1e-20, "initial.gap": "90 nm", "run.duration": 0.05}
 FAST = {
     "drive.torque": 1.5e-16,
@@ -268,7 +268,7 @@ def test_elastic_bodies_have_them():
 
 def test_a_table_of_one_fraction_is_that_fraction(worn):
     """By tooth and place the materials' values are those of whole flanks, which the shares then divide."""
-    scene = worn.gearidae.scene.replace({"contact.model": "asperity", "run.duration": 0.1, "run.rtol": 1e-9})
+    scene = worn.gearidae.scene.replace({"contact.bodies": "rigid", "run.duration": 0.1, "run.rtol": 1e-9})
     plain, table = gd.simulate(scene), gd.simulate(scene.replace({"coating.pinion_table": [[0.5]]}))
     for name in NAMES:
         ours, other = plain[name].values, table[name].values

@@ -101,7 +101,7 @@ def test_a_resumed_run_keeps_the_same_extremes():
 
 def test_elastic_flanks_stay_apart_where_rigid_ones_would_not():
     """Fig. 3 of the paper: smallest elastic separation 3.51 nm, rigid distance -2.87 nm (independent integrator)."""
-    ds = gd.simulate(gd.load_case("cases/roller_fast.toml").replace({"contact.model": "elastic"}))
+    ds = gd.simulate(gd.load_case("cases/roller_fast.toml").replace({"contact.bodies": "elastic"}))
     assert ds.min_separation.dims == ("time",)
     assert float(ds.min_separation.min()) == pytest.approx(3.51e-9, abs=0.01e-9)
     assert float(ds.smallest_separation) == pytest.approx(float(ds.min_separation.min()), abs=1e-12)
@@ -184,9 +184,7 @@ def test_the_force_holds_the_mesh_damping():
     assert impulse == pytest.approx(momentum, abs=1e-5 * step * np.sum(np.abs(force)))
 
 
-HERTZ = gd.load_case("cases/start_up.toml").replace(
-    {"contact.asperity": "hertz", "contact.model": "asperity"}
-)
+HERTZ = gd.load_case("cases/start_up.toml").replace({"contact.asperity": "hertz", "contact.bodies": "rigid"})
 
 
 def test_a_gear_without_adhesion_is_trapped_by_none():

@@ -18,7 +18,7 @@ from gearidae.records import Statistics
 GEARS = gd.preset("teodorescu2009").replace(
     {
         "coating.sam_fraction": 0.6,
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "run.duration": "0.03 ms",
         "run.samples": 51,
     }
@@ -98,7 +98,7 @@ def test_what_is_not_wanted_is_not_called(calls, balance, exposures, gone):
         (GEARS.replace({"run.duration": "0.003 ms"}), "sksundae"),
         (GEARS.replace({"coating.pinion_table": np.linspace(0.2, 0.9, 57).reshape(19, 3)}), "native"),
         (GEARS.replace(DRY), "native"),
-        (GEARS.replace({"contact.model": "elastic", "run.duration": "0.004 ms"}), "native"),
+        (GEARS.replace({"contact.bodies": "elastic", "run.duration": "0.004 ms"}), "native"),
         (ROLLER, "native"),
     ],
     ids=["gears", "portable", "tables", "dry", "elastic", "roller"],

@@ -11,6 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from gearidae.asperities.tip import contact_modulus
+from gearidae.contact.line import line_area
 from gearidae.contact.psi import psi
 from gearidae.engine.backend import follow, solve
 from gearidae.engine.continuing import end_of
@@ -31,7 +32,7 @@ from reference.population import NUMBERS, Contact
 HIGH = preset("teodorescu2009")
 GEOMETRY = HIGH.geometry
 R1, R2 = GEOMETRY.base_radius_pinion, GEOMETRY.base_radius_gear
-POPULATION = HIGH.replace({"contact.model": "population"})
+POPULATION = HIGH.replace({"contact.roughness": "discrete"})
 HUBS = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
 
 
@@ -128,7 +129,7 @@ SHEARED = {"contact.friction_law": "shear", "contact.shear_strength": 1e8, "cont
 
 @pytest.mark.parametrize(
     "changes",
-    [{}, {"coating.sam_fraction": 0.0}, {"contact.model": "population"}, SHEARED, WAVY],
+    [{}, {"coating.sam_fraction": 0.0}, {"contact.roughness": "discrete"}, SHEARED, WAVY],
     ids=["coated", "bare", "population", "shear", "static error"],
 )
 def test_the_balance_closes_with_friction(changes):
@@ -137,7 +138,7 @@ def test_the_balance_closes_with_friction(changes):
         {"contact.friction": 0.3, "run.duration": 50e-6, "run.samples": "off", "run.rtol": 1e-10, **changes}
     )
     balance = run(scene).balance
-    allowed = 1e-8 if "contact.model" in changes else 1e-10
+    allowed = 1e-8 if "contact.roughness" in changes else 1e-10
     assert abs(balance.residual) < allowed * balance.drive_work
     assert friction_loss(balance) > 5e-3 * balance.drive_work
 
@@ -205,6 +206,17 @@ def area_of_tip(surface, delta):
         xtol=1e-15,
     )
     return math.pi * (3.0 * beta * pull_off / (2.0 * modulus)) ** (2.0 / 3.0) * a**2
+
+
+def test_the_limit_of_asperities_with_a_zone_is_strength_times_area():
+    """Of a closing contact of bare flanks, by quadrature of the area that the law has."""
+    gap, surface = 10e-9, HIGH.surface
+    m, y = standing({**SHEAR, "contact.asperity": "maugis"}, gap)
+    forces_at_shafts(m, 0.0, y)
+    for noted in m.work.notes.pair[: m.work.notes.count]:
+        radius = curvature_radii(GEOMETRY, float(noted["position"]) * GEOMETRY.base_pitch)[2]
+        area = line_area(gap, 0.0, radius, HIGH.gears.face_width, surface, asperity="maugis")
+        assert float(noted["limit"]) == pytest.approx(1e7 * float(area) / float(m.scene.force_unit), rel=1e-8)
 
 
 @pytest.mark.parametrize("f", [0.0, 1.0])
@@ -383,7 +395,7 @@ def test_a_train_held_by_friction_does_not_move_at_all():
             "initial.gap": 10e-9,
             "coating.sam_fraction": 0.0,
             "contact.friction": 0.5,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "drive.harmonic": None,
             "load.torque": balanced * R2 * 0.98,
             "drive.torque": balanced * R1,
@@ -556,7 +568,7 @@ def test_random_scenes_close_their_balance(mu, hub, f, speed, gap, population):
         "initial.gap": gap,
         "run.duration": 10e-6,
         "run.samples": "off",
-        "contact.model": "population" if population else "asperity",
+        "contact.roughness": "discrete" if population else "asperity",
     }
     if hub > 1e-3:
         changes |= {**HUBS, "gears.hub_friction": hub}
@@ -566,6 +578,64 @@ def test_random_scenes_close_their_balance(mu, hub, f, speed, gap, population):
     assert abs(balance.residual) <= balance.bound(1e-6, roller=False)
     for name in ("drive_friction_loss", "coast_friction_loss", "pinion_hub_loss", "gear_hub_loss"):
         assert getattr(balance, name) >= -1e-12 * balance.throughput
+
+
+def limits(scene, gap, rate=0.0):
+    """Limits and forces of the pairs in a start with elastic bodies, whose deflections are settled."""
+    problem = make_problem(scene.replace({"initial.gap": gap, "contact.bodies": "elastic"}))
+    m, y = problem.model, problem.start.copy()
+    y[V] = rate
+    forces_at_shafts(m, 0.0, y)
+    noted = m.work.notes.pair[: m.work.notes.count]
+    return noted["limit"].copy(), noted["contact"].copy()
+
+
+@pytest.mark.parametrize("pairing", ["patches", "independent"])
+@pytest.mark.parametrize("rate", [-1e-3, 0.0])
+def test_limits_of_elastic_bodies_add_up_over_the_materials(pairing, rate):
+    """Coefficients of two materials and those exchanged: both limits together are the sum times the whole force.
+
+    A mixed material has the coefficient of the coated one, so that it is given the larger share there.
+    """
+    scene = HIGH.replace(
+        {"coating.sam_fraction": 0.5, "coating.pairing": pairing, "coating.thickness": "1 nm"}
+    )
+    given, exchanged = (
+        limits(scene.replace({"contact.friction": a, "coating.friction": b}), 12e-9, rate)
+        for a, b in ((0.3, 0.1), (0.1, 0.3))
+    )
+    assert given[1].max() > 0.0
+    np.testing.assert_allclose(given[0] + exchanged[0], 0.4 * given[1], rtol=1e-9)
+    assert not np.allclose(given[0], exchanged[0], rtol=1e-2)
+
+
+def test_the_limit_of_elastic_bodies_is_not_that_of_rigid_ones_at_their_gap():
+    """Soft bodies: the nodes carry far less than rigid flanks would at the same gap."""
+    scene = HIGH.replace({**MATERIALS, "surface.youngs_modulus": 2e9})
+    bodies = limits(scene, 0.0)[0].max()
+    m, y = standing({**MATERIALS, "surface.youngs_modulus": 2e9, "coating.sam_fraction": 0.5}, 0.0)
+    forces_at_shafts(m, 0.0, y)
+    rigid = m.work.notes.pair[: m.work.notes.count]["limit"].max()
+    assert 0.0 < bodies < 0.95 * rigid
+
+
+def test_a_friction_loss_of_elastic_bodies_with_different_coefficients_is_that_of_rigid_ones():
+    """Silicon deflects by hundredths of a roughness: losses agree to a per cent, unlike those of one coefficient."""
+    scene = HIGH.replace(
+        {
+            **MATERIALS,
+            **HUBS,
+            "initial.gap": 1.5e-8,
+            "run.duration": 4e-6,
+            "run.samples": "off",
+            "run.rtol": 1e-8,
+        }
+    )
+    rigid, bodies = (run(scene.replace({"contact.bodies": name})).balance for name in ("rigid", "elastic"))
+    assert friction_loss(bodies) == pytest.approx(friction_loss(rigid), rel=1e-2)
+    assert friction_loss(bodies) != friction_loss(rigid)
+    alone = run(scene.replace({"contact.bodies": "elastic", "coating.friction": 0.3})).balance
+    assert friction_loss(alone) > 1.2 * friction_loss(bodies)
 
 
 # -- runs that go on -------------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from gearidae.engine.backend import solve
 from gearidae.engine.followers.exposures.bins import ROWS
 
 SMOOTH = gd.preset("teodorescu2009").replace(
-    {"contact.model": "asperity", "run.exposures": 8, "run.duration": 6e-5, "run.samples": "off"}
+    {"contact.bodies": "rigid", "run.exposures": 8, "run.duration": 6e-5, "run.samples": "off"}
 )
 HUBS = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": "3 um", "gears.gear_hub_radius": "6 um"}
 SHEAR = {
@@ -36,13 +36,21 @@ SCENES = {
         "initial.gap": "24 nm",
     },
     "asperities": {
-        "contact.model": "population",
+        "contact.roughness": "discrete",
         "contact.friction": 0.3,
         "coating.friction": 0.1,
         "coating.sam_fraction": 0.5,
     },
-    "asperities and hubs": HUBS | {"contact.model": "population", "contact.friction": 0.3},
-    "asperities and shear": SHEAR | {"contact.model": "population", "coating.sam_fraction": 0.5},
+    "elastic bodies": {
+        "contact.bodies": "elastic",
+        "contact.friction": 0.3,
+        "coating.friction": 0.1,
+        "coating.sam_fraction": 0.5,
+        "run.duration": 2e-5,
+    },
+    "flanks that attract": HUBS | {"contact.friction": 0.3, "coating.hamaker": 5e-20},
+    "asperities and hubs": HUBS | {"contact.roughness": "discrete", "contact.friction": 0.3},
+    "asperities and shear": SHEAR | {"contact.roughness": "discrete", "coating.sam_fraction": 0.5},
 }
 
 

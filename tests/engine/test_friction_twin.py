@@ -18,7 +18,7 @@ from reference.rubbing_contacts import ListedAsperities, MeanLaw, jkr
 HIGH = preset("teodorescu2009")
 TEN = np.array(NUMBERS["gear_explicit"]["list_arc_um_height_nm_radius_nm"]).T * [[1e-6], [1e-9], [1e-9]]
 LISTED = dict(zip(("arc", "height", "radius"), TEN.tolist(), strict=True))
-MEAN = HIGH.replace({"contact.model": "asperity", "contact.asperity": "dmt", "mesh.radius_force": False})
+MEAN = HIGH.replace({"contact.bodies": "rigid", "contact.asperity": "dmt", "mesh.radius_force": False})
 """Smooth forces without memory, which pull as well as push."""
 
 
@@ -173,7 +173,7 @@ def test_listed_asperities_rub_as_in_the_twin():
         "mesh.backlash": 6e-8,
         "initial.gap": 2.4e-8,
     }
-    scene = HIGH.replace({"contact.model": "population", "contact.asperities": LISTED} | changes)
+    scene = HIGH.replace({"contact.roughness": "discrete", "contact.asperities": LISTED} | changes)
     twin = RubbingGears(scene, ListedAsperities(scene, TEN, 0.5, surface=scene.surface))
     wanted = twin.run([1.2e-6], 1e-10)[:, 0]
     solution = solve(scene.replace({"run.duration": 1.2e-6, "run.samples": 2, "run.rtol": 1e-11}))
@@ -186,7 +186,7 @@ def test_listed_asperities_rub_as_in_the_twin():
 
 def test_the_work_of_friction_is_the_coefficient_times_the_sliding_work():
     """Sliding work leaves the normal vibration out of the sliding speed, which turns round: 2e-4 of it is left."""
-    scene = HIGH.replace({"contact.friction": 0.3, "contact.model": "asperity"})
+    scene = HIGH.replace({"contact.friction": 0.3, "contact.bodies": "rigid"})
     solution = solve(scene.replace({"run.exposures": 8, "run.duration": 3e-4, "run.samples": "off"}))
     table = np.array(solution.extremes.exposures).reshape(2, 19, ROWS.per_tooth(rubs=True), 8)
     work = 0.3 * table[:, :, ROWS.sliding].sum(axis=(1, 2))

@@ -336,7 +336,7 @@ def test_a_load_that_passes_zero_closes_the_balance(backend, method):
 def drawn_run(seed, method="auto"):
     rng = np.random.default_rng(seed)
     changes = {
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "contact.friction": rng.choice([0.0, 1.0]) * rng.uniform(0.05, 0.5),
         "gears.hub_friction": rng.uniform(0.05, 0.6),
         "gears.pinion_hub_radius": rng.uniform(2e-6, 20e-6),

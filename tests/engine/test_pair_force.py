@@ -11,7 +11,7 @@ from gearidae.engine.pairs.tooth_pairs import pair_state
 from gearidae.engine.setup.build import make_problem
 from gearidae.scene import preset
 
-HIGH = preset("teodorescu2009").replace({"contact.model": "asperity", "coating.sam_fraction": 0.5})
+HIGH = preset("teodorescu2009").replace({"contact.bodies": "rigid", "coating.sam_fraction": 0.5})
 DAMPING = 0.3
 
 
@@ -64,8 +64,8 @@ MODELS = {
     "curvature": {"mesh.radius_force": True},
     "attraction": {"surface.hamaker": 5e-20},
     "friction": {"contact.friction": 0.1, "gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6},
-    "nodes": {"contact.model": "elastic"},
-    "asperities": {"contact.model": "population", "initial.gap": 10e-9},
+    "nodes": {"contact.bodies": "elastic"},
+    "asperities": {"contact.roughness": "discrete", "initial.gap": 10e-9},
 }
 
 

@@ -18,7 +18,7 @@ from gearidae.records import EventKind
 from gearidae.scene import preset
 from reference.population import NUMBERS, Contact, Tip
 
-GEARS = preset("teodorescu2009").replace({"contact.model": "population"})
+GEARS = preset("teodorescu2009").replace({"contact.roughness": "discrete"})
 BARE = GEARS.replace({"coating.sam_fraction": 0.0})
 LISTED = {
     "arc": [a * 1e-6 for a, _, _ in NUMBERS["gear_explicit"]["list_arc_um_height_nm_radius_nm"]],
@@ -28,7 +28,7 @@ LISTED = {
 TEN = GEARS.replace({"contact.asperities": LISTED, "run.duration": 50e-6, "run.samples": 11})
 ROLLER = preset("roller_slow").replace(
     {
-        "contact.model": "population",
+        "contact.roughness": "discrete",
         "contact.asperities": {
             "x": [0.0, 0.12e-6, -0.2e-6],
             "height": [15e-9, 14e-9, 17.5e-9],

@@ -15,7 +15,7 @@ from reference.rubbing_contacts import ListedAsperities, jkr
 
 PLACES = 6
 GEARS = preset("teodorescu2009").replace(
-    {"contact.model": "population", "run.exposures": PLACES, "run.duration": 40e-6, "run.samples": "off"}
+    {"contact.roughness": "discrete", "run.exposures": PLACES, "run.duration": 40e-6, "run.samples": "off"}
 )
 rng = np.random.default_rng(5)
 COATINGS = {
@@ -187,7 +187,7 @@ def test_sliding_work_and_pressure_are_those_of_the_samples():
         {"contact.friction": 0.3},
         {"contact.friction_law": "shear", "contact.shear_strength": "1 GPa"},
     ],
-    ids=["net", "shear"],
+    ids=["coulomb", "shear"],
 )
 def test_each_asperity_rubs_at_its_own_place(changes):
     """Against samples: a sum over 20,001 of them, of forces that jump at events, is good to 1e-3."""

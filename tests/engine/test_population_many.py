@@ -27,7 +27,7 @@ from gearidae.engine.setup.problem import Problem
 from gearidae.scene import preset
 from reference.population import Contact, Tip
 
-GEARS = preset("teodorescu2009").replace({"contact.model": "population", "run.samples": "off"})
+GEARS = preset("teodorescu2009").replace({"contact.roughness": "discrete", "run.samples": "off"})
 
 
 @cache

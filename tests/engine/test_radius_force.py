@@ -19,7 +19,7 @@ ON = {"mesh.radius_force": True}
 def pressed(direction, *, gap=3.0, joined=None, fraction=0.5):
     """Model and state of two pairs on the path of contact at one gap, closing or opening."""
     changes = {**ON, "coating.sam_fraction": fraction, "initial.mesh_phase": 0.1}
-    problem = make_problem(LOW.replace({**changes, "contact.model": "asperity"}))
+    problem = make_problem(LOW.replace({**changes, "contact.bodies": "rigid"}))
     m, y = problem.model, problem.start.copy()
     y[U], y[V] = m.scene.half_backlash - gap, -direction * 0.1
     for pair in (0, -1):
@@ -84,7 +84,7 @@ def test_its_slopes_are_in_the_jacobian(direction, joined):
             {
                 "coating.sam_fraction": 0.3,
                 "run.duration": 0.03,
-                "contact.model": "elastic",
+                "contact.bodies": "elastic",
                 "run.rtol": 1e-5,
             },
         ),
@@ -103,7 +103,7 @@ def test_the_balance_closes_without_a_work_of_the_radius(backend, changes):
 
 def test_the_balance_closes_where_the_coating_changes_along_the_flank():
     """The force then pays for the changing shares, too."""
-    table = {"coating.pinion_table": [[0.3, 0.6, 0.9]], "contact.model": "asperity"}
+    table = {"coating.pinion_table": [[0.3, 0.6, 0.9]], "contact.bodies": "rigid"}
     scene = LOW.replace({**ON, **table, "run.samples": "off", "run.duration": 0.1})
     balance = solve(scene).balance
     assert balance.radius_work == 0.0

@@ -21,7 +21,7 @@ def test_pair_force_is_the_readable_law_with_history(roughness, fraction):
             "surface.roughness": roughness,
             "coating.sam_fraction": fraction,
             "roller.height": 3 * roughness,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
         }
     )
     m = make_problem(scene).model
@@ -47,7 +47,7 @@ def test_pair_force_is_the_readable_law_with_history(roughness, fraction):
 
 @pytest.mark.parametrize("name", ["teodorescu2009", "teodorescu2009_low_speed", "roller_slow"])
 def test_jacobian_is_the_derivative(name):
-    scene = gd.preset(name).replace({"coating.sam_fraction": 0.5, "contact.model": "asperity"})
+    scene = gd.preset(name).replace({"coating.sam_fraction": 0.5, "contact.bodies": "rigid"})
     if scene.mesh is not None:
         scene = scene.replace({"mesh.damping": 1e-9, "initial.mesh_phase": 0.02})  # a pair on its tip relief
     problem = make_problem(scene)

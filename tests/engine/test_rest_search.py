@@ -319,7 +319,7 @@ def test_what_a_rising_torque_draws_along_does_not_stick_again_and_again(method,
     """A gear that is held and a pinion that creeps on its teeth: a rest would end with the next rise of the torque."""
     knots = [(0.0, 1e-13), (1e-4, 1e-13), (1.1e-3, 4e-13)]
     changes = {
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "contact.friction": 0.3,
         "coating.sam_fraction": 0.0,
         "load.torque": 3e-11,

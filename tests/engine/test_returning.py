@@ -63,6 +63,26 @@ def rows_of(blocks):
     return np.concatenate([block.rows for block in blocks])
 
 
+def test_auto_decides_with_friction_too(changes):
+    """Bodies become elastic in a deep impact and rigid again, and what was computed is in the dataset."""
+    scene = SCENE.replace({"contact.friction": 0.3, "coating.friction": 0.1, "gears.hub_friction": 0.2})
+    scene = scene.replace({"gears.pinion_hub_radius": "3 um", "gears.gear_hub_radius": "6 um"})
+    ds = gd.simulate(scene)
+    assert "change_over" in [name for name, _ in changes]
+    assert ds.attrs["contact_bodies"] == "elastic"
+    assert ds.attrs["contact_bodies_reason"].startswith("auto: ")
+    found = ds.gearidae.energy_balance
+    assert abs(found["residual"]) < found["residual_bound"]
+    assert found["drive_friction_loss"] > 0.0
+    rigid = gd.simulate(scene.replace({"contact.bodies": "rigid", "run.duration": 1e-6}))
+    assert rigid.attrs["contact_bodies"] == "rigid"
+    assert rigid.attrs["contact_bodies_reason"] == ""
+    stays = gd.simulate(scene.replace({"contact.roughness": "discrete", "run.duration": 1e-6}))
+    assert stays.attrs["contact_bodies"] == "rigid"
+    assert stays.attrs["contact_roughness"] == "discrete"
+    assert stays.attrs["contact_bodies_reason"].startswith("auto stays rigid: discrete asperities")
+
+
 @pytest.mark.parametrize("driver", ["native", "sksundae"])
 def test_a_run_with_one_deep_impact_is_elastic_for_as_long_as_it_matters(changes, driver, monkeypatch):
     found = solve(SCENE, backend=driver)
@@ -139,7 +159,7 @@ FREE = {
 @pytest.mark.parametrize("flight", [{}, FREE])
 def test_elastic_bodies_that_were_asked_for_stay(changes, flight):
     """Also where nothing touches at all."""
-    asked = solve(SCENE.replace({"contact.model": "elastic", "run.duration": "0.15 ms", **flight}))
+    asked = solve(SCENE.replace({"contact.bodies": "elastic", "run.duration": "0.15 ms", **flight}))
     assert asked.status == "finished"
     assert asked.extremes.mesh_exits > 4
     assert (asked.statistics.skipped["flight_steps"] > 0) == bool(flight)

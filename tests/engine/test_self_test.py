@@ -99,7 +99,7 @@ def test_step_control_that_is_not_heeded_is_named_and_idas_formulas_are_taken(
     assert kept["adams"]
     assert kept["bdf"] == ""
     # what runs is what has passed, and it is said
-    scene = gd.preset("teodorescu2009").replace({"contact.model": "asperity"})
+    scene = gd.preset("teodorescu2009").replace({"contact.bodies": "rigid"})
     assert choose_backend("auto", "auto") == "native"
     ds = gd.simulate(scene, t_end=2e-5, samples=21)
     assert (ds.attrs["backend"], ds.attrs["method"]) == ("native", "bdf")
@@ -133,7 +133,7 @@ def test_what_was_seen_is_kept(nothing_kept, monkeypatch):
 
 
 def test_idas_formulas_by_a_key_of_the_scene():
-    scene = gd.preset("teodorescu2009").replace({"contact.model": "asperity"})
+    scene = gd.preset("teodorescu2009").replace({"contact.bodies": "rigid"})
     runs = {
         method: gd.simulate(scene.replace({"run.method": method}), t_end=1e-4, samples=201)
         for method in ("auto", "bdf")

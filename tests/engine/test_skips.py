@@ -16,7 +16,7 @@ LOW = gd.preset("teodorescu2009_low_speed").replace(
     {"run.duration": 0.02, "run.samples": 201, "run.rtol": 1e-8}
 )
 HIGH = gd.preset("teodorescu2009").replace(
-    {"contact.model": "asperity", "run.duration": 4e-5, "run.samples": 201, "run.rtol": 1e-8}
+    {"contact.bodies": "rigid", "run.duration": 4e-5, "run.samples": 201, "run.rtol": 1e-8}
 )
 
 

@@ -13,7 +13,7 @@ LENGTH = 0.5
 
 @pytest.fixture
 def model():
-    changes = {"run.exposures": PLACES, "contact.model": "asperity"}
+    changes = {"run.exposures": PLACES, "contact.bodies": "rigid"}
     m = make_problem(gd.preset("teodorescu2009_low_speed").replace(changes)).model
     m.work.exposing.pair[0].row = m.scene.exposures_at
     return m

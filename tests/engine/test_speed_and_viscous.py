@@ -108,7 +108,7 @@ def touching():
             "drive.speed_gain": 3e-18,
             "load.viscous": 2e-17,
             "mesh.damping": 1e-12,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "contact.asperity": "hertz",  # without hysteresis, whose force has a corner at the start
         }
     )

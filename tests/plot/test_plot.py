@@ -309,7 +309,7 @@ def test_thinning_leaves_short_traces_alone():
 
 def test_of_elastic_bodies_the_separation_is_drawn_and_not_the_rigid_distance():
     """Fig. 3 of the paper shows the smallest separation: 3.5 nm where the rigid shapes are 2.9 nm into each other."""
-    ds = gd.simulate(gd.preset("roller_fast").replace({"contact.model": "elastic"}))
+    ds = gd.simulate(gd.preset("roller_fast").replace({"contact.bodies": "elastic"}))
     axes = gd.plot.roller_gap(ds)
     (drawn,) = (line for line in axes.lines if len(line.get_xdata()) == ds.sizes["time"])
     assert float(np.min(drawn.get_ydata())) == pytest.approx(3.51, abs=0.01)

@@ -11,7 +11,7 @@ from gearidae.studies.tooth_states import ContactState
 
 SCENE = gd.preset("teodorescu2009").replace(
     {
-        "contact.model": "population",
+        "contact.roughness": "discrete",
         "coating.sam_fraction": 0.5,
         "coating.thickness": 1e-9,
         "initial.gap": 12e-9,
@@ -84,7 +84,7 @@ def test_the_command_draws_it_and_names_what_it_cannot(run, tmp_path, capsys):
     assert main(["plot", str(path), "--picture", "asperity_events", "-o", str(target)]) == 0
     assert target.stat().st_size > 10_000
     mean = gd.simulate(gd.preset("roller_slow"), samples=11, t_end=1e-7)
-    with pytest.raises(gd.SceneError, match=r"contact.model = \w+: must be population"):
+    with pytest.raises(gd.SceneError, match=r"contact.roughness = \w+: must be discrete"):
         gd.plot.asperity_events(mean)
     sweep = gd.sweep(SCENE, {"coating.sam_fraction": [0.0, 1.0]}, t_end=1e-7, samples=3)
     with pytest.raises(gd.SceneError, match="must be a single run"):
@@ -92,7 +92,7 @@ def test_the_command_draws_it_and_names_what_it_cannot(run, tmp_path, capsys):
 
 
 def test_a_roller_s_run_is_drawn_as_a_whole():
-    ds = gd.simulate(gd.preset("roller_slow").replace({"contact.model": "population", "run.samples": 401}))
+    ds = gd.simulate(gd.preset("roller_slow").replace({"contact.roughness": "discrete", "run.samples": 401}))
     ax = gd.plot.asperity_events(ds)
     assert ax.get_lines()[0].get_xdata()[-1] == pytest.approx(float(ds.time[-1]) * 1e6)
     assert "joins (" in ax.get_legend().get_texts()[0].get_text()

@@ -11,8 +11,8 @@ from gearidae.scene.coating_table import fraction_at
 from gearidae.scene.strip import flank_strip
 from reference.population import NUMBERS
 
-GEARS = preset("teodorescu2009").replace({"contact.model": "population"})
-ROLLER = preset("roller_slow").replace({"contact.model": "population"})
+GEARS = preset("teodorescu2009").replace({"contact.roughness": "discrete"})
+ROLLER = preset("roller_slow").replace({"contact.roughness": "discrete"})
 
 
 def test_the_preset_s_surface_is_the_one_that_a_prototype_drew():
@@ -105,7 +105,7 @@ def test_a_roller_has_one_flank_about_its_middle():
 
 
 def test_other_models_have_no_asperities():
-    with pytest.raises(gd.SceneError, match=r"contact.model = auto: must be population"):
+    with pytest.raises(gd.SceneError, match=r"contact.roughness = statistical: must be discrete"):
         gd.population(preset("teodorescu2009"))
 
 

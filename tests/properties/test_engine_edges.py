@@ -18,7 +18,7 @@ from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Statistics
 
 BASE = gd.preset("teodorescu2009").replace(
-    {"contact.model": "asperity", "run.duration": 1e-5, "run.samples": 41, "run.rtol": 1e-8}
+    {"contact.bodies": "rigid", "run.duration": 1e-5, "run.samples": 41, "run.rtol": 1e-8}
 )
 FREE = BASE.replace(
     {

@@ -13,7 +13,7 @@ from gearidae.records import EventKind
 BASE = gd.preset("teodorescu2009").replace(
     {
         "coating.sam_fraction": 0.5,
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "initial.gap": 3e-8,
         "run.duration": 2e-5,
         "run.samples": 101,

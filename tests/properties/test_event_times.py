@@ -15,7 +15,7 @@ from reference.bouncing import BouncingTooth
 I2 = 6.1052e-20
 HEAVY = gd.preset("teodorescu2009").replace(
     {
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "mesh.backlash": 4e-6,
         "gears.gear_inertia": 1e-8,  # it stands still
         "initial.gear_speed": 0.0,

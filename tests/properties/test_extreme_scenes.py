@@ -43,7 +43,7 @@ def test_an_extreme_population_ends_with_a_name(number):
     """Drawn surfaces and a list; the same numbers give the same scene."""
     extreme = extreme_population(1, number)
     assert extreme == extreme_population(1, number)
-    assert extreme.scene.contact.model == "population"
+    assert extreme.scene.contact.is_discrete
     followed = run_scene(extreme.scene, extreme.backend, 500, lambda: None)
     assert followed.status in NAMED
 
@@ -65,7 +65,7 @@ def test_extreme_friction_ends_with_a_name(number):
 def test_elastic_contacts_are_attacked_too(law, backend):
     """They have one column more than others: a run that is cut short before its first sample has it as well."""
     preset = gd.preset("roller_slow") if law == "roller" else LOW.replace({"run.duration": "1 ms"})
-    scene = preset.replace({"contact.model": "elastic", "run.samples": 101})
+    scene = preset.replace({"contact.bodies": "elastic", "run.samples": 101})
     outcome = judge(scene, backend, STEPS, lambda: None)
     assert outcome.status in ("finished", "budget"), outcome.message
 
@@ -94,7 +94,7 @@ def test_the_generator_reaches_what_it_is_for():
     apart = [np.diff([time for time, _ in some]) / some[-1][0] for some in knots if len(some) > 1]
     assert {one.backend for one in drawn} == {"native", "sksundae"}
     assert {scene.contact.asperity for scene in scenes} == {"jkr", "dmt", "hertz", "maugis"}
-    assert {scene.contact.model for scene in scenes} == {"auto", "asperity", "elastic"}
+    assert {scene.contact.bodies for scene in scenes} == {"auto", "rigid", "elastic"}
     assert 15 < len(scenes) - len(gears) < 60
     assert min(scene.run.rtol for scene in scenes) == 1e-12
     assert max(scene.run.rtol for scene in scenes) == 0.1

@@ -12,7 +12,7 @@ from reference.hertz_gears import HertzGears
 BASE = gd.preset("teodorescu2009").replace(
     {
         "contact.asperity": "hertz",
-        "contact.model": "asperity",
+        "contact.bodies": "rigid",
         "initial.gap": 2e-8,
         "run.duration": 1.5e-5,
         "run.samples": 61,

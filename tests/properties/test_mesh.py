@@ -31,7 +31,7 @@ SMOOTH = make_problem(
         {"mesh.backlash": 4e-8, "initial.gap": 2e-8, "contact.asperity": "hertz", "mesh.damping": 1e-6}
     )
 )
-IMPACT = make_problem(gd.preset("roller_slow").replace({"contact.model": "asperity"}))
+IMPACT = make_problem(gd.preset("roller_slow").replace({"contact.bodies": "rigid"}))
 PATH = float(PROBLEM.model.scene.contact_ratio)
 COAST = float(PROBLEM.model.scene.coast_phase)
 

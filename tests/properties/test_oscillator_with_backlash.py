@@ -23,7 +23,7 @@ def oscillator(frequency, swing, cycles, gap=None, **changes):
     scene = gd.preset("teodorescu2009").replace(
         {
             "contact.asperity": "hertz",
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "mesh.backlash": 2e-6,
             "gears.gear_inertia": 1e-14,  # does not move
             "initial.gear_speed": 1e-3,

@@ -46,7 +46,7 @@ def close_knots():
 def wide_reach():
     """Thirty pairs a flank with nodes each: more than a thousand states, and blocks by steps alone last minutes."""
     return LOW.replace(
-        {"contact.model": "elastic", "mesh.tip_relief_radius": 0.04, "run.duration": 1e-3, "run.samples": 11}
+        {"contact.bodies": "elastic", "mesh.tip_relief_radius": 0.04, "run.duration": 1e-3, "run.samples": 11}
     )
 
 
@@ -70,7 +70,7 @@ def singular_start():
                 "roughness": 0.1,
             },
             "coating": {"sam_fraction": 0.4847809169993217, "energy": 1e-15},
-            "contact.model": "elastic",
+            "contact.bodies": "elastic",
             "initial": {
                 "gap": 5.512429183253995e-08,
                 "gear_speed": 8.9e-6,

@@ -67,7 +67,7 @@ def test_ringing_fast_against_the_loads_own_time_is_no_chatter():
         {
             "surface.roughness": 1e-9,
             "coating.sam_fraction": 0.0,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "initial.gap": 5e-9,
             "run.duration": 1.4e-5,
             "run.samples": 11,
@@ -117,7 +117,7 @@ def test_scenes_with_later_keys_are_sound(number):
 def test_a_wrong_force_would_be_seen(law, monkeypatch):
     """The envelope of what a contact can do is narrow enough to catch forces that are off by a part in a thousand."""
     scene = gd.preset("roller_slow").replace(
-        {"contact.model": "asperity", "contact.asperity": law, "run.samples": 401}
+        {"contact.bodies": "rigid", "contact.asperity": law, "run.samples": 401}
     )
     assert run_one(scene).sound
     honest = stress_checks.line_force
@@ -141,7 +141,7 @@ def test_processes_share_the_scenes_and_one_that_does_not_come_back_is_a_defect(
 def test_an_unbalanced_ledger_is_a_complaint(monkeypatch):
     monkeypatch.setattr(stress, "BALANCE_TOLERANCES", 0.0)
     assert (
-        "energy balance" in run_one(gd.preset("roller_slow").replace({"contact.model": "asperity"})).complaint
+        "energy balance" in run_one(gd.preset("roller_slow").replace({"contact.bodies": "rigid"})).complaint
     )
 
 

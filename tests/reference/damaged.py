@@ -18,7 +18,7 @@ __all__ = ["BUDGET", "SCENES"]
 BUDGET = 8
 """Blocks of output after which a run is left alone: some hundred thousand steps, where a sound one takes hundreds."""
 
-_RIGID = {"contact.model": "asperity", "run.samples": 101}
+_RIGID = {"contact.bodies": "rigid", "run.samples": 101}
 SCENES = {
     "dry gears": gd.preset("teodorescu2009").replace(
         _RIGID
@@ -34,7 +34,7 @@ SCENES = {
         }
     ),
     "roller": gd.preset("roller_slow").replace(_RIGID),
-    "elastic roller": gd.preset("roller_slow").replace({"contact.model": "elastic", "run.samples": 101}),
+    "elastic roller": gd.preset("roller_slow").replace({"contact.bodies": "elastic", "run.samples": 101}),
 }
 
 

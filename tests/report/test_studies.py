@@ -45,7 +45,7 @@ def starting_torque(path, **more):
 
 
 def starting_torques(path, **more):
-    gears = gd.preset("teodorescu2009").replace({"contact.model": "population", "load.torque": 0.0})
+    gears = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete", "load.torque": 0.0})
     return gd.studies.starting_torque(gears, seeds=2, archive=path, **more)
 
 

@@ -75,7 +75,9 @@ def swept():
 
 @pytest.fixture(scope="module")
 def specimen():
-    scene = gd.preset("teodorescu2009").replace({"contact.model": "population", "coating.sam_fraction": 0.5})
+    scene = gd.preset("teodorescu2009").replace(
+        {"contact.roughness": "discrete", "coating.sam_fraction": 0.5}
+    )
     return gd.simulate(scene, t_end=4e-5, samples=401)
 
 

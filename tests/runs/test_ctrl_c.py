@@ -21,7 +21,9 @@ LOW = gd.preset("teodorescu2009_low_speed")
 SCENES = {
     "rigid": gd.preset("teodorescu2009").replace({"run.duration": 1.0, "run.samples": 100_001}),
     # thirty pairs a flank with nodes each: more than a thousand states
-    "wide": LOW.replace({"contact.model": "elastic", "mesh.tip_relief_radius": 0.04, "run.samples": 100_001}),
+    "wide": LOW.replace(
+        {"contact.bodies": "elastic", "mesh.tip_relief_radius": 0.04, "run.samples": 100_001}
+    ),
 }
 PROMPT = 1.5
 """Own time of the program from the signal to its end, over that from its start to the signal, which is nearly all

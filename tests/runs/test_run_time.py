@@ -51,7 +51,7 @@ def test_rough_as_a_tooth_takes_days():
 def test_steps_on_real_asperities_within_a_factor_of_three(seed, fraction):
     scene = gd.preset("teodorescu2009").replace(
         {
-            "contact.model": "population",
+            "contact.roughness": "discrete",
             "contact.seed": seed,
             "coating.sam_fraction": fraction,
             "run.duration": 5e-5,
@@ -63,9 +63,9 @@ def test_steps_on_real_asperities_within_a_factor_of_three(seed, fraction):
 
 def test_real_asperities_that_fill_the_backlash_are_refused():
     with pytest.raises(gd.SceneError, match=r"surface\.roughness = 7\.5e-07: must be at most mesh\.backlash"):
-        LOW.replace({"contact.model": "population", "surface.roughness": 0.75e-6})
+        LOW.replace({"contact.roughness": "discrete", "surface.roughness": 0.75e-6})
     LOW.replace(
-        {"contact.model": "population", "mesh.backlash": 0.0, "initial.gap": 0.0}
+        {"contact.roughness": "discrete", "mesh.backlash": 0.0, "initial.gap": 0.0}
     )  # no play is no fault
 
 
@@ -90,7 +90,7 @@ def test_the_mean_torque_of_a_schedule():
 def test_a_rollers_energy_is_spent_at_its_closest_gap(fraction):
     """The simulated roller with rigid bodies turns back there; it loses nothing on the way in."""
     scene = gd.preset("roller_slow").replace(
-        {"coating.sam_fraction": fraction, "contact.model": "asperity", "run.samples": 40_001}
+        {"coating.sam_fraction": fraction, "contact.bodies": "rigid", "run.samples": 40_001}
     )
     roller = scene.roller
     closest = pair_contact(scene).closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)

@@ -170,7 +170,7 @@ def test_not_even_a_crash_takes_the_others_along(monkeypatch, jobs):
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_scene_beyond_the_engine_is_bad_input(monkeypatch, jobs, tmp_path):
     def deed(scene, solve, options):
-        raise gd.SceneError("contact.model", "elastic", "cannot be run")
+        raise gd.SceneError("contact.bodies", "elastic", "cannot be run")
 
     replace_engine(monkeypatch, deed)
     with pytest.raises(gd.SceneError, match="cannot be run"):

@@ -16,7 +16,7 @@ from gearidae.cli import main
 from sweeps import without_times
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 11})
-ROLLER = gd.preset("roller_slow").replace({"run.samples": 11, "contact.model": "asperity"})
+ROLLER = gd.preset("roller_slow").replace({"run.samples": 11, "contact.bodies": "rigid"})
 OVER = {"coating.sam_fraction": [1.0, 0.5], "drive.torque": [4e-18, 5e-18]}
 LEAST = {
     *("status", "message", "wall_time", "verdict", "impacts", "flank_changes", "stick_time", "stick_exits"),

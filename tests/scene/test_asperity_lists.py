@@ -8,7 +8,7 @@ import pytest
 from gearidae.errors import SceneError
 from gearidae.scene import Scene, dump_case, load_case, preset
 
-GEARS = preset("teodorescu2009").replace({"contact.model": "population"})
+GEARS = preset("teodorescu2009").replace({"contact.roughness": "discrete"})
 TEXT = "arc [um],height [nm],radius [nm],flank\n1,10,450,\n2,12,,coast\n"
 PLACES, HEIGHTS = (1e-6, 2e-6), (10e-9, 12e-9)
 
@@ -86,7 +86,7 @@ def test_a_list_needs_the_model_that_reads_it():
     with pytest.raises(SceneError, match="a roller has no coast flank"):
         preset("roller_slow").replace(
             {
-                "contact.model": "population",
+                "contact.roughness": "discrete",
                 "contact.asperities": {"x": [0.0], "height": [1e-8], "flank": ["coast"]},
             }
         )

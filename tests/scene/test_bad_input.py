@@ -87,7 +87,7 @@ WRONG = [
     ("run.samples", 1, "must be a whole number in 2.."),
     ("run.samples", 10**12, "must be a whole number in 2.."),
     # choices and names
-    ("contact.model", "elastc", "must be 'auto', 'asperity', 'elastic' or 'population'"),
+    ("contact.bodies", "elastc", "must be 'auto', 'rigid' or 'elastic'"),
     ("contact.asperity", 5, "must be one of dmt, hertz, jkr, maugis"),
     ("name", 5, "must be a printable line"),
     ("name", "two\nlines", "must be a printable line"),
@@ -315,7 +315,7 @@ def test_values_that_cannot_be_shown(gears: Scene) -> None:
     with pytest.raises(SceneError, match=r"run\.rtol = \['x{55}\.\.\.: must be a number"):
         gears.replace({"run.rtol": ["x" * 10_000]})
     with pytest.raises(SceneError, match=r"contact\.model = '\\x1b\[2J'"):
-        gears.replace({"contact.model": "\x1b[2J"})
+        gears.replace({"contact.bodies": "\x1b[2J"})
 
 
 def test_scenes_cannot_be_changed_in_place(gears: Scene) -> None:

@@ -80,7 +80,7 @@ def test_case_files_hold_the_new_keys(tmp_path):
 
 # -- tables ----------------------------------------------------------------------------------------------------------
 
-RIGID = LOW.replace({"contact.model": "asperity"})
+RIGID = LOW.replace({"contact.bodies": "rigid"})
 
 
 def tables(pinion=None, gear=None, **more):

@@ -57,7 +57,7 @@ def test_hubs_with_units() -> None:
         ({"contact.friction": -0.1}, "contact.friction"),
         ({"contact.friction": 1.7}, "contact.friction"),  # the preset locks at 1.615
         ({"contact.friction": 0.1, "coating.friction": 1.7}, "coating.friction"),
-        ({"contact.friction_law": "coulomb"}, "contact.friction_law"),
+        ({"contact.friction_law": "stick"}, "contact.friction_law"),
         ({"contact.friction_law": "shear"}, "contact.shear_strength"),
         ({"contact.shear_strength": 1e7}, "contact.shear_strength"),
         ({"coating.shear_strength": 1e7}, "coating.shear_strength"),
@@ -65,8 +65,6 @@ def test_hubs_with_units() -> None:
             {"contact.friction_law": "shear", "contact.shear_strength": 1e7, "contact.friction": 0.1},
             "contact.friction",
         ),
-        ({"contact.friction": 0.1, "contact.model": "elastic"}, "contact.model"),
-        ({"gears.hub_friction": 0.1, **HUBS, "contact.model": "elastic"}, "contact.model"),
         ({"gears.hub_friction": 0.1}, "gears.pinion_hub_radius"),
         (
             {"gears.hub_friction": 2.0, "gears.pinion_hub_radius": 20e-6, "gears.gear_hub_radius": 6e-6},

@@ -27,7 +27,7 @@ CONTRACT = {
     "initial": "gear_speed gap mesh_phase",
     "run": "asperity_events balance exposures duration samples rtol method stop checkpoints",
     "roller": "radius mass width speed height",
-    "contact": "model asperity seed radius_spread asperities friction friction_law shear_strength",
+    "contact": "model bodies roughness asperity seed radius_spread asperities friction friction_law shear_strength",
 }
 
 
@@ -98,7 +98,7 @@ def test_every_key_is_described() -> None:
         ("gears.pinion_teeth", "1"),
         ("load.drag", "N m s^2/rad^2"),
         ("drive.harmonic.0.frequency", "Hz"),
-        ("contact.model", ""),
+        ("contact.bodies", ""),
     ],
 )
 def test_units_of_keys(key: str, unit: str) -> None:

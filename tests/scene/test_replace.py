@@ -13,7 +13,7 @@ CHANGES: tuple[dict[str, Any], ...] = (
     {"name": "another"},
     {"run.duration": "2 ms"},
     {"surface.energy": "0.2 J/m^2", "coating.sam_fraction": 0.3},
-    {"contact": {"model": "asperity"}},
+    {"contact": {"bodies": "rigid"}},
     {},
 )
 OF_GEARS: tuple[dict[str, Any], ...] = (

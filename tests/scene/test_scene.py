@@ -58,7 +58,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         "surface.asperity_radius": draw(small(1e-9, 1e-6)),
         "surface.roughness": draw(small(1e-9, 1e-8)),
         "coating.sam_fraction": draw(small(0, 1)),
-        "contact": {"model": draw(st.sampled_from(["auto", "asperity", "elastic"])), "asperity": "dmt"},
+        "contact": {"bodies": draw(st.sampled_from(["auto", "rigid", "elastic"])), "asperity": "dmt"},
         "run.duration": draw(small(1e-9, 1)),
         "run.samples": draw(st.integers(2, 10**6)),
         "run.rtol": draw(small(1e-12, 0.1)),
@@ -191,7 +191,7 @@ def test_replace_takes_schedules_and_harmonics_away(gears: Scene, nothing: objec
 
 
 def test_replace_takes_whole_tables(gears: Scene, roller: Scene) -> None:
-    assert gears.replace({"contact": Contact(model="asperity")}).contact.model == "asperity"
+    assert gears.replace({"contact": Contact(bodies="rigid")}).contact.bodies == "rigid"
     assert gears.replace({"contact": {"asperity": "dmt"}}).contact == Contact(asperity="dmt")
     tables = {"gears": None, "mesh": None, "drive": None, "load": None, "initial": None}
     as_roller = gears.replace({**tables, "roller": roller.roller})
@@ -228,7 +228,7 @@ def test_defaults(gears: Scene) -> None:
         del data[table]
     scene = Scene.from_dict(data)
     assert scene.coating.sam_fraction == 0  # without a coating the flanks are bare
-    assert (scene.contact.model, scene.contact.asperity) == ("auto", "jkr")
+    assert (scene.contact.bodies, scene.contact.asperity) == ("auto", "jkr")
     assert scene.load is not None
     assert (scene.load.torque, scene.load.drag, scene.load.schedule) == (0, 0, ())
 

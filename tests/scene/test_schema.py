@@ -78,7 +78,8 @@ def test_case_files_have_no_null():
 
 
 def test_choices_are_those_of_today():
-    assert at("contact.model")["enum"] == ["auto", "asperity", "elastic", "population"]
+    assert at("contact.bodies")["enum"] == ["auto", "rigid", "elastic"]
+    assert at("contact.roughness")["enum"] == ["statistical", "discrete"]
     assert "maugis" in at("contact.asperity")["enum"]
 
 

@@ -82,7 +82,7 @@ def test_a_lognormal_has_two_thirds_within_its_geometric_deviation():
         ("surface.asperity_radius", 450e-9, "scipy.stats"),
         ("surface.asperity_radius", "truncnormal(1 nm, 1 nm, 3 nm, 2 nm)", "lowest below highest"),
         ("surface.asprity_radius", "normal(450 nm, 50 nm)", "did you mean"),
-        ("contact.model", "uniform(0, 1)", "no key of a number"),
+        ("contact.bodies", "uniform(0, 1)", "no key of a number"),
         ("run.duration", "uniform(0.1, 0.2)", "same time"),
     ],
 )

@@ -69,7 +69,7 @@ def test_members_of_other_coefficients_of_friction():
 def test_a_run_is_judged_alike_with_and_without_a_dataset():
     for scene in (
         LOW,
-        gd.preset("roller_slow").replace({"contact.model": "asperity"}),
+        gd.preset("roller_slow").replace({"contact.bodies": "rigid"}),
         gd.preset("start_up"),
     ):
         solution = solve(scene.replace({"run.samples": "off"}), "auto")
@@ -185,7 +185,7 @@ def test_bad_requests_are_refused(settings, key):
 
 
 def test_a_roller_has_ensembles_too():
-    roller = gd.preset("roller_slow").replace({"contact.model": "asperity"})
+    roller = gd.preset("roller_slow").replace({"contact.bodies": "rigid"})
     ds = gd.studies.ensemble(roller, {"roller.speed": "uniform(5 mm/s, 15 mm/s)"}, 4, of="largest_mesh_force")
     assert set(ds.verdict.values) <= {"rebounds", "sticks", "flies"}
     assert "min_gear_speed" not in ds

@@ -156,7 +156,7 @@ def test_a_life_that_is_cut_off_in_its_last_cycles_is_resumed(tmp_path):
 
 
 def test_coverage_along_the_flank():
-    scene = LOW.replace({"contact.model": "asperity"})
+    scene = LOW.replace({"contact.bodies": "rigid"})
     found = gd.studies.life(scene, LAW, **SHORT, resolved="place", fraction=0.68)
     by_place = found.coverage_by_place.isel(side=0, tooth=0)
     assert by_place.dims == ("passages", "place")
@@ -179,7 +179,7 @@ def test_both_sides_of_independent_ones():
 def test_sides_by_place_add_up_to_uniform_ones(resolved):
     """Where all places are covered alike, they lose on average what uniform flanks lose."""
     changes = {"coating.pairing": "independent", "coating.pinion_fraction": 0.9, "coating.gear_fraction": 0.7}
-    scene = LOW.replace({**changes, "contact.model": "asperity"})
+    scene = LOW.replace({**changes, "contact.bodies": "rigid"})
     losses = []
     for each in ("uniform", resolved):
         coverage = coverage_of(scene, each, 4)
@@ -201,7 +201,7 @@ def test_sides_by_place_add_up_to_uniform_ones(resolved):
 
 
 def test_a_side_by_place_has_one_row_for_the_gear():
-    scene = LOW.replace({"coating.pairing": "independent", "contact.model": "asperity"})
+    scene = LOW.replace({"coating.pairing": "independent", "contact.bodies": "rigid"})
     table = np.full((76, 4), 0.5).tolist()
     with pytest.raises(gd.SceneError, match="one tooth") as error:
         coverage_of(scene.replace({"coating.gear_table": table}), "place", 4)
@@ -209,7 +209,7 @@ def test_a_side_by_place_has_one_row_for_the_gear():
 
 
 def test_each_tooth_has_its_own_share():
-    scene = LOW.replace({"contact.model": "asperity"})
+    scene = LOW.replace({"contact.bodies": "rigid"})
     scene = scene.replace({"coating.pinion_table": np.linspace(0.7, 0.9, 19)[:, None].tolist()})
     coverage = coverage_of(scene, "tooth", 4)
     assert coverage.shapes == ((19, 4),)

@@ -40,7 +40,7 @@ def test_one_asperity_holds_and_its_pull_off_is_that_of_the_side_wall():
         np.full(3, 1.5 * math.pi * 160e-9 * 0.04), rel=1e-9, abs=0
     )
     assert (ds.asperities_holding == 1).mean() > 0.85
-    spread = DRAWN.replace({"contact.model": "population", "contact.radius_spread": 0.3})
+    spread = DRAWN.replace({"contact.roughness": "discrete", "contact.radius_spread": 0.3})
     low, high = np.quantile(gd.studies.pull_off(spread, 60, load=1e-6).pull_off.values, (0.1, 0.9))
     assert low < 24e-9 < 38e-9 < high
 

@@ -13,13 +13,13 @@ from gearidae.contact import attraction_force
 from gearidae.mesh.involute import curvature_radii, flank_arc
 from gearidae.studies.products import answer, open_product
 
-GEARS = gd.preset("teodorescu2009").replace({"contact.model": "population"})
+GEARS = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete"})
 
 
 def listed(heights, **changes):
     """Roller with asperities in the middle, coated where the heights are given."""
     rows = {"x": [0.0] * len(heights), "height": [1e-9 * height for height in heights]}
-    keys = {"contact.model": "population", "contact.asperities": rows} | changes
+    keys = {"contact.roughness": "discrete", "contact.asperities": rows} | changes
     return gd.preset("roller_slow").replace(keys)
 
 

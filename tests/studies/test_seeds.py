@@ -16,7 +16,7 @@ from gearidae.studies.products import answer
 from sweeps import without_times
 
 GEARS = gd.preset("teodorescu2009").replace(
-    {"contact.model": "population", "contact.seed": 5, "run.duration": 10e-6, "run.samples": 11}
+    {"contact.roughness": "discrete", "contact.seed": 5, "run.duration": 10e-6, "run.samples": 11}
 )
 SEEDS = {"contact.seed": "seeds"}
 
@@ -83,7 +83,7 @@ def test_keys_vary_beside_seeds_which_have_no_index():
 def test_wrong_seeds_are_named():
     cases = (
         (GEARS, {"contact.seed": "uniform(0, 9)"}, {}, 'must be "seeds"'),
-        (gd.preset("teodorescu2009"), SEEDS, {}, 'needs contact.model = "population"'),
+        (gd.preset("teodorescu2009"), SEEDS, {}, 'needs contact.roughness = "discrete"'),
         (GEARS, SEEDS, {"of": "sticks"}, "needs keys beside"),
         (GEARS, {}, {}, "must be a table"),
         (GEARS, {**SEEDS, "drive.torque": "seeds"}, {}, "must be one of normal"),

@@ -76,7 +76,7 @@ def test_a_jump_is_told_by_its_uncertainty():
     ("key", "of", "message"),
     [
         ("drive.nothing", "final_speed", "drive.nothing"),
-        ("contact.model", "final_speed", "must hold a number"),
+        ("contact.bodies", "final_speed", "must hold a number"),
         ("load.torque", "final_speed", "is zero"),
         ("drive.torque", "nothing", "must be one of"),
         ("drive.torque", "gear_speed", "must be one of"),

@@ -21,7 +21,7 @@ from gearidae.studies._starting_seeds import _quantiles
 from reference.population import Contact, Tip
 from sweeps import without_times
 
-GEARS = gd.preset("teodorescu2009").replace({"contact.model": "population", "load.torque": 0.0})
+GEARS = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete", "load.torque": 0.0})
 BARE = GEARS.replace({"coating.sam_fraction": 0.0})
 FEW = {"seeds": 2, "jobs": 1}
 

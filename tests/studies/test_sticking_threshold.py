@@ -83,7 +83,7 @@ def test_cut_off_and_resumed_it_ends_alike(found, tmp_path):
     [
         ({"between": (0.9, 1.0)}, "between"),  # turns at both
         ({"between": (0.5, 0.5)}, "between"),
-        ({"over": "contact.model", "between": ("elastic", "asperity")}, "over"),
+        ({"over": "contact.bodies", "between": ("elastic", "rigid")}, "over"),
         ({"exits": 0}, "exits"),
         ({"width": 0.0}, "width"),
         ({"executor": 3}, "executor"),

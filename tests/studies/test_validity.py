@@ -109,7 +109,7 @@ def test_net_adhesion_is_the_deepest_valley_of_the_parting_force(fraction):
 def test_a_population_needs_no_mean_law():
     """Numbers and limits are those of the mean law; verdicts say that each asperity is followed."""
     mean = gd.studies.validity(LOW)
-    real = gd.studies.validity(LOW.replace({"contact.model": "population"}))
+    real = gd.studies.validity(LOW.replace({"contact.roughness": "discrete"}))
     for name in ("expected_asperities", "memory"):
         assert (real.number[name], real.bound[name]) == (mean.number[name], mean.bound[name])
         assert real.holds[name]

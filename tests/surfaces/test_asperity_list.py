@@ -10,8 +10,8 @@ import gearidae as gd
 from gearidae.cli import main
 from gearidae.populations.flanks import flanks_of
 
-GEARS = gd.preset("teodorescu2009").replace({"contact.model": "population"})
-ROLLER = gd.preset("roller_fast").replace({"contact.model": "population"})
+GEARS = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete"})
+ROLLER = gd.preset("roller_fast").replace({"contact.roughness": "discrete"})
 
 
 @pytest.fixture(scope="module")

@@ -87,7 +87,7 @@ def test_speed_after_an_impact(fraction, law):
     scene = gd.preset("roller_slow").replace(
         {
             "coating.sam_fraction": fraction,
-            "contact.model": "asperity",
+            "contact.bodies": "rigid",
             "contact.asperity": law,
             "run.duration": 4e-5,
             "run.samples": 3,
@@ -130,6 +130,6 @@ def test_gears_are_no_roller():
 
 def test_a_roller_that_loses_more_than_it_has_stays():
     scene = gd.preset("roller_slow").replace(
-        {"roller.speed": 1e-6, "coating.sam_fraction": 0.0, "contact.model": "asperity"}
+        {"roller.speed": 1e-6, "coating.sam_fraction": 0.0, "contact.bodies": "rigid"}
     )
     assert math.isnan(solutions.speed_after_impact(scene, 5e-9))

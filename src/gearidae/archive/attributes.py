@@ -11,6 +11,7 @@ import xarray as xr
 from gearidae.archive.variables import RUN
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
+from gearidae.scene.older_names import with_new_names
 
 _TEXTS = ("title", "history", "source", "status", "message", "backend")
 _MORE_TEXTS = ("method", "summary", "references", "license", "date_created", "product_version", "zipped")
@@ -61,6 +62,8 @@ def complete_scene(scene: dict[str, Any]) -> None:
     """Put into a scene of an older archive, in place, what went without saying then."""
     if isinstance(scene.get("mesh"), dict):
         scene["mesh"].setdefault("radius_force", False)
+    if isinstance(scene.get("contact"), dict):
+        scene["contact"] = with_new_names(scene["contact"], quiet=True)
 
 
 def _names_file(table: object) -> bool:

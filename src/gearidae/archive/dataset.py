@@ -19,6 +19,7 @@ from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.totals import total_variables
 from gearidae.archive.variables import (
+    CONTACT,
     EVENTS,
     OF_SWEPT_RUN,
     POPULATION_EVENTS,
@@ -28,12 +29,13 @@ from gearidae.archive.variables import (
     TIME,
     Variable,
     by_name,
-    columns,
 )
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import flanks_digest, flanks_of
 from gearidae.records import Solution
 from gearidae.scene import Scene, describe_key
+from gearidae.scene.combinations import bodies_reason
+from gearidae.scene.sampled import columns_of
 
 _COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
 _RESERVED = {*by_name(), "event", "scene", "coordinates"}
@@ -76,6 +78,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             "status": solution.status,
             "message": solution.message,
             **_totals([solution]),
+            **_contacts(scene, solution),
             **surface_regimes(scene),
             **_asperities_digest(scene),
             **end_state_attributes(solution.start, solution.checkpoint),
@@ -84,9 +87,18 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     )
 
 
+def _contacts(scene: Scene, solution: Solution) -> dict[str, str]:
+    """Say which bodies and asperities have been computed, and what decided on the bodies."""
+    elastic = solution.statistics.skipped.get("elastic_deflection", 1) == 0
+    bodies = "elastic" if elastic else "rigid"
+    reason = bodies_reason(scene, elastic=elastic)
+    values = (bodies, reason, scene.contact.roughness)
+    return {variable.name: value for variable, value in zip(CONTACT, values, strict=True)}
+
+
 def _asperities_digest(scene: Scene) -> dict[str, str]:
     """Attribute that identifies the asperities of a population."""
-    if scene.contact.model != "population":
+    if not scene.contact.is_discrete:
         return {}
     return {"asperities_sha256": flanks_digest(flanks_of(scene))}
 
@@ -197,6 +209,10 @@ def _of_runs(
         source = [s if name in ("status", "message") else s.statistics for s in solutions]
         found[name] = variable, np.array([getattr(each, name) for each in source], dtype=variable.dtype)
     found["reached"] = OF_SWEPT_RUN["reached"], np.array([reached(solution) for solution in solutions])
+    contacts = [_contacts(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
+    for variable in CONTACT:
+        if keep.holds(variable.name):
+            found[variable.name] = variable, np.array([each[variable.name] for each in contacts])
     if keep.holds("skipped"):
         skipped = [json.dumps(solution.statistics.skipped, default=int) for solution in solutions]
         found["skipped"] = OF_SWEPT_RUN["skipped"], np.array(skipped)
@@ -260,7 +276,7 @@ def _samples(solution: Solution, name: str) -> NDArray[np.float64]:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(scene.roller is not None, scene.contact.model)
+    return columns_of(scene)
 
 
 def key_labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:
@@ -295,7 +311,7 @@ def _event_variables(
     }
     joined["event_sam_fraction"] = np.repeat(fractions, [len(solution.events) for solution in solutions])
     catalogue = {**EVENTS}
-    if any(scene.contact.model == "population" for scene in scenes):
+    if any(scene.contact.is_discrete for scene in scenes):
         catalogue |= POPULATION_EVENTS
         events = [solution.events for solution in solutions]
         teeth = [1 if scene.gears is None else scene.gears.pinion_teeth for scene in scenes]

@@ -144,7 +144,7 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     contacts = by_material[:, rows.contacts : rows.contacts + len(materials)] / area
     lost = by_material[:, rows.adhesion : rows.adhesion + len(materials)] / area
     shares = np.array([1.0 if scene.coating.by_place else each.share for each in materials])[:, None, None]
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         # each asperity has been counted, in places that its material covers
         shares = _shares_by_place(scene)
         contacts = np.divide(contacts, shares, out=np.zeros_like(contacts), where=shares > 0.0)

@@ -17,12 +17,12 @@ from gearidae.archive.variables import (
     RUN,
     STANDSTILL_LIST,
     VERDICT,
-    columns,
     extreme_names,
 )
 from gearidae.errors import SceneError
 from gearidae.records import Events, Solution
 from gearidae.scene.group import did_you_mean, shorten
+from gearidae.scene.sampled import columns_of
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -112,7 +112,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     if not isinstance(asked, Iterable):
         raise SceneError("keep", shorten(keep), "must be a list of variables, such as verdict or gear_speed")
     asked = list(asked)
-    extremes = list(extreme_names(scene.roller is not None, scene.contact.model))
+    extremes = list(extreme_names(scene))
     members: dict[str, tuple[str, ...]] = {
         "verdict": tuple(VERDICT),
         "extremes": (*extremes, *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
@@ -153,4 +153,4 @@ def kept_in(attributes: Any, scene: Scene) -> Keep:
 
 
 def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns(scene.roller is not None, scene.contact.model)
+    return columns_of(scene)

@@ -23,9 +23,9 @@ from gearidae.archive.older import converted
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
-from gearidae.archive.variables import EVENTS, columns
+from gearidae.archive.variables import EVENTS
 from gearidae.errors import SceneError
-from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES
+from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES, sampled_columns
 from gearidae.scene import Scene
 
 _SIGNATURES = (b"\x89HDF\r\n\x1a\n", b"CDF\x05")
@@ -186,7 +186,7 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     """Variables that an archive of any version has at least."""
     later = {one.name for one in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if one.since}
-    sampled = tuple(name for name in columns(is_roller="roller" in scene) if name not in later)
+    sampled = tuple(name for name in sampled_columns(roller="roller" in scene) if name not in later)
     events = tuple(EVENTS) if "event" in ds.dims else ()  # a user may drop them
     if "keep" not in ds.attrs:
         return ("time", *sampled, *events)

@@ -13,8 +13,9 @@ import xarray as xr
 from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
-from gearidae.archive.variables import EXTREMES, PLACES, SAMPLES, columns
+from gearidae.archive.variables import EXTREMES, PLACES, SAMPLES
 from gearidae.errors import SceneError
+from gearidae.records import sampled_columns
 from gearidae.scene import Scene
 
 
@@ -56,7 +57,7 @@ def is_roller(ds: xr.Dataset) -> bool:
 
 def swept_dims(ds: xr.Dataset) -> tuple[str, ...]:
     """Dimensions along which the runs of a dataset differ; none for a single run."""
-    of_runs = ("status", *columns(is_roller(ds)), *EXTREMES)
+    of_runs = ("status", *sampled_columns(roller=is_roller(ds)), *EXTREMES)
     found = next((ds[name] for name in of_runs if name in ds), None)
     return () if found is None else tuple(str(dim) for dim in found.dims if dim != "time")
 

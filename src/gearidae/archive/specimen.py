@@ -22,14 +22,14 @@ def has_seeds(ds: xr.Dataset) -> bool:
 
 
 def specimen_note(ds: xr.Dataset) -> str:
-    """Say in a sentence that a run with real asperities is one specimen of its design; empty for other contact models.
+    """Say in a sentence that a run with discrete asperities is one specimen of its design; else empty.
 
     Raises
     ------
     SceneError
         If the dataset carries no scene.
     """
-    if scene_of(ds).get("contact", {}).get("model") != "population":
+    if scene_of(ds).get("contact", {}).get("roughness") != "discrete":
         return ""
     if has_seeds(ds):
         return f"Runs of different seeds are specimens of one design: {_MEANS}."

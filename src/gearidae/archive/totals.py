@@ -18,6 +18,7 @@ from gearidae.archive.variables import (
 )
 from gearidae.records import EnergyBalance, Extremes
 from gearidae.scene import Scene
+from gearidae.scene.sampled import columns_of
 
 
 def total_variables(
@@ -58,9 +59,9 @@ def total_variables(
     extremes = [run.extremes or Extremes() for run in runs]
     if all(run.extremes is None for run in runs):
         return made
-    roller, model = scene.roller is not None, scene.contact.model
-    for name in extreme_names(roller, model):
-        if name == "min_separation" and model == "elastic":  # of these it is sampled
+    roller, sampled = scene.roller is not None, columns_of(scene)
+    for name in extreme_names(scene):
+        if name in sampled:  # of elastic bodies
             continue
         field = "smallest_separation" if name == "min_separation" else name
         variable = (ROLLER_EXTREMES if roller else EXTREMES)[name]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -23,11 +23,13 @@ from gearidae.records import (
     ROLLER_SAMPLES,
     EventKind,
     Flank,
-    sampled_columns,
 )
 from gearidae.records import extremes as records
 from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS
 from gearidae.records.quantity import INT, Quantity
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,8 +149,19 @@ _RUN = (
     Variable("backend", (), "1", "driver of the solver that ran", np.str_),
     Variable("method", (), "1", "formulas that the run began with", np.str_),
 )
+CONTACT: Final = (
+    Variable(
+        "contact_bodies", (), "1", "tooth bodies that were computed: rigid, or elastic at any time", np.str_
+    ),
+    Variable(
+        "contact_bodies_reason", (), "1", "what decided on the bodies where the scene says auto", np.str_
+    ),
+    Variable("contact_roughness", (), "1", "asperities that were computed: statistical or discrete", np.str_),
+)
+"""What a run has computed of its contacts, whatever was left to it."""
 _OF_SWEPT_RUN = (
     Variable("reached", (), "s", "simulated time reached"),
+    *CONTACT,
     Variable("skipped", (), "1", "what the scene did not need, by name, as JSON", np.str_),
     Variable("scene", (), "1", "input of the run in SI units, as JSON", np.object_),
 )
@@ -242,15 +255,10 @@ VERDICT: Mapping[str, Variable] = {variable.name: variable for variable in _VERD
 """What a run of a sweep leaves behind that keeps only parts of its runs."""
 
 
-def extreme_names(is_roller: bool, model: str) -> tuple[str, ...]:
-    """Names of the extremes that a run of gears or a roller leaves, with a contact model."""
-    found = ROLLER_EXTREMES if is_roller else EXTREMES
-    return tuple(name for name in found if name not in ASPERITY_COUNTS or model == "population")
-
-
-def columns(is_roller: bool, model: str = "asperity") -> tuple[str, ...]:
-    """Names of the sampled columns of a gear or a roller scene with a contact model."""
-    return sampled_columns(roller=is_roller, model=model)
+def extreme_names(scene: Scene) -> tuple[str, ...]:
+    """Names of the extremes that a run of a scene leaves."""
+    found = EXTREMES if scene.roller is None else ROLLER_EXTREMES
+    return tuple(name for name in found if name not in ASPERITY_COUNTS or scene.contact.is_discrete)
 
 
 def by_name() -> dict[str, Variable]:

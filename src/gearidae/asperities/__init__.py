@@ -9,6 +9,7 @@ from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.registry import (
     asperity,
     asperity_load,
+    has_area,
     law_names,
     law_of,
     law_of_tip,
@@ -21,6 +22,7 @@ __all__ = [
     "AsperityLaw",
     "asperity",
     "asperity_load",
+    "has_area",
     "law_names",
     "law_of",
     "law_of_tip",

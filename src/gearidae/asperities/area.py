@@ -5,7 +5,8 @@ displacement. A JKR asperity has the contact radius
 
 .. math:: a^2 = \beta\,\delta_c\,12^{1/3}\,s^4
 
-with s of `gearidae.asperities.jkr`. Area and load of one asperity have the same branches, ends and tables.
+with s of `gearidae.asperities.jkr`. Area and load of one asperity have the same branches, ends and tables. Each law
+says its area (`gearidae.asperities.AsperityLaw.area`).
 
 References
 ----------
@@ -17,16 +18,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from gearidae.arrays import Floats
 from gearidae.asperities.base import AsperityLaw
-from gearidae.asperities.jkr import Jkr, jkr_root
+from gearidae.asperities.jkr import Jkr
 from gearidae.asperities.tip import Asperity
-
-AREAS = ("jkr", "dmt", "hertz")
-"""Laws whose contact area is known."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class ContactArea(AsperityLaw):
     Attributes
     ----------
     law : AsperityLaw
-        One of `AREAS`.
+        One that has an area, see `gearidae.asperities.has_area`.
     """
 
     name: ClassVar[str] = "area"
@@ -63,15 +60,19 @@ class ContactArea(AsperityLaw):
         return self.law.pieces
 
     @property
+    def touch(self) -> float:
+        """Displacement of a kink, where the tip begins to touch."""
+        return self.law.touch
+
+    @property
     def pull_off(self) -> float:
         """Largest tension: an area has none."""
         return 0.0
 
     def load(self, displacement: ArrayLike) -> Floats:
-        """Contact area over ``pi beta l``; see `AsperityLaw.load`."""
-        delta = np.asarray(displacement, dtype=np.float64)
-        if not isinstance(self.law, Jkr):
-            return np.asarray(np.maximum(delta, 0.0))
-        limit = self.law.limit
-        area = limit * 12.0 ** (1.0 / 3.0) * jkr_root(delta / limit) ** 4
-        return np.where(delta < -limit, 0.0, area)
+        """Contact area over ``pi beta l``; see `AsperityLaw.area`."""
+        return self.law.area(displacement)
+
+    def nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
+        """Lay a quadrature rule of the area; see `AsperityLaw.area_nodes`."""
+        return self.law.area_nodes(low, high, x, w)

@@ -122,11 +122,37 @@ class AsperityLaw(ABC):
         displacement, weight : ndarray, shape (..., n)
             Nodes, and weights times load times measure: ``weight @ f(displacement)`` is the integral of load times f.
         """
+        displacement, measure = self._rule_of_fold(low, high, x, w)
+        return displacement, measure * self.load(displacement)
+
+    def _rule_of_fold(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
         ends = np.sqrt(np.maximum(np.stack(np.broadcast_arrays(low, high)) + self.detach, 0.0))[..., None]
         span = ends[1] - ends[0]
         root = ends[0] + 0.5 * (x + 1.0) * span
-        displacement = root**2 - self.detach
-        return displacement, 0.5 * span * w * 2.0 * root * self.load(displacement)
+        return root**2 - self.detach, 0.5 * span * w * 2.0 * root
+
+    def area(self, displacement: ArrayLike) -> Floats:
+        """Contact area of an asperity in contact, on the branch of `load`; a law may leave it out.
+
+        Friction by a shear strength needs it (``contact.friction_law = "shear"``).
+
+        Parameters
+        ----------
+        displacement : array_like
+            As for `load`.
+
+        Returns
+        -------
+        ndarray
+            Over ``pi beta l``, with the tip radius and the law's unit of length, so that Hertz's is the displacement;
+            zero below ``-detach``.
+        """
+        raise NotImplementedError(f"the law {self.name} has no contact area")
+
+    def area_nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
+        """Lay a quadrature rule of the area between two displacements; as `nodes`, with the area for the load."""
+        displacement, measure = self._rule_of_fold(low, high, x, w)
+        return displacement, measure * self.area(displacement)
 
     def energy(self, displacement: ArrayLike) -> Floats:
         """Energy that an asperity in contact stores: the integral of its load from detachment on.

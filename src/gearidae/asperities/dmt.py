@@ -54,3 +54,7 @@ class Dmt(AsperityLaw):
         """Load of an asperity, ``displacement^1.5 - pull_off`` while it touches; see `AsperityLaw.load`."""
         delta = np.asarray(displacement, dtype=np.float64)
         return np.asarray(np.maximum(delta, 0.0) ** 1.5 - np.where(delta >= 0.0, self.pull_off, 0.0))
+
+    def area(self, displacement: ArrayLike) -> Floats:
+        """Contact area, that of Hertz; see `AsperityLaw.area`."""
+        return np.asarray(np.maximum(np.asarray(displacement, dtype=np.float64), 0.0))

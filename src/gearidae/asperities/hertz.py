@@ -44,3 +44,7 @@ class Hertz(AsperityLaw):
     def load(self, displacement: ArrayLike) -> Floats:
         """Load of an asperity, ``displacement^1.5``; see `AsperityLaw.load`."""
         return np.asarray(np.maximum(displacement, 0.0) ** 1.5)
+
+    def area(self, displacement: ArrayLike) -> Floats:
+        """Contact area, the displacement in compression; see `AsperityLaw.area`."""
+        return np.asarray(np.maximum(np.asarray(displacement, dtype=np.float64), 0.0))

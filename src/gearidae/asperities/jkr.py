@@ -201,6 +201,12 @@ class Jkr(AsperityLaw):
         delta = np.asarray(displacement, dtype=np.float64)
         return math.sqrt(3.0) * self.limit**1.5 * jkr_load(delta / self.limit)
 
+    def area(self, displacement: ArrayLike) -> Floats:
+        """Contact area, ``dc 12^(1/3) s^4``; see `AsperityLaw.area`."""
+        delta = np.asarray(displacement, dtype=np.float64)
+        area = self.limit * 12.0 ** (1.0 / 3.0) * jkr_root(delta / self.limit) ** 4
+        return np.where(delta < -self.limit, 0.0, area)
+
     def nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
         """Lay a quadrature rule out in s, in which load and displacement are polynomials; see `AsperityLaw.nodes`."""
         ends = jkr_root(np.stack(np.broadcast_arrays(low, high)) / self.limit)[..., None]

@@ -54,8 +54,8 @@ Z_TOUCH: Final = HALF_PI**-0.75
 _SERIES = np.array([(-1) ** k * (k + 1) * 2.0 ** (2 * k + 3) / math.factorial(2 * k + 3) for k in range(11)])
 
 
-def branch_at(z: Floats, zone: float) -> tuple[Floats, Floats, Floats]:
-    """Displacement, load and rate of the displacement on the branch of tips that touch.
+def branch_at(z: Floats, zone: float) -> tuple[Floats, Floats, Floats, Floats]:
+    """Displacement, load, rate of the displacement and contact area on the branch of tips that touch.
 
     Parameters
     ----------
@@ -66,8 +66,9 @@ def branch_at(z: Floats, zone: float) -> tuple[Floats, Floats, Floats]:
 
     Returns
     -------
-    displacement, load, rate : ndarray, the shape of `z`
-        In units of adhesion; the last is the derivative of the first in z.
+    displacement, load, rate, area : ndarray, the shape of `z`
+        In units of adhesion; the rate is the derivative of the displacement in z, and the area that of the inner
+        radius, A squared.
     """
     q = z ** (-4.0 / 3.0)
     s, c, twice = np.sin(q), np.cos(q), np.cos(2.0 * q)
@@ -86,7 +87,7 @@ def branch_at(z: Floats, zone: float) -> tuple[Floats, Floats, Floats]:
     displacement = inner**2 - 4.0 / 3.0 * zone * outer * s
     load = inner**3 - zone * outer**2 * (s * c + q)
     rate = 2.0 * inner * inner_rate - 4.0 / 3.0 * zone * (outer_rate * s + outer * c)
-    return displacement, load, rate * (-4.0 / 3.0) * q / z
+    return displacement, load, rate * (-4.0 / 3.0) * q / z, inner**2
 
 
 @lru_cache(maxsize=64)
@@ -117,7 +118,7 @@ def _detachment_energy(zone: float) -> float:
     x, w = np.polynomial.legendre.leggauss(64)
     half = 0.5 * math.log(end / Z_TOUCH)  # 0 if it detaches before it touches
     z = Z_TOUCH * np.exp(half * (x + 1.0))
-    _, load, rate = branch_at(z, zone)
+    _, load, rate, _ = branch_at(z, zone)
     return float(apart + half * (w * z * load * rate).sum())
 
 
@@ -216,7 +217,7 @@ class Maugis(AsperityLaw):
         ends = np.stack(np.broadcast_arrays(low, high)) / self.length
         z = self._parameter(ends)[..., None]
         half = 0.5 * (z[1] - z[0])
-        displacement, load, rate = branch_at(z[0] + half * (x + 1.0), self.zone)
+        displacement, load, rate, _ = branch_at(z[0] + half * (x + 1.0), self.zone)
         weight = half * w * rate * load
         if self._marks[1] > self._marks[2]:
             radius = self._zone_radius(np.minimum(ends, self._marks[1]))[..., None]
@@ -230,6 +231,19 @@ class Maugis(AsperityLaw):
                 np.concatenate([pull, weight], -1),
             )
         return displacement * self.length, weight * self.length**2.5
+
+    def area(self, displacement: ArrayLike) -> Floats:
+        """Contact area within the zone, where the tip touches; see `AsperityLaw.area`."""
+        delta = np.asarray(displacement, dtype=np.float64) / self.length
+        area = branch_at(self._parameter(delta), self.zone)[3]
+        return self.length * np.where(delta >= self._marks[1], area, 0.0)
+
+    def area_nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
+        """Lay a rule out in the parameter of tips that touch; see `AsperityLaw.area_nodes`."""
+        z = self._parameter(np.stack(np.broadcast_arrays(low, high)) / self.length)[..., None]
+        half = 0.5 * (z[1] - z[0])
+        displacement, _, rate, area = branch_at(z[0] + half * (x + 1.0), self.zone)
+        return displacement * self.length, half * w * rate * area * self.length**2
 
     def _zone_radius(self, delta: Floats) -> Floats:
         """C of a tip that does not touch, at a displacement."""

@@ -67,6 +67,22 @@ def law_names() -> tuple[str, ...]:
     return _LAWS.names()
 
 
+def has_area(name: str) -> bool:
+    """Whether a law has a contact area, which friction by a shear strength needs.
+
+    Parameters
+    ----------
+    name : str
+        The law's name.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    return _LAWS.find(name).area is not AsperityLaw.area
+
+
 def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
     """Return a law for one tip, in a unit of length.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearidae.archive.variables import EVENTS, columns
+from gearidae.archive.variables import EVENTS
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say, show_rows
@@ -18,6 +18,7 @@ from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
 from gearidae.scene.friction import has_flank_friction, has_hub_friction
+from gearidae.scene.sampled import columns_of
 from gearidae.scene.validity_row import contact_subject, mean_note
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     show_rows(_rows(scene))
     rows = validity_rows(scene)
     show_validity(rows, about=contact_subject(roller=scene.roller is not None))
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         say("A run is one specimen of this design: contact.seed numbers the others.")
     elif note := mean_note(rows):
         say(f"Verdicts of runs are a {note}")
@@ -155,7 +156,11 @@ def _roller(scene: Scene) -> Rows:
 def _contact(scene: Scene) -> Rows:
     from gearidae.asperities.tip import asperity_of
 
-    yield "Contact", "", f"{scene.contact.model} model, {scene.contact.asperity} asperities"
+    yield (
+        "Contact",
+        "",
+        f"{scene.contact.bodies} bodies, {scene.contact.roughness} {scene.contact.asperity} asperities",
+    )
     yield "contact modulus E*", f"{asperity_of(scene.surface).modulus * 1e-9:.5g} GPa", ""
     yield from _coating(scene)
     for surface, _, _, name in scene.materials():
@@ -193,7 +198,7 @@ def _run(scene: Scene) -> Rows:
     yield "Run", "", ""
     yield "duration", f"{run.duration * 1e3:g} ms", ""
     expected = run_time(scene)
-    numbers = 1 + len(columns(scene.roller is not None, scene.contact.model))  # with the time
+    numbers = 1 + len(columns_of(scene))  # with the time
     event = sum(np.dtype(variable.dtype).itemsize for variable in EVENTS.values())
     sizes = 8e-6 * numbers * run.sample_count, 1e-6 * event * expected.events
     yield "samples", f"{run.sample_count}", f"{sizes[0]:.3g} MB, and some {sizes[1]:.1g} MB of events"

@@ -29,9 +29,9 @@ from gearidae.records import (
     Solution,
     Statistics,
     sample_times,
-    sampled_columns,
 )
 from gearidae.scene import Scene
+from gearidae.scene.sampled import columns_of
 
 __all__ = [
     "Ended",
@@ -282,7 +282,7 @@ def solve(
     given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
-    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
+    columns = columns_of(scene)
     rows, events = [np.empty((0, len(columns)))], [np.empty((0, EVENT_NUMBERS))]
 
     def take(block: Block, statistics: Statistics, wall_time: float) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearidae.engine.elastic.histories import book_points, init_nodes
 from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
+from gearidae.engine.events.sliding import settle_start
 from gearidae.engine.followers.balance import carry_balance
 from gearidae.engine.followers.exposures.bins import exposure_table
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
@@ -40,7 +41,14 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     m.state.deep_exits = m.state.extremes.mesh_exits
     y = np.concatenate([state, np.zeros(new.start.size - state.size)])
     join_as_pairs(m, y)
-    carry_balance(source, state, m, y)
+    return _handed_over(source, state, new, time, y)
+
+
+def _handed_over(source: Model, state: Floats, new: Problem, time: float, y: Floats) -> Floats:
+    """Checkpoint of the new problem: held friction is decided on anew, and the change of the stored energy booked."""
+    if new.model.scene.friction.on != 0:
+        settle_start(new.model, time, y, False)
+    carry_balance(source, state, new.model, y)
     return new.checkpoint(time, y)
 
 
@@ -161,8 +169,7 @@ def lighten(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
             h.joined -= state[first_unknown(source, k // own * slots + (int(h.pair) & (slots - 1)))]
             h.stretched = 0
             remember(source, m, k)
-    carry_balance(source, state, m, y)
-    return new.checkpoint(time, y)
+    return _handed_over(source, state, new, time, y)
 
 
 def carry_exposures(source: Model, m: Model) -> None:
@@ -203,8 +210,7 @@ def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     _interpolate(source, state, m, y)
     settle_nodes(m, time, y)
     note_gaps(m, y)
-    carry_balance(source, state, m, y)
-    return new.checkpoint(time, y)
+    return _handed_over(source, state, new, time, y)
 
 
 def carry_nodes(source: Model, state: Floats, m: Model, y: Floats) -> bool:

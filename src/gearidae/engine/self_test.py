@@ -193,7 +193,7 @@ def _scene() -> Scene:
                 "asperity_radius": 450e-9,
                 "roughness": 6e-9,
             },
-            "contact": {"model": "asperity"},
+            "contact": {"bodies": "rigid"},
             "drive": {"harmonic": {"amplitude": 3e-12, "frequency": FREQUENCY}},
             "initial": {"gear_speed": 4000.0, "gap": 0.2e-6, "mesh_phase": 0.3},
             "run": {"duration": PERIODS / FREQUENCY, "samples": SAMPLES, "rtol": COARSE},

@@ -73,7 +73,7 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
 
 def flank_asperities(scene: Scene, pair: int, flank: Flank) -> MetFlank:
     """Return the asperities to draw of a pair: of a population those of its flank, of other models a sample."""
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         return met_flank(scene, pair, flank)
     x, height, material = rough_sample(scene, pair)
     return MetFlank(x, height, np.full_like(x, scene.surface.asperity_radius), material)
@@ -81,7 +81,7 @@ def flank_asperities(scene: Scene, pair: int, flank: Flank) -> MetFlank:
 
 def touching_arc(scene: Scene, place: float) -> float:
     """Return where a pair touches among the asperities to draw [m]: on a population's flank, or amid a sample."""
-    return contact_arc(scene, place) if scene.contact.model == "population" else 0.0
+    return contact_arc(scene, place) if scene.contact.is_discrete else 0.0
 
 
 def joined_asperities(scene: Scene, contact: ToothContact) -> float:
@@ -94,7 +94,7 @@ def joined_asperities(scene: Scene, contact: ToothContact) -> float:
         where the surfaces hardly touch. NaN where the record does not tell.
     """
     assert scene.gears is not None
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         return math.nan if contact.asperities is None else float(len(contact.asperities))
     sigma = scene.surface.roughness
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
@@ -158,7 +158,7 @@ def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
     half, sigma, radius = half_width(scene), scene.surface.roughness, contact.radius
     x = np.linspace(-half, half, 801)
     upper = contact.gap + x**2 / (2.0 * radius)
-    real = scene.contact.model == "population"
+    real = scene.contact.is_discrete
     row = (_real_row if real else _sampled_row)(scene, contact)
     caps = row.height[:, None] - (x - row.x[:, None]) ** 2 / (2.0 * row.radius[:, None])
     caps = np.vstack([caps, np.full(x.size, -_BELOW * sigma)])

@@ -25,7 +25,7 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run with ``contact.model = "population"``, with samples and the events of single asperities.
+        A single run with ``contact.roughness = "discrete"``, with samples and the events of single asperities.
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
 
@@ -44,8 +44,8 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         )
     run = next(one for _, one in single_runs(ds))
     scene = run_scene(run)
-    if scene.contact.model != "population":
-        raise SceneError("contact.model", scene.contact.model, "must be population for this picture")
+    if not scene.contact.is_discrete:
+        raise SceneError("contact.roughness", scene.contact.roughness, "must be discrete for this picture")
     if not scene.run.asperity_events:
         raise SceneError("run.asperity_events", "false", "must be true for this picture")
     name = next((one for one in _FORCES if one in ds), _FORCES[0])

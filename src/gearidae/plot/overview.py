@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.specimen import specimen_label
-from gearidae.archive.variables import columns
 from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.torque import contact_torque
+from gearidae.records import sampled_columns
 from gearidae.studies.declared import studies
 
 
@@ -30,7 +30,7 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         Functions of `gearidae.plot` and their captions, the one that says most first.
     """
     if kind == "runs":
-        sampled = any(name in ds for name in columns(is_roller(ds)))
+        sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
     return {each.name: each.caption for each in studies()[kind].pictures if each.needs(ds)}
 

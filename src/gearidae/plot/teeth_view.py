@@ -182,7 +182,7 @@ class TeethView:
             0.99,
             0.179,
             "all asperities of each flank, the joined ones marked"
-            if self._scene.contact.model == "population"
+            if self._scene.contact.is_discrete
             else "asperities drawn: a sample of the model's",
             ha="right",
             va="top",

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def population(scene: Scene) -> xr.Dataset:
-    """Return the asperities of a scene with ``contact.model = "population"``.
+    """Return the asperities of a scene with ``contact.roughness = "discrete"``.
 
     Parameters
     ----------
@@ -43,9 +43,11 @@ def population(scene: Scene) -> xr.Dataset:
     """
     import xarray as xr
 
-    if scene.contact.model != "population":
+    if not scene.contact.is_discrete:
         raise SceneError(
-            "contact.model", scene.contact.model, "must be population: others have no asperities of their own"
+            "contact.roughness",
+            scene.contact.roughness,
+            "must be discrete: statistical ones are no asperities of their own",
         )
     flanks = flanks_of(scene)
     counts = [one.arc.size for one in flanks]

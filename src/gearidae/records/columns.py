@@ -107,7 +107,10 @@ ROLLER_POPULATION: Final = _places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
 """Places of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
 
 
-def sampled_columns(*, roller: bool, model: str) -> tuple[str, ...]:
-    """Names of what is sampled of a scene of gears or a roller with a contact model, as ``contact.model`` names it."""
-    more = {"elastic": ELASTIC_COLUMNS, "population": POPULATION_COLUMNS}.get(model, ())
+def sampled_columns(
+    *, roller: bool, bodies: str = "rigid", roughness: str = "statistical"
+) -> tuple[str, ...]:
+    """Names of what is sampled of gears or a roller, by ``contact.bodies`` and ``contact.roughness``."""
+    more = ELASTIC_COLUMNS if bodies == "elastic" else ()
+    more += POPULATION_COLUMNS if roughness == "discrete" else ()
     return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + more

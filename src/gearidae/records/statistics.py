@@ -32,7 +32,7 @@ class Ending(Enum):
     )
     DEFLECTION = (
         "deflection",
-        "tooth-body deflection exceeds the limit of the asperity model; set contact.model to elastic",
+        "tooth-body deflection exceeds the limit of the asperity model; set contact.bodies to elastic",
     )
     TOO_DEEP = (
         "too_deep",

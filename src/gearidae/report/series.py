@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from gearidae.archive.pieces import PIECE, count, pieces
 from gearidae.archive.select import is_roller, runs
-from gearidae.archive.variables import SAMPLES, columns
+from gearidae.archive.variables import SAMPLES
 from gearidae.drawing.style import runs_of
 from gearidae.errors import SceneError
-from gearidae.records import EventKind
+from gearidae.records import EventKind, sampled_columns
 
 MOST_VALUES = 1_500_000
 """Numbers a page holds at most (8 MB of text); longer series are reduced to the extremes of intervals."""
@@ -39,7 +39,7 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
         unit, shown, and per run the base64 text of little-endian float32 values on a uniform grid from 0 to
         ``end``), ``runs`` (label and times of onsets and separations [s]). Empty without samples.
     """
-    names = [name for name in columns(is_roller(ds)) if name in ds]
+    names = [name for name in sampled_columns(roller=is_roller(ds)) if name in ds]
     samples = ds.sizes.get("time", 0)
     try:
         shown = runs_of(ds, names[0]) if names and samples else []

@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.select import is_roller, motion_samples, run_scene
-from gearidae.archive.variables import EVENTS, columns
+from gearidae.archive.variables import EVENTS
 from gearidae.arrays import Floats
 from gearidae.drawing.style import runs_of
 from gearidae.errors import SceneError
@@ -22,7 +22,7 @@ from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
 from gearidae.scene import MATERIAL_NAMES, Scene
 
 if TYPE_CHECKING:
-    from gearidae.records import Flank
+    from gearidae.records import Flank, sampled_columns
     from gearidae.studies.tooth_states import MeshState, ToothContact
 
 MOST_STATES = 3000
@@ -73,7 +73,7 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
         scene (lengths in m, shapes in modules), and ``states``: base64 text of little-endian float32 numbers, row by
         row. Empty for rollers, and where samples or events have not been kept.
     """
-    if is_roller(ds) or any(name not in ds.variables for name in (*columns(False), *EVENTS)):
+    if is_roller(ds) or any(name not in ds.variables for name in (*sampled_columns(roller=False), *EVENTS)):
         return {}
     try:
         shown = runs_of(ds, "transmission_error")
@@ -112,7 +112,7 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
         "gear": _wheel(picture.gear, module),
         "roughness": scene.surface.roughness,
         "halfWidth": half_width(scene),
-        "population": scene.contact.model == "population",
+        "population": scene.contact.is_discrete,
         "asperities": list(asperities.rows),
         "joined": _encode(np.array(asperities.joined)),
         "states": _encode(np.array(rows).ravel()),

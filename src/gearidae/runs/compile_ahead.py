@@ -10,13 +10,13 @@ from gearidae.scene import Scene, preset
 _GEARS: Final = "teodorescu2009_low_speed"
 SCENES: Final[tuple[tuple[str, dict[str, Any]], ...]] = (
     (_GEARS, {}),
-    (_GEARS, {"contact.model": "elastic"}),
-    (_GEARS, {"contact.model": "population"}),
+    (_GEARS, {"contact.bodies": "elastic"}),
+    (_GEARS, {"contact.roughness": "discrete"}),
     (_GEARS, {"contact.friction": 0.1, "gears.hub_friction": 0.1, "gears.gear_hub_radius": 5e-6}),
-    (_GEARS, {"contact.model": "population", "contact.friction": 0.1}),
+    (_GEARS, {"contact.roughness": "discrete", "contact.friction": 0.1}),
     (_GEARS, {"run.exposures": 2, "surface.hamaker": 1e-21}),
-    ("roller_slow", {"contact.model": "asperity"}),
-    ("roller_slow", {"contact.model": "elastic"}),
+    ("roller_slow", {"contact.bodies": "rigid"}),
+    ("roller_slow", {"contact.bodies": "elastic"}),
 )
 """Presets and changes that together need every part of the engine."""
 

@@ -21,7 +21,7 @@ def locking_rows(scene: Scene) -> Iterator[ValidityRow]:
     assert scene.gears is not None
     gears, geometry, values = scene.gears, scene.geometry, friction_values(scene)
     where = max((values[one.name] for one in scene.materials() if one.share > 0.0), default=0.0)
-    if has_flank_friction(scene) and scene.contact.friction_law == "net":
+    if has_flank_friction(scene) and scene.contact.friction_law == "coulomb":
         locks = min(locking_coefficients(geometry))
         yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")
     if has_hub_friction(scene):

@@ -29,7 +29,7 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
-    return [*_sizes(scene), *_resistance(scene), *_bodies(scene)]
+    return [*_sizes(scene), *_resistance(scene), *_bodies(scene), *_path_force(scene)]
 
 
 def log_doubts(scene: Scene) -> None:
@@ -79,10 +79,18 @@ def _sizes(scene: Scene) -> list[str]:
 
 def _bodies(scene: Scene) -> list[str]:
     """Say that bodies stay rigid where flanks attract each other."""
-    if scene.contact.model != "auto" or not scene.attracts:
+    if scene.contact.bodies != "auto" or not scene.attracts:
         return []
-    words = 'contact.model = "auto" keeps the teeth rigid where flanks attract each other (hamaker), however hard they'
-    return [f'{words} are pressed; "asperity" is the same without this warning']
+    words = 'contact.bodies = "auto" keeps the teeth rigid where flanks attract each other (hamaker), however hard they'
+    return [f'{words} are pressed; "rigid" is the same without this warning']
+
+
+def _path_force(scene: Scene) -> list[str]:
+    """Say that discrete asperities push along the path of contact in any case."""
+    if scene.mesh is None or scene.mesh.radius_force or not scene.contact.is_discrete:
+        return []
+    words = "mesh.radius_force = false has no effect on discrete asperities"
+    return [f"{words}: each pushes where it stands, also along the path"]
 
 
 def _resistance(scene: Scene) -> list[str]:

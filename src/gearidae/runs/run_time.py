@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 from gearidae.asperities.tip import asperity_of
 from gearidae.mesh.pair_contact import PairContact, asperity_stiffness
 from gearidae.runs.estimates import balanced_speed, mean_drive_torque, rest_of
-from gearidae.scene.limits import stays_rigid
+from gearidae.scene.combinations import may_deflect
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -84,7 +84,7 @@ def run_time(scene: Scene) -> RunTime:
         steps = _STEPS_A_PASSAGE * _passages(scene)
     rate, frequency, load = max(_rate(rest.contact, gap, rest.mass) for gap in gaps)
     cost = _ELASTIC_STEP if _is_elastic(scene, rest.contact, load) else _RIGID_STEP
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         stiffness = asperity_stiffness(scene)
         frequency = max(math.sqrt(stiffness / rest.mass) / (2.0 * math.pi), frequency)
         rate, cost = max(_STEPS_OF_ONE * frequency, rate), _POPULATION_STEP
@@ -125,8 +125,8 @@ def _passages(scene: Scene) -> float:
 
 def _is_elastic(scene: Scene, contact: PairContact, load: float) -> bool:
     """Whether the bodies deflect, or in ``auto`` will: by more than a fiftieth of the roughness under the load."""
-    if scene.contact.model != "auto" or stays_rigid(scene):
-        return scene.contact.model == "elastic"
+    if scene.contact.bodies != "auto" or not may_deflect(scene):
+        return scene.contact.bodies == "elastic"
     modulus = asperity_of(contact.surface).modulus
     deflection = (
         6.0 * load / (math.pi * modulus * contact.width)

@@ -108,7 +108,7 @@ def validity_rows(scene: Scene) -> list[ValidityRow]:
 def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rest = rest_of(scene)
     stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
-    real = scene.contact.model == "population"
+    real = scene.contact.is_discrete
     rows = [_asperities(rest, real), _density(rest.contact), *_merging(scene), *_tabor(scene)]
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
     rows += [_attraction(scene, rest, rest.gap, "attraction", "attraction across the gap")]
@@ -187,7 +187,7 @@ def _memory(scene: Scene, rest: Rest) -> ValidityRow:
         rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
         ratio = width / rolled
         laws = [law_of(contact.law, part.surface) for part in contact.parts]
-        forgets, real = all(law.detach == law.join for law in laws), scene.contact.model == "population"
+        forgets, real = all(law.detach == law.join for law in laws), scene.contact.is_discrete
         holds = forgets or real or ratio >= 1.0
         words = (
             "asperities of this law have no memory"

@@ -169,8 +169,8 @@ def check_asperities(scene: Scene) -> None:
     if not listed:
         return
     key, listing = "contact.asperities", f"({len(listed)} asperities)"
-    if contact.model != "population":
-        raise SceneError(key, listing, 'needs contact.model = "population"')
+    if not contact.is_discrete:
+        raise SceneError(key, listing, 'needs contact.roughness = "discrete"')
     along = "arc" if scene.roller is None else "x"
     if listed.along != along:
         raise SceneError(key, listing, f"must have the column {along} in place of {listed.along}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from gearidae.asperities.area import AREAS
+from gearidae.asperities import has_area, law_names
 from gearidae.errors import SceneError
 from gearidae.mesh.friction import locking_coefficients
 
@@ -15,7 +15,7 @@ _HUBS: Final = {"pinion_hub_radius": "pinion", "gear_hub_radius": "gear"}
 
 
 def friction_values(scene: Scene) -> dict[str, float]:
-    """Friction of each material: coefficients of the law ``net`` [1], shear strengths of the law ``shear`` [Pa].
+    """Friction of each material: coefficients of the law ``coulomb`` [1], shear strengths of the law ``shear`` [Pa].
 
     Parameters
     ----------
@@ -66,26 +66,12 @@ def check_friction(scene: Scene) -> None:
     _check_hubs(scene)
     locks, values = min(locking_coefficients(scene.geometry)), friction_values(scene)
     for key, value in (("contact.friction", values["bare"]), ("coating.friction", values["coated"])):
-        if scene.contact.friction_law == "net" and value >= locks:
+        if scene.contact.friction_law == "coulomb" and value >= locks:
             raise SceneError(
                 key,
                 value,
                 f"must be below {locks:.4g}: gears of this mesh lock themselves from there on",
             )
-    if not has_friction(scene):
-        return
-    if scene.attracts:
-        raise SceneError(
-            "surface.hamaker",
-            scene.surface.hamaker,
-            "friction is not available with flanks that attract each other: must be 0, as that of the coating",
-        )
-    if scene.contact.model == "elastic":
-        raise SceneError(
-            "contact.model",
-            scene.contact.model,
-            "friction is not available with elastic contacts: must be asperity or population",
-        )
 
 
 def check_no_friction(scene: Scene) -> None:
@@ -106,26 +92,29 @@ def check_no_friction(scene: Scene) -> None:
     for key, value in given.items():
         if value:
             raise SceneError(key, value, "must be 0 in a scene with a roller, which does not slide")
-    if contact.friction_law != "net":
-        raise SceneError("contact.friction_law", contact.friction_law, "must be net in a scene with a roller")
+    if contact.friction_law != "coulomb":
+        raise SceneError(
+            "contact.friction_law", contact.friction_law, "must be coulomb in a scene with a roller"
+        )
 
 
 def _check_law(scene: Scene) -> None:
     """Refuse a law without its values, and values of the other law."""
     contact, coating = scene.contact, scene.coating
     if contact.friction_law == "shear":
-        if contact.asperity not in AREAS:
+        if not has_area(contact.asperity):
+            with_area = ", ".join(name for name in law_names() if has_area(name))
             raise SceneError(
                 "contact.friction_law",
                 "shear",
-                f"needs the contact area of an asperity: contact.asperity must be one of {', '.join(AREAS)}",
+                f"needs a law of one asperity that has the method area: contact.asperity must be one of {with_area}",
             )
         if contact.shear_strength == 0.0 and not coating.shear_strength:
             raise SceneError(
                 "contact.shear_strength", 0.0, "must be above 0 with contact.friction_law = shear"
             )
         others = {"contact.friction": contact.friction, "coating.friction": coating.friction}
-        wanted = "net"
+        wanted = "coulomb"
     else:
         others = {
             "contact.shear_strength": contact.shear_strength,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _LONGEST_KEY = 200
 INSTEAD: Final = {
     "gears.module": ("gears.pinion_base_radius",),
+    "contact.model": ("contact.bodies", "contact.roughness"),
     "gears.density": ("gears.pinion_inertia", "gears.gear_inertia"),
 }
 """Keys that are given in the place of others, in which a scene keeps what they say."""
@@ -192,7 +193,8 @@ def _table(annotation: Any) -> tuple[type[Group] | None, bool]:
 def _describe(key: str, field: FieldInfo) -> KeyInfo:
     number = next((one for one in field.metadata if isinstance(one, (Quantity, Count))), None)
     named = next((one for one in field.metadata if isinstance(one, Named)), None)
-    choices = [one for one in get_args(field.annotation) if isinstance(one, str)]
+    args = get_args(field.annotation)
+    choices = [one for arg in args for one in (get_args(arg) or (arg,)) if isinstance(one, str)]
     if number is not None:
         allowed = number.allowed().removeprefix("must be ")
     elif named is not None:

@@ -11,7 +11,6 @@ from gearidae.asperities.ranges import GAP_LOW
 from gearidae.asperities.ranges import check_reach as check_asperity_reach
 from gearidae.errors import SceneError
 from gearidae.scene.coating import THICKEST
-from gearidae.scene.friction import has_friction
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
@@ -51,27 +50,6 @@ def check_thickness(scene: Scene) -> None:
             scene.coating.thickness,
             f"must be at most {THICKEST:g} roughnesses, {most:.3g} m",
         )
-
-
-def check_attraction(scene: Scene) -> None:
-    """Refuse attraction across the gap between elastic bodies, whose deflections would not follow it.
-
-    Raises
-    ------
-    SceneError
-        Naming ``contact.model``.
-    """
-    if scene.contact.model == "elastic" and scene.attracts:
-        raise SceneError(
-            "contact.model",
-            "elastic",
-            "cannot be used with surface.hamaker or coating.hamaker, for rigid teeth only: asperity or population",
-        )
-
-
-def stays_rigid(scene: Scene) -> bool:
-    """Whether ``contact.model = auto`` keeps the bodies rigid: with attraction or friction, which elastic ones lack."""
-    return scene.attracts or has_friction(scene)
 
 
 def pairs_within_reach(scene: Scene, cutoff: float) -> float:
@@ -130,7 +108,7 @@ def check_reach(scene: Scene, cutoff: float = 0.0) -> None:
 
 
 def check_gaps(scene: Scene) -> None:
-    """Refuse gaps that a double cannot hold beside the backlash, and real asperities that fill the backlash.
+    """Refuse gaps that a double cannot hold beside the backlash, and discrete asperities that fill the backlash.
 
     Raises
     ------
@@ -141,12 +119,13 @@ def check_gaps(scene: Scene) -> None:
     assert mesh is not None
     assert initial is not None
     deepest = mesh.backlash + scene.surface.asperity_radius
-    if scene.contact.model == "population" and sigma > deepest:
+    if scene.contact.is_discrete and sigma > deepest:
         raise SceneError(
             "surface.roughness",
             sigma,
-            f"must be at most mesh.backlash and surface.asperity_radius together, {deepest:.3g} m, with contact.model ="
-            ' "population": both flanks would be pressed onto thousands of asperities, deeper than their radius',
+            f"must be at most mesh.backlash and surface.asperity_radius together, {deepest:.3g} m, with"
+            ' contact.roughness = "discrete": both flanks would be pressed onto thousands of asperities, deeper than'
+            " their radius",
         )
     if mesh.backlash > WIDEST_BACKLASH * sigma:
         raise SceneError(

@@ -12,12 +12,12 @@ from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.asperity_list import check_asperities
 from gearidae.scene.coating import Coating, Material, materials_of
 from gearidae.scene.coating_table import check_tables
+from gearidae.scene.combinations import check_combinations
 from gearidae.scene.friction import check_friction, check_no_friction
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import (
-    check_attraction,
     check_gaps,
     check_reach,
     check_stretch,
@@ -112,7 +112,7 @@ class Scene(Group):
         check_thickness(self)
         check_tables(self)
         check_asperities(self)
-        check_attraction(self)
+        check_combinations(self)
         if self.roller is not None:
             if given:
                 raise SceneError(

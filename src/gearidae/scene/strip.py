@@ -51,7 +51,7 @@ def check_population(scene: Scene) -> None:
     SceneError
         Naming ``surface.asperity_density``.
     """
-    if scene.contact.model != "population":
+    if not scene.contact.is_discrete:
         return
     if scene.contact.asperities:
         return

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from gearidae.asperities import law_names
 from gearidae.asperities.tip import INTERACTION_RANGE
 from gearidae.scene.asperity_list import Listed, ListedAsperities
 from gearidae.scene.group import Group
 from gearidae.scene.named import Named
+from gearidae.scene.older_names import with_new_names
 from gearidae.scene.quantity import Count, Quantity
 
 _LONGEST_LINE = 300
@@ -55,7 +56,7 @@ class Surface(Group):
     )
     hamaker: Hamaker = Field(
         default=0.0,
-        description="Hamaker constant of bare flanks, which then attract each other across the gap; teeth stay rigid",
+        description="Hamaker constant of bare flanks, which then attract each other across the gap; bodies stay rigid",
     )
     provenance: Annotated[str, BeforeValidator(_line)] = Field(
         default="",
@@ -66,29 +67,48 @@ class Surface(Group):
 class Contact(Group):
     """Which laws of contact to use."""
 
-    model: Literal["auto", "asperity", "elastic", "population"] = Field(
+    @model_validator(mode="before")
+    @classmethod
+    def _read_older_names(cls, data: Any) -> Any:
+        return with_new_names(data) if isinstance(data, dict) else data
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether asperities are followed one by one."""
+        return self.roughness == "discrete"
+
+    model: Literal["auto", "asperity", "elastic", "population"] | None = Field(
+        default=None,
+        description="older name, in place of bodies and roughness: asperity: rigid; elastic; auto; population: rigid "
+        "with discrete asperities; a scene keeps those",
+    )
+    bodies: Literal["auto", "rigid", "elastic"] = Field(
         default="auto",
-        description="asperity: teeth stay rigid; elastic: they deflect too; auto: as needed; "
-        "population: rigid teeth with real asperities on each flank in place of the mean of many",
+        description="tooth bodies: rigid; elastic: they deflect under the pressure; auto: elastic where needed",
+    )
+    roughness: Literal["statistical", "discrete"] = Field(
+        default="statistical",
+        description="asperities: statistical: the mean of many surfaces; discrete: those of one surface, drawn or "
+        "listed for each flank",
     )
     asperity: Annotated[str, Named(law_names)] = Field(default="jkr", description="force law of one asperity")
     seed: Annotated[int, Count(at_least=0, at_most=2**53)] = Field(
-        default=0, description="which surface of this kind a population is drawn as"
+        default=0, description="which surface of this kind discrete asperities are drawn as"
     )
     radius_spread: Annotated[float, Quantity(unit="1", at_least=0, at_most=10)] = Field(
         default=0.0,
-        description="standard deviation of a population's tip radii over their mean; they are lognormal",
+        description="standard deviation of the tip radii of discrete asperities over their mean; they are lognormal",
     )
     asperities: Listed = Field(
         default=ListedAsperities(),
         description="list of asperities in place of drawn ones: a CSV file, or columns",
     )
     friction: Friction = Field(
-        default=0.0, description="coefficient of friction of bare flanks, for friction_law = net"
+        default=0.0, description="coefficient of friction of bare flanks, for friction_law = coulomb"
     )
-    friction_law: Literal["net", "shear"] = Field(
-        default="net",
-        description="limit of the friction of a pair of flanks: net: coefficient times the force that presses them "
+    friction_law: Literal["coulomb", "shear"] = Field(
+        default="coulomb",
+        description="limit of the friction of a pair of flanks: coulomb: coefficient times the force that presses them "
         "together; shear: shear strength times the area of the asperities in contact",
     )
     shear_strength: Strength = Field(

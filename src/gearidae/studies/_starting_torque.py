@@ -158,14 +158,14 @@ def starting_torque(
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base, how = prepared(scene, options)
-    if base.contact.model == "population":
+    if base.contact.is_discrete:
         _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
         return starting_torques(
             base, *_coatings(base, "own" if sam_fraction is None else sam_fraction), seeds, how
         )
     if seeds is not None:
         raise SceneError(
-            "seeds", seeds, 'needs contact.model = "population": others do not differ by their seeds'
+            "seeds", seeds, 'needs contact.roughness = "discrete": others do not differ by their seeds'
         )
     fractions, scenes = _coatings(base, sam_fraction)
     least = _lowest(scene, lowest)

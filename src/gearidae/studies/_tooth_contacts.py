@@ -106,7 +106,7 @@ def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     wanted = _nearest(run, np.atleast_1d(numbers_of(times, "s")))
     order = np.argsort(wanted, kind="stable")
     states: dict[int, MeshState] = {}
-    real = JoinedAsperities(run, scene) if scene.contact.model == "population" else None
+    real = JoinedAsperities(run, scene) if scene.contact.is_discrete else None
     stretches = _stretches(run, scene, wanted[order], limits.reach)
     for (samples, events), mine in stretches:
         record = ToothRecord(run, scene, samples, events)

@@ -57,7 +57,7 @@ def met_flank(scene: Scene, pair: int, flank: Flank) -> MetFlank:
     Parameters
     ----------
     scene : Scene
-        With ``contact.model = "population"``.
+        With ``contact.roughness = "discrete"``.
     """
     assert scene.gears is not None
     coast = flank == Flank.COAST

@@ -38,8 +38,8 @@ def without_seeds(scene: Scene, vary: Mapping[str, Any]) -> Mapping[str, Any]:
     if given != SEEDS:
         allowed = f'must be "{SEEDS}": the seeds of the members are numbered from the scene\'s own on'
         raise SceneError(SEED, shorten(given), allowed)
-    if scene.contact.model != "population":
-        raise SceneError(SEED, given, 'needs contact.model = "population": other models draw nothing')
+    if not scene.contact.is_discrete:
+        raise SceneError(SEED, given, 'needs contact.roughness = "discrete": statistical ones draw nothing')
     return {key: text for key, text in vary.items() if key != SEED}
 
 

@@ -134,6 +134,21 @@ def settle_pair(
     return force, slope
 
 
+@compiled_once(ELASTIC, makes_arrays=True)
+def following_slope(m: Model, k: int, y: Floats, length: float, follow: Floats) -> float:
+    """By how much a pair's slope in the gap differs while the deflections follow, after `force_of_nodes`.
+
+    How they do, their slopes in the gap, is written to `follow`.
+    """
+    influence(m, length, influence_space(m))
+    newton_step(m, k, y)
+    slopes, sums, more = equation_space(m, FOLLOW), equation_space(m, SUMS), 0.0
+    for i in range(m.scene.nodes):
+        follow[i] = slopes[i]
+        more += sums[i] * slopes[i]
+    return length * more
+
+
 @compiled(makes_arrays=True)
 def _finish_pair(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float

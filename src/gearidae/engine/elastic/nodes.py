@@ -67,7 +67,7 @@ from gearidae.engine.elastic.rows import (
     to_points,
 )
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
-from gearidae.engine.pairs.coverage import loading_of, noted_shares
+from gearidae.engine.pairs.coverage import Shares, loading_of, noted_shares
 from gearidae.engine.pairs.tooth_pairs import contact_length
 
 _CLOSING, _OPENING, _TURNED = 0, 1, 2
@@ -124,8 +124,10 @@ def force_of_nodes(
         h = gap + profile[i] + y[first + i]
         pressure[i], slope[i] = loading_of(m, h, shares)
     stiff[:] = 0.0
-    if known:
-        _add_stretched(m, k, t, y, gap, rate)
+    if known and is_stretched(m, k, rate):
+        added = scratch(m, POINT_ADDED, m.scene.points)
+        add_stretched(m, k, t, y, gap, rate, force_scales(m, k), added, stiff)
+        add_to_nodes(m, added, pressure)
     force = 0.0
     stiffness = 0.0
     for i in range(n):
@@ -137,19 +139,40 @@ def force_of_nodes(
     return force * length, stiffness * length
 
 
+@compiled(inline=True)
+def is_stretched(m: Model, k: int, rate: float) -> bool:
+    """Whether any point of a contact may be stretched."""
+    h = m.state.history[k]
+    return bool(h.direction * rate < 0.0 or h.direction >= 0.0 or h.stretched != 0)
+
+
+@compiled(inline=True)
+def force_scales(m: Model, k: int) -> Shares:
+    """Force scales of the materials of a pair, with their shares there."""
+    (a, b, c), own = noted_shares(m, k), m.scene.material
+    return own[0].force_scale * a, own[1].force_scale * b, own[2].force_scale * c
+
+
 @compiled(makes_arrays=True)
-def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: float) -> None:
-    """Add the pressure of stretched asperities to that of the nodes, and note its slopes at the points."""
+def add_stretched(
+    m: Model,
+    k: int,
+    t: float,
+    y: Floats,
+    gap: float,
+    rate: float,
+    scales: Shares,
+    added: Floats,
+    stiff: Floats,
+) -> None:
+    """Set the pressure of stretched asperities at the points by the materials' scales, and add its slopes."""
     h = m.state.history[k]
     turned = h.direction * rate < 0.0
-    if not turned and h.direction < 0.0 and h.stretched == 0:
-        return
-    points, stiff = m.scene.points, row(m, k, STIFFNESS)
+    points = m.scene.points
     # bodies that part stretch what is joined: where they seem not to, the errors of the deflection say so, and Newton's
     # iteration must not take the soft slope of closing on for that of what comes
     opening = h.direction > 0.0 and not turned
-    gaps, added = scratch(m, POINT_GAPS, points), scratch(m, POINT_ADDED, points)
-    turning = scratch(m, POINT_TURNS, points)
+    gaps, turning = scratch(m, POINT_GAPS, points), scratch(m, POINT_TURNS, points)
     added[:] = 0.0
     point_gaps(m, k, y, gap, gaps)
     if turned:
@@ -160,18 +183,24 @@ def _add_stretched(m: Model, k: int, t: float, y: Floats, gap: float, rate: floa
     way = _TURNED if turned else _OPENING if opening else _CLOSING
     for material in range(MATERIALS):
         if m.scene.material[material].stretch_limit != 0.0:
-            _add_material(m, k, material, way, gaps, turning, added, stiff)
-    add_to_nodes(m, added, row(m, k, PRESSURE))
+            _add_material(m, k, material, way, scales[material], gaps, turning, added, stiff)
 
 
 @compiled
 def _add_material(
-    m: Model, k: int, material: int, way: int, gaps: Floats, turning: Floats, added: Floats, stiff: Floats
+    m: Model,
+    k: int,
+    material: int,
+    way: int,
+    scale: float,
+    gaps: Floats,
+    turning: Floats,
+    added: Floats,
+    stiff: Floats,
 ) -> None:
     """Add the pressure of a material's stretched asperities at the points, and its slopes."""
     own, points = m.scene.material[material], m.scene.points
     limit, offset = own.stretch_limit, own.gap_offset
-    scale = own.force_scale * noted_shares(m, k)[material]
     table, heights = m.tables[own.table_at :], joined_at(m, k, material)
     farthest = farthest_joined(m.rows[heights], offset)
     kept = way != _TURNED and m.scene.point_branch_length > 0 and branch_length(table) > 0

@@ -20,9 +20,10 @@ from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral, integral_with_middle
 from gearidae.engine.friction.forces import Shafts, has_hubs, solve_shafts
 from gearidae.engine.friction.hubs import Mesh
-from gearidae.engine.friction.pairs import direction, lever_rate, levers
+from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
 from gearidae.engine.model.record_types import HELD_PAIR
 from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
+from gearidae.engine.motion.pair_forces import follow_slopes, set_deflections
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, static_error
 
@@ -38,6 +39,9 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
     """Note the powers of friction and their rates, with the present directions of slip."""
     ahead = _load_ahead(m, t, y) if has_hubs(m) and m.state.hold == HELD_PAIR else 0.0
     turn, pinion, gear = forces_at_shafts(m, t, y)
+    if m.scene.nodes > 0:
+        follow_slopes(m, t, y, 0.0, y)
+        set_limits(m, t, y[W])
     found = solve_shafts(m, t, y, turn, pinion, gear)
     r = m.work.rubbing
     r.time = t
@@ -81,7 +85,9 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
 def _load_ahead(m: Model, t: float, y: Floats) -> float:
     """Load of the hubs a short time later: the friction that holds a pair changes with all forces at both shafts."""
     turn, pinion, gear = forces_at_shafts(m, t, y)
-    found, later = solve_shafts(m, t, y, turn, pinion, gear), np.empty(y.size)
+    found, later = solve_shafts(m, t, y, turn, pinion, gear), np.zeros(y.size)
+    if m.scene.nodes > 0:
+        follow_slopes(m, t, y, _AHEAD, later)
     later[U] = y[U] + _AHEAD * y[V]
     e1, e2 = static_error(m, y[U], y[PHASE])[2:] if m.scene.error_count != 0 else (0.0, 0.0)
     later[V] = y[V] + _AHEAD * ((1.0 - e1) * found.pinion - e2 * turn * turn - found.gear)
@@ -137,6 +143,8 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     add_rubbing(m, end, bend)
     if halved:
         adams.between(a, start + 0.5 * h, between, rates)
+        if m.scene.nodes > 0:
+            set_deflections(m, start + 0.5 * h, between, False)
         note_rubbing(m, start + 0.5 * h, between)
         add_rubbing(m, 16.0 / 30.0 * h, 0.0)
         middle = _powers(m)

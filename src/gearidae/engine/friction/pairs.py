@@ -12,12 +12,11 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.kernels.evaluate import mixed_value
-from gearidae.contact.kernels.law import loading_value, stretched_value
+from gearidae.contact.kernels.law import stretched_value
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.model.record_types import STUCK
 from gearidae.engine.model.state import COAST, MATERIALS, Model, Record
-from gearidae.engine.pairs.coverage import shares_of
+from gearidae.engine.pairs.coverage import limit_of_loading, rubs_by_material, shares_of
 from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
 
 RUBS: Final = 1e-8
@@ -51,7 +50,7 @@ def direction(m: Model, noted: Record) -> float:
 def set_limits(m: Model, t: float, w: float) -> None:
     """Set the limits of friction of all pairs whose forces have been noted, with their rates; see `levers`.
 
-    A population has noted its own.
+    Real asperities, and nodes of different coefficients, have noted their own.
 
     Parameters
     ----------
@@ -68,9 +67,9 @@ def set_limits(m: Model, t: float, w: float) -> None:
             continue
         longer = _length_rate(m, noted, w)
         noted.force_rate = noted.slope * noted.gap_rate + longer * noted.force
-        if own.even > 0.0 or own.flanks == 0:
+        if not rubs_by_material(m):
             noted.limit, noted.limit_slope = own.even * noted.contact, own.even * noted.contact_slope
-        else:
+        elif m.scene.nodes == 0:
             noted.limit, noted.limit_slope = _limit_of_materials(m, t, i)
         noted.limit_rate = noted.limit_slope * noted.gap_rate + longer * noted.limit
 
@@ -93,10 +92,7 @@ def _limit_of_materials(m: Model, t: float, i: int) -> tuple[float, float]:
     own, k, gap = m.scene.friction, noted.history, noted.gap
     h = m.state.history[k]
     shares = shares_of(m, flank_of_history(m, k), noted.pair, noted.position)
-    if m.scene.by_place == 0:
-        limit, slope = loading_value(m.tables, own.loading_at, gap)
-    else:
-        limit, slope = mixed_value(m.tables, own.loading_at, gap, shares)
+    limit, slope = limit_of_loading(m, gap, shares)
     if h.pair == noted.pair:
         turned = h.direction * noted.gap_rate < 0.0
         turning_gap = gap

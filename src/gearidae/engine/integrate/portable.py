@@ -68,7 +68,7 @@ def run(
             "backend",
             "sksundae",
             f"solves no more than {STATES_HIGH} states at once, and this elastic scene has {m.scene.states}: "
-            "use the native driver, or contact.model = asperity",
+            'use the native driver, or contact.bodies = "rigid"',
         )
     y, out = problem.start.copy(), Output.empty(len(problem.columns))
     driver, progress = m.work.driver, m.state.progress

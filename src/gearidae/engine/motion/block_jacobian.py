@@ -23,6 +23,7 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import influence, stiffness_matrix
 from gearidae.engine.elastic.rows import node_weights
+from gearidae.engine.friction.pairs import direction, levers
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import motion_slopes, write_jacobian
 from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
@@ -83,9 +84,14 @@ def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
         if roller:
             store[start + _BETA + V], store[start + _GAMMA + U] = -slopes.by_pinion, 1.0
             continue
-        sign, on_gear = 1.0 - 2.0 * flank_of_history(m, noted.history), 1.0 + noted.relief
-        store[start + _BETA + V] = sign * (slopes.by_pinion - on_gear * slopes.by_both)
-        store[start + _BETA + W] = sign * (slopes.by_both - on_gear * slopes.by_gear)
+        sign = 1.0 - 2.0 * flank_of_history(m, noted.history)
+        on_pinion, on_gear = sign, sign * (1.0 + noted.relief)
+        if m.scene.friction.flanks != 0 and noted.contact != 0.0:
+            friction = direction(m, noted) * noted.limit / noted.contact
+            first, second = levers(m, noted.position)
+            on_pinion, on_gear = on_pinion + friction * first, on_gear + friction * second
+        store[start + _BETA + V] = slopes.by_pinion * on_pinion - slopes.by_both * on_gear
+        store[start + _BETA + W] = slopes.by_both * on_pinion - slopes.by_gear * on_gear
         store[start + _GAMMA + U] = -sign
         store[start + _GAMMA + PHASE] = sign * noted.relief / m.scene.phase_rate
 

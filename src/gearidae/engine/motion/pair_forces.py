@@ -8,15 +8,25 @@ between them are added to it.
 
 from __future__ import annotations
 
+import numpy as np
+
 from gearidae.compiled import compiled, compiled_once
-from gearidae.engine.compiling import SOLVER
-from gearidae.engine.elastic.elimination import FINISH, PREDICT, SETTLE, pair_deflections, settle_pair
+from gearidae.engine.compiling import ELASTIC, FRICTION, SOLVER
+from gearidae.engine.elastic.elimination import (
+    FINISH,
+    PREDICT,
+    SETTLE,
+    following_slope,
+    pair_deflections,
+    settle_pair,
+)
+from gearidae.engine.elastic.limits import limit_of_nodes
 from gearidae.engine.elastic.nodes import node_force
-from gearidae.engine.elastic.rows import first_unknown
+from gearidae.engine.elastic.rows import TANGENT, first_unknown, row
 from gearidae.engine.energy.radius import curvature_force
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.attraction_force import attraction_force
-from gearidae.engine.pairs.coverage import note_shares, shares_of
+from gearidae.engine.pairs.coverage import note_shares, rubs_by_material, shares_of
 from gearidae.engine.pairs.notes import note_force
 from gearidae.engine.pairs.pair_force import (
     NO_MESH_FORCES,
@@ -56,7 +66,20 @@ def contact_force(m: Model, t: float, y: Floats, pair: PairState, settling: bool
         load, slope = settle_pair(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
     else:
         load, slope = node_force(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
-    return of_contact(load, slope)
+    force = of_contact(load, slope)
+    return _with_limit(m, t, y, pair, length, settling, force) if rubs_by_material(m) else force
+
+
+@compiled_once(ELASTIC, makes_arrays=True)
+def _with_limit(
+    m: Model, t: float, y: Floats, pair: PairState, length: float, settling: bool, f: PairForce
+) -> PairForce:
+    """Return the force of an elastic pair with the limit of its friction, of materials with different coefficients."""
+    follow = row(m, pair.k, TANGENT) if settling else np.zeros(m.scene.nodes)
+    limit, slope = limit_of_nodes(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length, follow)
+    return PairForce(
+        f.load, f.by_gap, 0.0, 0.0, f.contact, f.contact_by_gap, 0.0, 0.0, 0.0, limit, slope, 0.0
+    )
 
 
 @compiled(inline=True)
@@ -105,6 +128,30 @@ def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
 def forces_at(m: Model, t: float, y: Floats) -> MeshForces:
     """`mesh_forces` at the deflections of the state, for what asks now and then."""
     return mesh_forces(m, t, y, False)
+
+
+# -- slopes along which deflections follow ---------------------------------------------------------------------------
+
+
+@compiled_once(FRICTION, makes_arrays=True)
+def follow_slopes(m: Model, t: float, y: Floats, ahead: float, later: Floats) -> None:
+    """Let the noted slopes of elastic pairs at a state be those along which their deflections follow the gaps.
+
+    The deflections a short time `ahead` are written to the state `later`.
+    """
+    follow = np.empty(m.scene.nodes)
+    for i in range(m.work.notes.count):
+        noted = m.work.notes.pair[i]
+        k, length = noted.history, contact_length(m, noted.position)
+        more = following_slope(m, k, y, length, follow)
+        noted.slope += more
+        noted.contact_slope += more
+        if rubs_by_material(m):
+            known, gap, rate = m.state.history[k].pair == noted.pair, noted.gap, noted.gap_rate
+            noted.limit_slope = limit_of_nodes(m, k, known, t, y, gap, rate, length, follow)[1]
+        first = first_unknown(m, k)
+        for node in range(m.scene.nodes):
+            later[first + node] = y[first + node] + ahead * follow[node] * noted.gap_rate
 
 
 # -- deflections that are eliminated ---------------------------------------------------------------------------------

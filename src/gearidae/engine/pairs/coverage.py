@@ -114,6 +114,20 @@ def loading_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
     return mixed_value(m.tables, m.scene.loading_at, gap, shares)
 
 
+@compiled(inline=True)
+def rubs_by_material(m: Model) -> bool:
+    """Whether the limits of the flanks' friction are sums of the materials', not the same share of all forces."""
+    return bool(m.scene.friction.flanks != 0 and m.scene.friction.even == 0.0)
+
+
+@compiled(inline=True)
+def limit_of_loading(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
+    """Limit of the friction of the loading branch of all materials and its slope, as `loading_of`."""
+    if m.scene.by_place == 0:
+        return loading_value(m.tables, m.scene.friction.loading_at, gap)
+    return mixed_value(m.tables, m.scene.friction.loading_at, gap, shares)
+
+
 @compiled
 def attraction_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
     """Attraction of all materials across a gap and its slope, scaled, for a contact of unit length."""

@@ -45,9 +45,10 @@ from gearidae.engine.torques.schedule import (
     segment_ends,
 )
 from gearidae.mesh.involute import Geometry
-from gearidae.records import sampled_columns
 from gearidae.scene import MATERIAL_NAMES, Drive, Load, Scene
-from gearidae.scene.limits import check_reach, pairs_within_reach, stays_rigid
+from gearidae.scene.combinations import may_deflect
+from gearidae.scene.limits import check_reach, pairs_within_reach
+from gearidae.scene.sampled import columns_of
 
 LIGHTER = 0.25
 """Roughnesses above the bound of the asperity model; below, contacts count as deep while bodies are elastic."""
@@ -96,8 +97,8 @@ def make_problem(
         if lowest > -DEPTH_HIGH:
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
             problem.deeper = lambda: make_problem(scene, deeper, *same, light_gap)
-    elif scene.contact.model == "auto" and not stays_rigid(scene):
-        bodies, light = scene.replace({"contact.model": "elastic"}), lowest + LIGHTER
+    elif may_deflect(scene):
+        bodies, light = scene.replace({"contact.bodies": "elastic"}), lowest + LIGHTER
         problem.elastic = lambda: make_problem(bodies, None, *same, light)
     return problem
 
@@ -129,7 +130,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     s.dry = int(load.is_dry)
     widest = math.sqrt(0.25 / float(s.sum_curvature))
     unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         s.radius_force = 1  # the asperities' own, which pays for all that changes along the path
         add_population(s, tables, scene, float(1.0 / s.phase_rate), math.pi / gears.pinion_teeth)
     else:
@@ -180,7 +181,7 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
     grid = choose_model(s, scene, bounds, nodes)
     unit_length = math.sqrt(2.0 * roller.radius * sigma)
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         add_population(s, tables, scene, roller.radius / sigma, 0.0)
     else:
         add_contact(s, tables, scene, roller.width, unit_length, 1.0)
@@ -321,22 +322,24 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
     """Set the histories and the energy balance for the start."""
     s = m.scene
     y = np.concatenate([motion, np.zeros(int(s.nodes * s.histories))])
+    parts = (
+        (ELASTIC, s.nodes > 0),
+        (EXPOSURES, s.bins > 0),
+        (POPULATION, s.population.flanks > 0),
+        (FRICTION, s.friction.on != 0),
+    )
+    for part, wanted in parts:
+        if wanted:
+            make_part_ready(part)
     if s.nodes > 0:
-        make_part_ready(ELASTIC)
         settle_nodes(m, 0.0, y)
-    if s.bins > 0:
-        make_part_ready(EXPOSURES)
-    if s.population.flanks > 0:
-        make_part_ready(POPULATION)
-    if s.friction.on != 0:
-        make_part_ready(FRICTION)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
     s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
     if s.follow.balance != 0:
         open_balance(m, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]
-    columns = sampled_columns(roller=scene.roller is not None, model=scene.contact.model)
+    columns = columns_of(scene)
     return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
 
 

@@ -38,7 +38,7 @@ def add_attraction(
     """
     if not scene.attracts:
         return
-    if scene.contact.model == "population":
+    if scene.contact.is_discrete:
         add_coverage(s, tables, scene)
     sigma, cutoff = scene.surface.roughness, float(s.cutoff)
     s.attracts, s.attraction_floor = 1, FLOOR / sigma

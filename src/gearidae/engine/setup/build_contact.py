@@ -29,7 +29,7 @@ from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.build_friction import Limits
 from gearidae.engine.setup.tables import Tables
 from gearidae.scene import Material, Scene
-from gearidae.scene.limits import stays_rigid
+from gearidae.scene.combinations import may_deflect
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
@@ -44,16 +44,12 @@ class Nodes(NamedTuple):
 
 
 def choose_model(s: Record, scene: Scene, bounds: ContactBounds, nodes: Nodes | None) -> NodeGrid | None:
-    """Choose the contact model, note how deep it reaches, and lay out its nodes if it has any."""
-    model = scene.contact.model
-    s.lowest_gap = GAP_LOW  # where the tables of the force law end
-    if model == "auto" and stays_rigid(scene):
-        model = "asperity"
-    if model == "auto":
-        lowest, enough = rigid_limit(scene, bounds)
-        model = "asperity" if enough else "elastic"
-        s.lowest_gap = lowest
-    if model in ("asperity", "population"):
+    """Decide on elastic bodies, note how deep the contacts reach, and lay out their nodes if they have any."""
+    s.lowest_gap, elastic = GAP_LOW, may_deflect(scene)  # where the tables of the force law end
+    if elastic and scene.contact.bodies == "auto":
+        s.lowest_gap, enough = rigid_limit(scene, bounds)
+        elastic = not enough
+    if not elastic:
         return None
     if nodes is None:
         deepest, count = min(deepest_gap(scene, bounds), 0.0), None

@@ -148,7 +148,7 @@ def figure_names(scene: Scene) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    return ("sticks", "impacts", *extreme_names(scene.roller is not None, scene.contact.model))
+    return ("sticks", "impacts", *extreme_names(scene))
 
 
 def _check_figure(scene: Scene, of: str | None) -> None:

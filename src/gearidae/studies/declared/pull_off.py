@@ -40,7 +40,7 @@ def pull_off(
 ) -> xr.Dataset:
     """Largest tension of one drawn pair of teeth, for many surfaces of one design.
 
-    A pair at the pitch point (or the roller) has real asperities, as with ``contact.model = "population"``. It is
+    A pair at the pitch point (or the roller) has discrete asperities, as with ``contact.roughness = "discrete"``. It is
     pressed along the normal until it first carries the load and then parted, gaps prescribed, bodies rigid. The law of
     the mean over many surfaces says nothing of a single contact where few asperities hold.
 
@@ -48,7 +48,7 @@ def pull_off(
     ----------
     scene : Scene
         Gears or a roller, of which only radius, width and surfaces count. Asperities are drawn with
-        every ``contact.model``.
+        every ``contact.roughness``.
     seeds : int or sequence of int, optional
         In place of ``contact.seed``: numbers, or how many from ``contact.seed`` on. A number is the drive flank of the
         pinion's first tooth, as `gearidae.population` draws it.

@@ -1,7 +1,7 @@
 """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
 
-Of a population (contact.model = population): the distribution over its gears, whose torque rises slowly until each
-has turned one pitch.
+Of discrete asperities (contact.roughness = "discrete"): the distribution over drawn gears, whose torque rises slowly
+until each has turned one pitch.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def _call(
 
     def announcement(scene: Scene, _: int | None) -> str:
         coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
-        if scene.contact.model != "population":
+        if not scene.contact.is_discrete:
             return f"{coatings}; one torque is tried after the other"
         return (
             f"{seeds or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"

@@ -4,8 +4,8 @@ The weights of the balance's quadrature are applied to the power of each pair, s
 of a flank is the loss of that flank to rounding. The work of a step counts at one state of the motion in it, the middle
 where that is known. A pair of the mean law rubs at its place there. That of a population rubs at the places of its
 joined asperities, in proportion to the limits of their friction: with the law ``shear`` each has its own work, since
-all slide at one speed. With ``net`` those that are pulled have negative limits, and the pair's work is shared by those
-that push.
+all slide at one speed. With ``coulomb`` those that are pulled have negative limits, and the pair's work is shared by
+those that push.
 """
 
 from __future__ import annotations

@@ -1,0 +1,98 @@
+"""Features against each other: every allowed pair, and some triples, in both drivers, resumed and continued.
+
+The scenes are short runs of gears in contact (`reference.feature_scenes`); what a single feature does is tested where
+it lives.
+"""
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from balances import assert_closes
+from gearidae.engine.backend import run_blocks, solve
+from gearidae.engine.continuing import end_of
+from gearidae.engine.setup.build import make_problem
+from gearidae.records import Statistics
+from reference.feature_scenes import CHANGES, HALF, SAMPLES, scene_with
+
+TABLE = gd.combinations()
+PAIRS = [
+    (a, b) for a, b, allowed in zip(TABLE["first"], TABLE["second"], TABLE.allowed, strict=True) if allowed
+]
+TRIPLES = [
+    ("elastic bodies", "coulomb friction", "hub friction"),
+    ("elastic bodies", "coulomb friction", "coating by place"),
+    ("elastic bodies", "coulomb friction", "exposures"),
+    ("elastic bodies", "hub friction", "dry resistance"),
+    ("attraction", "coulomb friction", "hub friction"),
+    ("attraction", "shear friction", "independent coatings"),
+    ("attraction", "coulomb friction", "radius force"),
+    ("attraction", "coulomb friction", "discrete asperities"),
+    ("discrete asperities", "shear friction", "exposures"),
+    ("shear friction", "maugis asperities", "hub friction"),
+    ("coulomb friction", "static error", "mesh damping"),
+    ("hub friction", "held speed", "dry resistance"),
+]
+WHOLE = {"run.duration": 2 * HALF, "run.samples": 2 * SAMPLES - 1, "run.checkpoints": [HALF]}
+AGREE = 1e-5
+"""Of the range of a sample, at a tolerance of 1e-8."""
+
+
+@pytest.mark.parametrize("feature", [*CHANGES, "no friction"])
+def test_a_feature_acts_in_the_short_scene(feature):
+    """What would not change the motion would be tested by nothing here."""
+    friction = {"coulomb friction", "shear friction", "hub friction"}
+    without = solve(scene_with(), backend="native")
+    run = without if feature == "no friction" else solve(scene_with(feature), backend="native")
+    assert (friction_loss(run.balance) > 1e-4 * run.balance.throughput) is (feature in friction)
+    if feature == "exposures":  # they only look on
+        assert np.any(np.array(run.extremes.exposures) > 0.0)
+    elif feature != "no friction":
+        assert np.any(run.samples["gear_speed"] != without.samples["gear_speed"])
+
+
+def friction_loss(balance):
+    return (
+        balance.drive_friction_loss
+        + balance.coast_friction_loss
+        + balance.pinion_hub_loss
+        + balance.gear_hub_loss
+    )
+
+
+def rows_of(blocks):
+    return np.concatenate([block.rows for block in blocks])
+
+
+@pytest.mark.parametrize("features", [*PAIRS, *TRIPLES], ids=" + ".join)
+def test_features_go_together(features):
+    scene = scene_with(*features)
+    whole = scene.replace(WHOLE)
+    native = solve(whole, backend="native")
+    assert native.status == "finished"
+    assert_closes(whole, native)
+
+    portable = solve(whole, backend="sksundae")
+    assert portable.status == "finished"
+    assert_closes(whole, portable)
+    for name, values in native.samples.items():
+        if name not in ("pairs_in_contact", "asperities_in_contact"):
+            extent = np.max(np.abs(values))
+            np.testing.assert_allclose(
+                portable.samples[name], values, rtol=0.0, atol=AGREE * extent, err_msg=name
+            )
+
+    # resumed from the checkpoint in the middle, and continued from a run of the first half
+    blocks = list(run_blocks(make_problem(whole), 1e-8, 2 * SAMPLES - 1, "native", Statistics()))
+    (cut, *_) = [k for k, block in enumerate(blocks) if block.checkpoint is not None]
+    assert cut < len(blocks) - 1
+    resumed = run_blocks(
+        make_problem(whole), 1e-8, 2 * SAMPLES - 1, "native", Statistics(), blocks[cut].checkpoint
+    )
+    np.testing.assert_array_equal(rows_of([*blocks[: cut + 1], *resumed]), rows_of(blocks))
+    first = solve(scene, backend="native")
+    second = solve(scene, backend="native", start=end_of(scene, first.checkpoint, 0.0))
+    for name, values in native.samples.items():
+        parts = np.concatenate([first.samples[name], second.samples[name][1:]])
+        np.testing.assert_array_equal(parts, values, err_msg=name)
+    assert second.balance == native.balance

@@ -1,0 +1,59 @@
+"""A short scene of gears in contact with any of the features that `gearidae.combinations` lists."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import gearidae as gd
+
+__all__ = ["CHANGES", "HALF", "SAMPLES", "scene_with"]
+
+HALF = 2.0**-21
+"""Half of the duration [s], so that times of samples of both halves are those of the whole to the last bit."""
+SAMPLES = 9
+"""Of each half."""
+
+_TABLE = [[1.0, 0.4, 0.8], *[[0.5, 0.9, 0.3]] * 18]
+BASE = gd.preset("teodorescu2009").replace(
+    {
+        "contact.bodies": "rigid",
+        "coating.sam_fraction": 0.5,
+        "drive.harmonic": None,
+        "load.torque": 0.0,
+        "initial.gap": 1.5e-8,
+        "run.duration": HALF,
+        "run.samples": SAMPLES,
+        "run.rtol": 1e-8,
+    }
+)
+CHANGES = {
+    "elastic bodies": {"contact.bodies": "elastic"},
+    "discrete asperities": {"contact.roughness": "discrete"},
+    "attraction": {"surface.hamaker": 5e-20, "coating.hamaker": 2e-20},
+    "coulomb friction": {"contact.friction": 0.3, "coating.friction": 0.1},
+    "shear friction": {
+        "contact.friction_law": "shear",
+        "contact.shear_strength": 1e8,
+        "coating.shear_strength": 2e7,
+    },
+    "hub friction": {
+        "gears.hub_friction": 0.3,
+        "gears.pinion_hub_radius": 3e-6,
+        "gears.gear_hub_radius": 6e-6,
+    },
+    "dry resistance": {"load.torque": 3e-11},
+    "maugis asperities": {"contact.asperity": "maugis"},
+    "independent coatings": {"coating.pairing": "independent", "coating.thickness": "1 nm"},
+    "coating by place": {"coating.pinion_table": np.array(_TABLE)},
+    "radius force": {"mesh.radius_force": True},
+    "static error": {"mesh.static_error": [{"order": 19, "amplitude": 2e-9}]},
+    "mesh damping": {"mesh.damping": 7e-6},
+    "held speed": {"drive.speed": 11592.0, "drive.speed_gain": 1e-15},
+    "exposures": {"run.exposures": 4},
+}
+"""Changes that give the scene a feature."""
+
+
+def scene_with(*features: str) -> gd.Scene:
+    """Return the scene of a duration of `HALF` with some features."""
+    return BASE.replace({key: value for name in features for key, value in CHANGES[name].items()})
