@@ -48,6 +48,7 @@ CHANGES = {
     "radius force": {"mesh.radius_force": True},
     "static error": {"mesh.static_error": [{"order": 19, "amplitude": 2e-9}]},
     "mesh damping": {"mesh.damping": 7e-6},
+    "film of gas": {"mesh.film_damping": 2e-5, "mesh.film_gap": 2e-8},
     "held speed": {"drive.speed": 11592.0, "drive.speed_gain": 1e-15},
     "exposures": {"run.exposures": 4},
 }

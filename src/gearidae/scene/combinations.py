@@ -60,6 +60,9 @@ FEATURES: Final = {
     "mesh damping": Feature(
         "mesh.damping", lambda scene: scene.mesh is not None and scene.mesh.damping > 0.0
     ),
+    "film of gas": Feature(
+        "mesh.film_damping", lambda scene: scene.mesh is not None and scene.mesh.film_damping > 0.0
+    ),
     "held speed": Feature("drive.speed", lambda scene: scene.drive is not None and bool(scene.drive.speed)),
     "exposures": Feature("run.exposures", lambda scene: scene.run.exposures > 0),
 }
