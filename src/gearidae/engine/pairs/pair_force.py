@@ -114,8 +114,10 @@ def add_pair(m: Model, total: MeshForces, pair: PairState, f: PairForce) -> Mesh
     its path.
     """
     turn, sign, slope = m.scene.phase_rate, 1.0 - 2.0 * pair.coast, pair.slope
-    relief, relief_u, relief_phase = sign * turn * f.path, -turn * f.path_by_gap, turn * f.path_by_place
-    force_phase, force_w, relief_v, relief_w = f.by_place, 0.0, 0.0, 0.0
+    relief = relief_u = relief_phase = force_w = relief_v = relief_w = 0.0
+    force_phase = f.by_place
+    if f.path != 0.0 or f.path_by_gap != 0.0:
+        relief, relief_u, relief_phase = sign * turn * f.path, -turn * f.path_by_gap, turn * f.path_by_place
     if slope != 0.0:  # on the tip relief
         along = f.by_gap * slope / turn
         force_phase += along

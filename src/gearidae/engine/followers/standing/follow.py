@@ -72,7 +72,7 @@ def step(m: Model, here: int, y: Floats) -> None:
     if is_at_rest(m):
         s.rest_time += (now.time - last.time) * unit
     turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
-    if turned or now.speed * last.speed <= 0.0:
+    if now.speed * last.speed <= 0.0 or (turned and _may_pass_zero(last, now)):
         _look_for_zeros(m, here, y, turned)
     if s.zero_count > 0:
         note_slow(m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position)
@@ -85,6 +85,13 @@ def step(m: Model, here: int, y: Floats) -> None:
         s.direction, s.high_known = 1, 0
     if s.left == 0 and abs(now.position - m.state.first_place) > HALF_PITCH:
         s.left = 1
+
+
+@compiled(inline=True)
+def _may_pass_zero(last: Record, now: Record) -> bool:
+    """Whether a speed of one sign at both ends may reach zero within a step: a cubic leaves its chord by less."""
+    bend = 0.25 * (now.time - last.time) * (abs(last.speed_rate) + abs(now.speed_rate))
+    return bool(min(abs(last.speed), abs(now.speed)) <= bend)
 
 
 @compiled
