@@ -19,6 +19,7 @@ from gearidae.archive.energy import doubt, imbalance, imbalance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, refuse_other_labels, run_value, runs, scene_of, swept_dims
+from gearidae.archive.tables import run_labels
 from gearidae.errors import SceneError
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import Holding
@@ -243,7 +244,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
         wall_time=float(run_value(run, "wall_time")),
         stick_time=kept.back_time if math.isnan(kept.stick_time) else kept.stick_time,
         mesh_exits=kept.stick_exits,
-        window=float(label.get("duration", run.attrs["t_end"])),
+        window=float(run.coords.get("duration", run.attrs["t_end"])),  # zipped keys are no part of the label
         imbalance=imbalance_of(run),
         free_advance=kept.free_advance,
         holding=Holding(kept.holding),
@@ -288,6 +289,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     labels = product(*(ds[dim].values.tolist() for dim in dims))
     columns = {name: ds[name].values.ravel().tolist() for name in _KEPT if name in ds}
     scheduled = is_scheduled(scene_of(ds))
+    windows = run_labels(ds, dims).get("duration", [ds.attrs["t_end"]] * math.prod(ds["verdict"].shape))
     roller, found = is_roller(ds), list[GearOutcome | RollerOutcome]()
     for number, label in enumerate(labels):
         row = _KEPT | {name: values[number] for name, values in columns.items()}
@@ -305,7 +307,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
             numbers |= {name: row[name] for name in ("free_advance", "turned_back")}
             numbers |= {"holding": Holding(row["holding"]), "scheduled": scheduled}
             numbers["old"] = scheduled and "followed_time" not in columns
-            found.append(GearOutcome(**both, **numbers, window=float(ds.attrs["t_end"])))
+            found.append(GearOutcome(**both, **numbers, window=float(windows[number])))
     return found
 
 
