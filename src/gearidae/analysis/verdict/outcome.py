@@ -77,6 +77,8 @@ class GearOutcome(Shown):
         Whether a torque or the held speed follows a schedule.
     old : bool
         Whether the verdict is that of an archive of version 0.2 by the rule of that version.
+    chained : bool
+        Whether the run goes on from another: times, exits and extremes are those of the chain.
     """
 
     label: dict[str, Any]
@@ -95,6 +97,7 @@ class GearOutcome(Shown):
     turned_back: float = math.nan
     scheduled: bool = False
     old: bool = False
+    chained: bool = False
 
     def resolved_min_speed(self, rtol: float) -> float:
         """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
@@ -104,6 +107,10 @@ class GearOutcome(Shown):
     def words(self) -> str:
         """The verdict in words, with its window, and a doubt where the energy balance does not close."""
         return self._verdict_in_words + (OLD if self.old else "") + doubt(self.imbalance)
+
+    @property
+    def _window(self) -> str:
+        return f"{_seconds(self.window)}{' of the chain' * self.chained}"
 
     @property
     def _verdict_in_words(self) -> str:
@@ -116,7 +123,7 @@ class GearOutcome(Shown):
             return f"turned back by {self.turned_back:.3g} pitches, as driven"
         words = _IN_WORDS[self.verdict]
         if self.verdict != "runs back" or math.isnan(self.stick_time):
-            return f"{words} through {exits} in {_seconds(self.window)}"
+            return f"{words} through {exits} in {self._window}"
         if self.stick_time > 0.0:
             return f"{words} at {_seconds(self.stick_time)} ({exits})"
         return f"runs back from the start ({exits})"
@@ -127,12 +134,12 @@ class GearOutcome(Shown):
         held = f", held by {self.holding.words}" if self.holding else ""
         since = f"{_seconds(self.stick_time)} ({exits})" if self.stick_time > 0.0 else ""
         if self.verdict == "sticks":
-            words = f"sticks at {since}" if since else f"does not start in {_seconds(self.window)}"
+            words = f"sticks at {since}" if since else f"does not start in {self._window}"
             return f"{words}: {free}" if self.scheduled and since and self.free_advance > 0.0 else words
         if self.free_advance > 0.0:
-            words = f"came to rest at {since}" if since else f"does not start in {_seconds(self.window)}"
+            words = f"came to rest at {since}" if since else f"does not start in {self._window}"
             return f"{words}: {free}{held}"
-        return (f"came to rest at {since}" if since else f"not driven in {_seconds(self.window)}") + held
+        return (f"came to rest at {since}" if since else f"not driven in {self._window}") + held
 
 
 _IN_WORDS = {
@@ -251,6 +258,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
         turned_back=kept.turned_back,
         scheduled=scheduled,
         old=old,
+        chained="start_time" in run.attrs,
     )
 
 
