@@ -252,7 +252,10 @@ class Results:
             return
         kind = kind_of(ds)
         dims = [dim for dim in swept_dims(ds) if ds.sizes[dim] != 1]
-        single, of_runs = not dims, kind == "runs"
+        single, of_runs = (
+            not dims,
+            kind == "runs" or ("swept" in ds.attrs and "min_gear_speed" in ds),
+        )  # of ensembles, too
         one = ", ".join(f"{dim}={_label(ds[dim])}" for dim in dims)
         names = {
             "scene": of_runs and single,
