@@ -190,3 +190,15 @@ def test_a_bar_on_a_terminal_of_an_impossible_width(columns, monkeypatch):
     with progress.run_progress(True, 0.3) as report:
         report(0.3, 7)
     assert 0 < len(sys.stderr.getvalue()) < 10_000
+
+
+def test_the_rate_is_that_of_the_last_half_minute(kernel, monkeypatch):
+    """A run that begins to adhere slows down, and the rate says so."""
+    clock = iter([0.0, *(float(second) for second in range(200))])
+    monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
+    pace = progress._Pace(1.0)
+    times = [1e-3 * second for second in range(100)]
+    times += [times[-1] + 1e-5 * second for second in range(1, 60)]
+    rates = [pace.rate(time) for time in times]
+    assert rates[50] == pytest.approx(1e-3, rel=1e-9)
+    assert rates[-1] == pytest.approx(1e-5, rel=1e-9)

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from gearidae.scene import load_case as load_case
     from gearidae.scene import preset as preset
     from gearidae.scene.combinations import combinations as combinations
+    from gearidae.studies.products import open as open  # noqa: A004
     from gearidae.surfaces import surface_from as surface_from
     from gearidae.testing.comparison import compare as compare
     from gearidae.torques import register_torque as register_torque
@@ -57,8 +58,8 @@ __getattr__, __dir__, __all__ = lazy_names(__name__)
 
 
 def _results(ds: Any) -> Any:
-    """Make the accessor `ds.gearidae`, `gearidae.analysis.accessor.Results`."""
-    return import_module("gearidae.analysis.accessor").Results(ds)
+    """Make the accessor `ds.gearidae`, `gearidae.studies.results.Results`."""
+    return import_module("gearidae.studies.results").Results(ds)
 
 
 def _register() -> None:

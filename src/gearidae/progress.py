@@ -7,6 +7,7 @@ import logging
 import shutil
 import sys
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from time import monotonic
@@ -18,6 +19,8 @@ RunProgress = Callable[[float, int], None]
 """Called with the simulated time [s] and the number of events so far."""
 _LONG: Final = 600.0
 """Wall time above which a run is announced as long [s]."""
+_RECENT: Final = 30.0
+"""Wall time over which the rate of a run is taken [s]."""
 _REDRAWN: Final = 0.1
 """Least time between two states of a bar in a notebook [s]."""
 SweepProgress = Callable[[float, int], None]
@@ -63,7 +66,9 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunPro
 
 
 class _Pace:
-    """Rate of a run, from its first report on: compiling is over then, and a resumed run is back.
+    """Rate of a run in its last half minute, from its first report on.
+
+    Compiling is over then, and a resumed run is back. Runs change their pace where they begin to adhere.
 
     Parameters
     ----------
@@ -73,13 +78,16 @@ class _Pace:
 
     def __init__(self, end: float) -> None:
         self._end = end
-        self._begun: tuple[float, float] | None = None
+        self._reports: deque[tuple[float, float]] = deque()
         self._judged = False
 
     def rate(self, time: float) -> float:
         """Return the simulated time for each second of wall time, once the run has reached a time [s]."""
         now = monotonic()
-        began, start = self._begun = self._begun or (now, time)
+        self._reports.append((now, time))
+        while now - self._reports[0][0] > _RECENT and len(self._reports) > 2:
+            self._reports.popleft()
+        began, start = self._reports[0]
         elapsed = now - began
         rate = (time - start) / elapsed if elapsed > 0.0 else 0.0
         if not self._judged and elapsed >= 1.0 and rate > 0.0:

@@ -216,3 +216,37 @@ def test_a_chain_has_the_exposures_of_its_last_run():
     np.testing.assert_array_equal(joined.sliding_work, second.sliding_work)
     np.testing.assert_array_equal(joined.place, second.place)
     assert joined.sizes["time"] == 21
+
+
+def test_runs_of_any_scenes_by_name(run, tmp_path):
+    """Names label runs and events; keys in which they differ are coordinates, and each run is what it was."""
+    others = {
+        "fast": gd.simulate(LOW.replace({KEY: 0.5, "drive.torque": "5 aN m"})),
+        "pushed": gd.simulate(LOW.replace({"drive.schedule": [[0.0, 0.0], [1e-3, 1e-19]]})),
+        "short": gd.simulate(LOW.replace({"run.duration": 1e-3, "run.samples": 6})),
+    }
+    parts = {"worn": run, **others}
+    joined = gd.concat(parts, "name")
+    assert joined.gear_speed.dims == ("name", "time")
+    assert joined.torque.values.tolist() == [4.5e-18, 5e-18, 4.5e-18, 4.5e-18]
+    assert joined.sam_fraction.values.tolist() == [0.5, 0.5, 1.0, 1.0]
+    assert joined.sizes["event"] == sum(part.sizes["event"] for part in parts.values())
+    table = joined.gearidae.events()
+    gd.save(joined, tmp_path / "joined.nc")
+    for ds in (joined, gd.open(tmp_path / "joined.nc")):
+        for name, part in parts.items():
+            alone = ds.gearidae.run(name=name)
+            assert alone.gearidae.scene == part.gearidae.scene.replace({"name": name})
+            assert alone.event_time.equals(part.event_time)
+            assert alone.gear_speed[: part.sizes["time"]].drop_attrs().equals(part.gear_speed.drop_attrs())
+            assert table.query("name == @name")["time"].tolist() == part.event_time.values.tolist()
+            words = ds.gearidae.verdicts().set_index("name")["words"][name]
+            assert words == part.gearidae.verdicts()["words"].item()
+
+
+def test_runs_by_name_that_cannot_be_joined(run, whole):
+    refused([run, run], "name", "name", "name them")
+    refused({"whole": whole}, "name", "dataset", "pick one")
+    refused({"worn": run}, KEY, "dim")
+    roller = gd.simulate(gd.preset("roller_slow").replace({"run.samples": 11, "contact.model": "asperity"}))
+    refused({"gears": run, "roller": roller}, "name", "dataset 2", "sampled in all runs")

@@ -257,3 +257,14 @@ def test_what_holds_the_gear_is_said_alike_wherever_it_is_said(braking):
     earlier = account(braking.drop_vars(["rest_time", "holding", "followed_time"]))
     assert earlier.held_by == words
     assert earlier.time_at_rest == pytest.approx(account(braking).time_at_rest, rel=1e-9)
+
+
+def test_the_balance_shows_no_rounding(braking):
+    """Entries below the last digit of the sum, and zeros with a sign."""
+    ds = braking.assign(model_change=4.394e-57, stored_change=-0.0, residual=-0.0)
+    rows = {name: value for name, value, _ in summary_rows(ds)}
+    assert "model change" not in rows
+    assert "stored change" not in rows
+    assert rows["residual"] == "0 J"
+    assert str(ds.gearidae.energy_balance["stored_change"]) == "0.0"
+    assert "e-" not in "".join(rows.values())

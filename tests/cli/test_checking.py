@@ -32,7 +32,7 @@ def test_check_says_that_the_input_is_valid_and_how_far_the_model_holds(capfd):
     for expected in (
         "5.41 nm",
         "450 times",
-        "45 times",
+        "57 times",
         "expected wall time",
         "within a factor of about three",
     ):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import errno
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -137,6 +138,20 @@ def test_init_writes_a_case_that_is_the_preset(folder, capfd):
     before = (folder / "mine.toml").read_bytes()
     assert main(["init", "mine.toml"]) == 2
     assert (folder / "mine.toml").read_bytes() == before
+
+
+def test_init_writes_every_key_of_its_tables(folder):
+    """As the reference lists them; keys that are not set stand behind a comment sign."""
+    from gearidae.scene import describe_keys
+
+    assert main(["init", "mine", "--preset", "teodorescu2009"]) == 0
+    text = (folder / "mine.toml").read_text()
+    for info in describe_keys():
+        table, _, key = info.key.partition(".")
+        if key and table != "roller":
+            part = re.split(r"\n\[\w+\]", text.partition(f"\n[{table}]")[2])[0]
+            name = key.split(".")[-1]
+            assert re.search(rf"\b{name} =|\[\[{table}\.{name}\]\]", part), info.key
 
 
 @pytest.mark.parametrize(

@@ -158,6 +158,27 @@ def test_torque_scale_is_not_set_by_the_start_up(single):
     assert low < settled.min() < settled.max() < high < 1.2 * settled.max()
 
 
+def test_the_torque_axis_shows_a_run_up(single):
+    """Of a run that follows a schedule the beginning is what it was made for."""
+    scene = LOW.replace({"drive.schedule": [[0.0, 0.0], [1e-2, 1e-18]]})
+    ds = to_dataset(scene, solution_of(scene))
+    ds["gear_contact_torque"][:] = 1e-16
+    ds["gear_contact_torque"][:20] = np.linspace(0.0, 1e-16, 20)
+    low, high = gd.plot.contact_torque(ds).get_ylim()
+    assert low < 0.0
+    assert high > 100.0  # aN m
+
+
+def test_a_picture_says_that_a_run_is_not_at_its_end(single):
+    for status, said in (("finished", ""), ("interrupted", "; interrupted at 100 ms of 300 ms")):
+        one = single.assign(reached=0.1).assign_attrs(status=status, t_end=0.3)
+        for draw in GEAR_PICTURES:
+            assert draw(one).get_xlabel() == f"time (ms){said}"
+    ds = sweep_of(LOW, [1.0, 0.5])
+    ds["status"][1] = "too_many_steps"
+    assert gd.plot.gear_speed(ds).get_xlabel() == "time (ms); 1 of 2 runs are not at their end"
+
+
 def test_torque_strips_do_not_overlap(sweep):
     ax = gd.plot.contact_torque(sweep)
     assert [label.get_text() for label in ax.get_yticklabels()] == legend_of(gd.plot.gear_speed(sweep))

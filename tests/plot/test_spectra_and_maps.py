@@ -123,6 +123,18 @@ def test_map_shows_the_first_impacts_the_later_ones_and_an_assessment(chart, low
     drawn(ax.figure)
 
 
+def test_ticks_carry_the_unit_that_the_label_leaves_out(chart, low):
+    """A prefix without its unit, 5 k beside (Hz), is no unit."""
+    frequencies = gd.plot.power_spectrum(low).xaxis
+    impact = gd.plot.coating_map(chart).yaxis
+    for axis in (frequencies, impact):
+        assert axis.get_major_formatter()(5e3) == "5 kHz"
+        assert "Hz" not in axis.get_label_text()
+    torques = gd.plot.starting_torque(gd.analysis.starting_torque(LOW, [0.5, 0.45], simulated=False)).yaxis
+    assert torques.get_major_formatter()(5e-12) == "5 pN m"
+    assert "N m" not in torques.get_label_text()
+
+
 def test_map_over_torque_names_its_lines():
     chart = gd.analysis.coating_map(LOW, [1.0, 0.8], over={"drive.torque": [4e-18, 5e-18]})
     names = [text.get_text() for text in gd.plot.coating_map(chart).get_legend().get_texts()]

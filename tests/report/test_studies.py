@@ -87,6 +87,14 @@ def test_a_file_is_known_for_what_it_is(product):
     found, name = open_product(path)
     assert name == kind == kind_of(ds)
     assert answer(found, kind) == answer(ds, kind)
+    opened = gd.open(path)
+    assert opened.identical(found)
+    assert opened.gearidae.kind == kind
+    assert answer(ds, kind).sentence in repr(opened.gearidae)
+    for row in repr(opened.gearidae).splitlines()[1:]:
+        call = row.split("  ")[1]
+        found_name = call if call.startswith("gearidae.") else f"opened.gearidae.{call}"
+        assert eval(found_name, {"opened": opened, "ds": opened, "gearidae": gd}) is not None, call
 
 
 def test_a_file_holds_what_its_study_declares(product):

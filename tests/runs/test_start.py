@@ -487,3 +487,13 @@ def test_time_at_rest_of_a_continued_run_is_that_of_the_chain():
     assert told[1] == pytest.approx(slip, rel=1e-9)
     still = gd.simulate(scene, start=first)  # held all the time, without an event of its own
     assert still.gearidae.account.time_at_rest == pytest.approx(2e-3, rel=1e-9)
+
+
+def test_the_outcome_of_a_chain_names_its_window():
+    """Exits and speeds are counted over the chain, and so is the time that the words give."""
+    first = gd.simulate(LOW)
+    second = gd.simulate(LOW, start=first)
+    words = [outcomes(ds)[0].words for ds in (first, second, gd.concat([first, second], "time"))]
+    assert words[0].endswith(" in 3.91 ms")
+    assert words[1].endswith(" in 7.81 ms of the chain")
+    assert words[2].endswith(" in 7.81 ms")

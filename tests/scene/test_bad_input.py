@@ -370,3 +370,22 @@ def test_anything_is_taken_or_refused(key: str, value: Any) -> None:
 def test_surfaces_are_checked_on_their_own(gears: Scene) -> None:
     with pytest.raises(SceneError, match="roughness = -1"):
         Surface(**{**gears.surface.model_dump(), "roughness": -1})
+
+
+def test_all_missing_keys_are_named_at_once(gears: Scene) -> None:
+    data = gears.to_dict()
+    del data["gears"]["face_width"], data["mesh"]["backlash"], data["run"]
+    with pytest.raises(SceneError, match=r"is required: .*; so are mesh\.backlash, run$") as caught:
+        Scene.from_dict(data)
+    assert caught.value.key == "gears.face_width"
+
+
+def test_a_misspelt_law_is_called_so(gears: Scene) -> None:
+    """And not its parameters."""
+    law = {"name": "microengin", "radius": "17 um", "force": "1 uN"}
+    with pytest.raises(SceneError, match=r"^drive\.law\.name = microengin: .*did you mean microengine\?$"):
+        gears.replace({"drive.law": law})
+    with pytest.raises(SceneError, match=r"did you mean hertz\?$"):
+        gears.replace({"contact.asperity": "herz"})
+    with pytest.raises(SceneError, match=r"drive\.law\.name = 7: must be one of"):
+        gears.replace({"drive.law": {"name": 7}})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.joint import history_of, part_name, software_of
 from gearidae.archive.keep import kept_in
-from gearidae.archive.select import run_value, runs, scene_of
+from gearidae.archive.select import run_value, runs, scene_of, swept_dims
 from gearidae.archive.single import single_run
 from gearidae.archive.stack import Axis, stack
 from gearidae.archive.variables import ENERGY_BALANCE, EXPOSURES, EXTREMES, RUN, STANDSTILL_LIST, VERDICT
@@ -26,22 +26,24 @@ from gearidae.scene.differences import first_difference
 from gearidae.scene.keys import scene_value
 
 
-def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
+def concat(datasets: Iterable[xr.Dataset] | Mapping[str, xr.Dataset], dim: str) -> xr.Dataset:
     """Join runs and sweeps into one dataset.
 
     Parameters
     ----------
-    datasets : iterable of xarray.Dataset
-        Single runs, sweeps, or selections from sweeps.
+    datasets : iterable of xarray.Dataset, or mapping of str to xarray.Dataset
+        Single runs, sweeps, or selections from sweeps; of a mapping, single runs by the names that they shall have.
     dim : str
-        The key in which they differ (``coating.sam_fraction``) or the name of its dimension (``sam_fraction``); or
-        ``time`` for a chain of runs, each of which goes on where the one before has ended.
+        The key in which they differ (``coating.sam_fraction``) or the name of its dimension (``sam_fraction``);
+        ``name`` for single runs of any scenes with names of their own; or ``time`` for a chain of runs, each of which
+        goes on where the one before has ended.
 
     Returns
     -------
     xarray.Dataset
         As `gearidae.sweep` returns it, with the runs in the order given: scenes, events, statistics, extremes,
-        exposures and energy balance of each are its own. Of a chain, as `gearidae.simulate` returns it: the samples and
+        exposures and energy balance of each are its own. Along ``name``, keys in which the runs differ are coordinates
+        too, if they hold numbers or words. Of a chain, as `gearidae.simulate` returns it: the samples and
         events of all, their statistics added up; energy balance, extremes and exposures, which each run carries on from
         the one before, are those of the last, and so are scene and status. The attribute ``chain`` holds where each run
         begins and ends, and its scene.
@@ -52,7 +54,7 @@ def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
         If the datasets cannot be joined: they differ in another key, which is named, or have the same value of this
         one; or the runs of a chain do not follow each other.
     """
-    parts = list(datasets)
+    parts = list(datasets.values() if isinstance(datasets, Mapping) else datasets)
     if not parts:
         raise SceneError("concat", "[]", "needs at least one dataset")
     for number, part in enumerate(parts):
@@ -61,14 +63,20 @@ def concat(datasets: Iterable[xr.Dataset], dim: str) -> xr.Dataset:
         scene_of(part)
     if dim == "time":
         return chained(parts)
-    key = _key_of(parts, dim)
-    axes = _axes(parts, key)
+    if isinstance(datasets, Mapping) and dim != "name":
+        raise SceneError("dim", dim, 'must be "name" for datasets by name')
+    if dim == "name":
+        parts = _named(parts, list(datasets) if isinstance(datasets, Mapping) else None)
+        axes = [_differing(parts)]
+    else:
+        axes = _axes(parts, _key_of(parts, dim))
     found = [_Run(run, single_run(run)) for part in parts for _, run in runs(part)]
     scenes = [Scene.from_dict(scene_of(each.single)) for each in found]
     order = _order(axes, scenes)
     scenes, found = [scenes[place] for place in order], [found[place] for place in order]
-    _refuse_differences(scenes, [key for axis in axes for key in axis])
-    _refuse_other_times(found)
+    if dim != "name":
+        _refuse_differences(scenes, [key for axis in axes for key in axis])
+    _refuse_other_samples(found)
     keep = kept_in(parts[0].attrs, scenes[0])
     for number, part in enumerate(parts):
         if part.attrs.get("keep") != parts[0].attrs.get("keep"):
@@ -88,6 +96,37 @@ class _Run(NamedTuple):
 
     picked: xr.Dataset
     single: xr.Dataset
+
+
+def _named(parts: Sequence[xr.Dataset], names: Sequence[str] | None) -> list[xr.Dataset]:
+    """Single runs with names of their own, which stand in their scenes."""
+    singles = [single_run(part) for part in parts]
+    for number, single in enumerate(singles):
+        if several := swept_dims(single):
+            raise SceneError(part_name(number), f"runs along {', '.join(several)}", "must be a single run")
+        if names is not None:
+            scene = Scene.from_dict(scene_of(single)).replace({"name": names[number]})
+            singles[number] = single.assign_attrs(scene=json.dumps(scene.to_dict()))
+    return singles
+
+
+def _differing(parts: Sequence[xr.Dataset]) -> Axis:
+    """Names of single runs, with the keys in which the runs differ and that hold numbers, or words."""
+    scenes = [Scene.from_dict(scene_of(part)) for part in parts]
+    axis: Axis = {"name": [scene.name for scene in scenes]}
+    for number, name in enumerate(axis["name"]):
+        if name in axis["name"][:number]:
+            raise SceneError("name", name, "stands in the datasets twice: name them, as in {name: dataset}")
+    others: list[str] = []
+    for scene in scenes[1:]:
+        while found := first_difference(scenes[0].to_dict(), scene.to_dict(), (*axis, *others)):
+            values = [scene_value(each, found[0]) for each in scenes]
+            kinds = {type(each) for each in values}
+            if kinds <= {int, float} or kinds == {str}:
+                axis[found[0]] = values
+            else:
+                others.append(found[0])
+    return axis
 
 
 def _key_of(parts: Sequence[xr.Dataset], dim: str) -> str:
@@ -193,8 +232,15 @@ def _refuse_differences(scenes: Sequence[Scene], swept: Sequence[str]) -> None:
             )
 
 
-def _refuse_other_times(found: Sequence[_Run]) -> None:
-    """Refuse runs that do not share one time axis, as far as each of them goes."""
+def _refuse_other_samples(found: Sequence[_Run]) -> None:
+    """Refuse runs that do not share one time axis, as far as each of them goes, or have other variables along it."""
+    for number, run in enumerate(found):
+        ours, theirs = (
+            {n for n, one in each.single.data_vars.items() if "time" in one.dims} for each in (found[0], run)
+        )
+        if other := ours ^ theirs:
+            shown = ", ".join(sorted(map(str, other)))
+            raise SceneError(part_name(number), shown, "must be sampled in all runs, or in none")
     times = [each.single["time"].values for each in found if "time" in each.single.dims]
     longest = max(times, key=len, default=np.empty(0))
     for time in times:

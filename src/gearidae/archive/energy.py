@@ -24,7 +24,7 @@ def balance_of(ds: xr.Dataset) -> dict[str, float] | None:
     """
     if not all(name in ds.variables and not ds[name].dims for name in ENERGY_BALANCE):
         return None
-    numbers = {name: float(ds[name]) for name in ENERGY_BALANCE}
+    numbers = {name: float(ds[name]) + 0.0 for name in ENERGY_BALANCE}  # which makes 0 of -0
     return None if any(map(math.isnan, numbers.values())) else numbers
 
 

@@ -352,10 +352,14 @@ def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool)
         samples, events = commit.samples, commit.events
     cut = ds.isel(time=slice(samples), event=slice(events)).drop_vars([*COUNTS, RECORDS], errors="ignore")
     point = Checkpoint.newest(path, str(cut.attrs.pop(_RUN, "")))
-    cut.attrs |= {"status": "running" if running else "interrupted", "message": "not at its end yet"}
+    remedy = "" if running else "; go on with --resume (resume=True)"
+    cut.attrs |= {
+        "status": "running" if running else "interrupted",
+        "message": f"not at its end yet{remedy}",
+    }
     if point is not None:
         cut.attrs |= {
-            "message": f"not at its end yet; checkpoint at {point.time:g} s",
+            "message": f"not at its end yet; checkpoint at {point.time:g} s{remedy}",
             "end_state": packed_state(point.state),
             "wall_time": point.wall_time,
             **{

@@ -177,7 +177,7 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     missing = [name for name in expected if name not in ds.variables]
     if "keep" not in ds.attrs and {*expected} - {*missing} <= {"time"}:  # nothing of a run
         what = f'is no archive of runs but "{ds.attrs.get("title", "of a study")}"'
-        raise SceneError("archive", path, f"{what}: gearidae.studies.open_product opens it")
+        raise SceneError("archive", path, f"{what}: gearidae.open reads it")
     wrong = f"it lacks {', '.join(missing)}" if missing else wrong_attribute(ds)
     if wrong:
         raise SceneError("archive", path, f"is damaged: {wrong}")

@@ -6,6 +6,7 @@ The terminal and the report show these rows, in these words; the names are those
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterator
 from typing import Any, TypeAlias
 
@@ -94,8 +95,9 @@ def _standing_rows(ds: xr.Dataset) -> Iterator[Row]:
 
 def _balance_rows(kept: dict[str, float]) -> Iterator[tuple[str, Row]]:
     yield "", ("Energy balance", "", "")
+    least = sys.float_info.epsilon * kept["throughput"]  # what is smaller changes no digit of the sum
     for name, each in TERMS.items():
-        if kept[name] != 0.0:
+        if abs(kept[name]) > least:
             part = "input" if each.sign > 0 else "lost" if name in LOSSES else ""
             remark = ", ".join(filter(None, (part, each.remark)))
             yield name, (name.replace("_", " "), with_prefix(kept[name], "J", 5), remark)

@@ -48,11 +48,12 @@ def write_case(name: str, preset: str) -> int:
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if path.stem.startswith("."):
         raise SceneError("init", name, "must be a name")
-    text = dump_case(gd.preset(preset).replace({"name": path.stem}))
+    text = dump_case(gd.preset(preset).replace({"name": path.stem}), every_key=True)
     with whole_file(path, name="init", remedy="choose another name") as part:
         part.write_text(
             f"# {path.name}: run it with: gearidae run {path.name}\n"
-            f"# Quantities are SI numbers or texts with a unit; a missing key takes its default.\n\n{text}",
+            f"# Quantities are SI numbers or texts with a unit; a missing key takes its default.\n"
+            f"# Keys behind a # are not set; some take the place of others.\n\n{text}",
             encoding="utf-8",
         )
     say(f"Wrote {path}")

@@ -17,13 +17,14 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import START_UP, outcomes
+from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
-from gearidae.archive.select import runs
+from gearidae.archive.select import run_value, runs, scene_of
 from gearidae.arrays import Floats
 from gearidae.drawing.picking import pick
 from gearidae.drawing.picture import PictureAxes, new_picture
 from gearidae.errors import SceneError
-from gearidae.scene.prefixes import PREFIXES
+from gearidae.scene.prefixes import PREFIXES, with_prefix
 
 # Okabe and Ito's palette, dark colours first: distinguishable for colour-blind readers and, with the line styles,
 # in grey.
@@ -42,6 +43,8 @@ POSITIVE, NEGATIVE = COLOURS[:2]
 
 _PREFIXED = ("m", "s", "Pa", "Hz", "N", "N m", "J", "W")
 _SPELT = {"rad s-1": "rad/s", "m s-1": "m/s", "kg m2": "kg m²", "J m-2": "J/m²", "m-2": "1/m²"}
+_AT_END = ("finished", "stopped")
+"""Status of runs that have come to their end."""
 _MOST_POINTS = 6000
 _MOST_RUNS = 7
 _LONGEST_LABEL = 32
@@ -78,10 +81,11 @@ class Run:
         return thin(self.data["time"], self.data[name], reached(self.data[name]))
 
     def settled(self, name: str) -> Spread:
-        """Return how the samples [SI] are spread, without those of the start-up."""
+        """Return how the samples [SI] are spread, without those of the start-up; where that is the input, with them."""
         values = self.data[name]
         end = reached(values)
-        return spread(values, int(START_UP * end), end)
+        left_out = 0.0 if is_scheduled(scene_of(self.data)) else START_UP
+        return spread(values, int(left_out * end), end)
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,9 +237,21 @@ def label_time(ax: Axes, runs: Sequence[Run]) -> Scale:
     """
     longest = float(max(run.data["time"][-1] for run in runs))
     scale = scale_for(longest, "s")
-    ax.set_xlabel(f"time ({scale.unit})")
+    ax.set_xlabel(f"time ({scale.unit}){_early_end(runs)}")
     ax.set_xlim(0.0, (longest or 1.0) * scale.factor)
     return scale
+
+
+def _early_end(runs: Sequence[Run]) -> str:
+    """Say which runs have not come to their end; nothing if all have."""
+    early = [run.data for run in runs if run_value(run.data, "status") not in _AT_END]
+    if len(runs) > 1 or not early:
+        return f"; {len(early)} of {len(runs)} runs are not at their end" if early else ""
+    reached_time, end = (
+        with_prefix(float(early[0]["reached"]), "s"),
+        with_prefix(early[0].attrs["t_end"], "s"),
+    )
+    return f"; {run_value(early[0], 'status')} at {reached_time} of {end}"
 
 
 def number_shown(runs: Sequence[Run]) -> str:

@@ -72,11 +72,11 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
             100.0 * assessment.low, 100.0 * assessment.high, color="#E69F00", alpha=0.3, label="assessed"
         )
     ax.set_yscale("log")
-    ax.yaxis.set_major_formatter(EngFormatter(sep=" "))
-    ax.yaxis.set_minor_formatter(EngFormatter(sep=" "))
+    ax.yaxis.set_major_formatter(EngFormatter("Hz"))
+    ax.yaxis.set_minor_formatter(EngFormatter("Hz"))
     ax.tick_params(axis="y", which="minor", labelsize="x-small")
     ax.set_xlabel("SAM (%)")
-    ax.set_ylabel("frequency of the impact response (Hz)")
+    ax.set_ylabel("frequency of the impact response")
     tidy(ax)
     ax.legend(frameon=False, fontsize="small")
     return ax

@@ -131,8 +131,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _fit_heights(ax, wide)
     _mark_all(ax, drive, mesh, rings if wide and len(shown) == 1 else [])
     _name_estimate(ax, resolution, wide)
-    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
-    ax.set_xlabel("frequency (Hz)")
+    ax.xaxis.set_major_formatter(EngFormatter("Hz"))
+    ax.set_xlabel("frequency")
     ax.set_ylabel("power spectral density\n((rad/s)²/Hz)")
     tidy(ax)
     legend(ax, shown)
@@ -180,9 +180,9 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     )
     bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02)
     bar.set_label("dB re 1 (rad/s)²/Hz")
-    ax.yaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.yaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel(f"time ({scale.unit})")
-    ax.set_ylabel("frequency (Hz)")
+    ax.set_ylabel("frequency")
     return ax
 
 
@@ -239,8 +239,8 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         raise SceneError("plot", "impact_spectrum", "no impact rings in the dataset")
     ax.set_xlim(0.0, 2.0 * highest)
     ax.set_ylim(0.0, 1.25)
-    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
-    ax.set_xlabel("frequency (Hz)")
+    ax.xaxis.set_major_formatter(EngFormatter("Hz"))
+    ax.set_xlabel("frequency")
     ax.set_ylabel("power spectral density\nover that of the ring")
     tidy(ax)
     if len(ax.get_legend_handles_labels()[0]) == len(shown):

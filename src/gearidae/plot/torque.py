@@ -29,7 +29,7 @@ def contact_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
     The runs of a sweep are set one below the other, all to the same scale, with torque that drives the gear
     above the line and torque by which adhesion holds it back below. The scale is that of the runs without
-    their start-up; what exceeds it there is cut.
+    their start-up, unless a torque or the speed follows a schedule; what exceeds it there is cut.
 
     Parameters
     ----------

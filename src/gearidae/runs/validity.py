@@ -32,6 +32,7 @@ from gearidae.contact.surroundings import (
 from gearidae.mesh.pair_contact import PairContact
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
 from gearidae.runs.locking import locking_rows
+from gearidae.scene.gears import disc_inertia
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 
@@ -369,7 +370,7 @@ def _inertia(scene: Scene) -> Iterator[ValidityRow]:
         ("pinion", gears.pinion_inertia, geometry.base_radius_pinion),
         ("gear", gears.gear_inertia, geometry.base_radius_gear),
     ):
-        disc = 0.5 * math.pi * _SILICON * gears.face_width * radius**4
+        disc = disc_inertia(_SILICON, gears.face_width, radius, gears.pressure_angle)
         times = disc / inertia
         holds = 1.0 / 3.0 <= times <= 3.0
         if holds:
@@ -378,6 +379,6 @@ def _inertia(scene: Scene) -> Iterator[ValidityRow]:
             verdict = f"{_times(times)} lighter than a solid disc: pierced, smaller, or a mistake"
         else:
             verdict = f"{_times(1.0 / times)} heavier than a solid disc: a load on the shaft, or a mistake"
-        limit = f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon"
+        limit = f"{with_prefix(disc, 'kg m^2')}, a solid disc of silicon on the pitch circle"
         quantity = f"{name}: moment of inertia"
         yield _row(f"inertia_{name}", quantity, inertia, "kg m^2", limit, disc, holds, verdict)

@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 
 from gearidae.scene.asperity_list import ListedAsperities
 from gearidae.scene.group import Group
+from gearidae.scene.keys import keys_of
 from gearidae.scene.knots import Knots
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.roughnesses import InRoughnesses
@@ -21,12 +22,14 @@ _LONGEST_BESIDE = 80
 """Characters of an entry that still has its comment beside it."""
 
 
-def dump_case(scene: Scene) -> str:
+def dump_case(scene: Scene, *, every_key: bool = False) -> str:
     """Write a scene as the text of a case file.
 
     Parameters
     ----------
     scene : Scene
+    every_key : bool, optional
+        Whether keys that the scene's tables may have, and have not, are written too, as comments.
 
     Returns
     -------
@@ -38,9 +41,11 @@ def dump_case(scene: Scene) -> str:
         group = getattr(scene, table)
         if isinstance(group, Group):
             description = Scene.model_fields[table].description
-            lines += ["", f"[{table}]  # {description}", *_table(group)]
+            lines += ["", f"[{table}]  # {description}", *_table(group, table if every_key else "")]
             lines += [
-                line for name in type(group).model_fields for line in _list_of_tables(table, name, group)
+                line
+                for name in type(group).model_fields
+                for line in _list_of_tables(table, name, group, every_key=every_key)
             ]
     return "\n".join(lines) + "\n"
 
@@ -72,8 +77,8 @@ def _quantity(field: FieldInfo) -> Quantity | None:
     return next((one for one in field.metadata if isinstance(one, Quantity)), None)
 
 
-def _table(group: Group) -> Iterator[str]:
-    """Write a table's plain keys, and its schedule."""
+def _table(group: Group, absent_in: str = "") -> Iterator[str]:
+    """Write a table's plain keys, and its schedule; also what it lacks, if its name is given."""
     entries = []
     for name, field in type(group).model_fields.items():
         value = getattr(group, name)
@@ -97,6 +102,8 @@ def _table(group: Group) -> Iterator[str]:
             continue  # a text that need not be given
         entries.append((f"{name} = {_value(value, _quantity(field))}", field.description))
     yield from _commented(entries)
+    if absent_in:
+        yield from _absent(absent_in, group)
 
 
 def _commented(entries: Sequence[tuple[str, str | None]]) -> Iterator[str]:
@@ -105,6 +112,20 @@ def _commented(entries: Sequence[tuple[str, str | None]]) -> Iterator[str]:
     width = max((len(text) for text, _ in entries if text not in long), default=0)
     for text, description in entries:
         yield f"# {description}\n{text}" if text in long else f"{text:<{width}}  # {description}"
+
+
+def _absent(table: str, group: Group) -> Iterator[str]:
+    """Write keys that a table does not have as comments, with their units or the keys inside them."""
+    for name, field in type(group).model_fields.items():
+        if getattr(group, name) not in (None, "", ()):
+            continue
+        above = f"{table}.{name}."
+        inside = [info.key.removeprefix(above) for info in keys_of(Scene) if info.key.startswith(above)]
+        quantity = _quantity(field)
+        value = _text(f"... {quantity.unit}") if quantity and quantity.unit != "1" else "..."
+        if inside:
+            value = f"{{ {', '.join(f'{key} = ...' for key in inside)} }}"
+        yield f"# {name} = {value}  # {field.description}"
 
 
 def _knots(knots: tuple[tuple[float, float], ...]) -> str:
@@ -146,12 +167,12 @@ def _plain(value: Any) -> str:
     return f"[{', '.join(map(_plain, value))}]" if isinstance(value, tuple) else repr(value)
 
 
-def _list_of_tables(table: str, name: str, group: Group) -> Iterator[str]:
+def _list_of_tables(table: str, name: str, group: Group, *, every_key: bool) -> Iterator[str]:
     value = getattr(group, name)
     if isinstance(value, tuple):
         for entry in value:
             if isinstance(entry, Group):
-                yield from ("", f"[[{table}.{name}]]", *_table(entry))
+                yield from ("", f"[[{table}.{name}]]", *_table(entry, f"{table}.{name}" if every_key else ""))
 
 
 def _value(value: Any, quantity: Quantity | None) -> str:

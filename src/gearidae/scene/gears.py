@@ -19,6 +19,21 @@ HubRadius = Annotated[float, Quantity(unit="m", at_least=0, at_most=1, least=1e-
 Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]
 
 
+def disc_inertia(density: float, width: float, base_radius: float, pressure_angle: float) -> float:
+    """Moment of inertia [kg m^2] of a solid disc as large as a gear's pitch circle.
+
+    Parameters
+    ----------
+    density : float
+        [kg/m^3].
+    width, base_radius : float
+        Of the gear [m].
+    pressure_angle : float
+        At the pitch circle [rad].
+    """
+    return 0.5 * math.pi * density * width * (base_radius / math.cos(pressure_angle)) ** 4
+
+
 class Gears(Group):
     """Two spur gears of full-depth involute teeth at their nominal centre distance.
 
@@ -72,11 +87,11 @@ class Gears(Group):
             found["pinion_base_radius"] = 0.5 * module * teeth * math.cos(angle)
         if cls._is_given(found, "density", "pinion_inertia", "gear_inertia"):
             density, width = cls._number(found, "density"), cls._number(found, "face_width")
-            pinion = cls._number(found, "pinion_base_radius") / math.cos(cls._number(found, "pressure_angle"))
-            gear = pinion * cls._number(found, "gear_teeth") / cls._number(found, "pinion_teeth")
+            radius, angle = cls._number(found, "pinion_base_radius"), cls._number(found, "pressure_angle")
+            larger = radius * cls._number(found, "gear_teeth") / cls._number(found, "pinion_teeth")
             del found["density"]
-            for name, radius in (("pinion_inertia", pinion), ("gear_inertia", gear)):
-                found[name] = 0.5 * math.pi * density * width * radius**4
+            for name, base in (("pinion_inertia", radius), ("gear_inertia", larger)):
+                found[name] = disc_inertia(density, width, base, angle)
         return found
 
     @staticmethod

@@ -13,6 +13,7 @@ from pydantic_core import PydanticSerializationError
 from gearidae.errors import SceneError
 
 _LONGEST_VALUE = 60
+_MISSING = "(missing)"
 _NOT_NOTED: set[str] = set()
 """Shared by all tables, and never changed."""
 
@@ -94,8 +95,11 @@ def shorten(value: object) -> object:
 
 
 def _scene_error(error: ValidationError) -> SceneError:
-    """Turn pydantic's report into one line: its first complaint, and how many there are besides."""
+    """Turn pydantic's report into one line: its first complaint, all missing keys, and how many there are besides."""
     (key, value, allowed), *others = _complaints(error)
+    if value == _MISSING and (also := [other for other, what, _ in others if what == _MISSING]):
+        allowed += f"; so {'is' if len(also) == 1 else 'are'} {', '.join(also)}"
+        others = [other for other in others if other[0] not in also]
     if others:
         allowed += f" (and {len(others)} more {'error' if len(others) == 1 else 'errors'})"
     return SceneError(key, value, allowed)
@@ -119,7 +123,7 @@ def _complaints(error: ValidationError) -> Iterator[tuple[str, object, str]]:
                 inside = key if key.startswith("[") or not key else f".{key}"
                 yield f"{where}{inside}".lstrip("."), value, allowed
         elif one["type"] == "missing":
-            yield where, "(missing)", f"is required: {_description(error.title, where)}"
+            yield where, _MISSING, f"is required: {_description(error.title, where)}"
         elif one["type"] in ("model_type", "dict_type"):
             yield where, shorten(one["input"]), "must be a table"
         elif one["type"] == "literal_error":

@@ -10,6 +10,8 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from gearidae.scene.group import did_you_mean
+
 
 @dataclass(frozen=True, slots=True)
 class Named:
@@ -47,7 +49,8 @@ class Named:
             Saying which names are known.
         """
         if not isinstance(value, str) or value not in self.names():
-            raise ValueError(self.allowed())
+            meant = did_you_mean(value, self.names()) if isinstance(value, str) else ""
+            raise ValueError("; ".join(filter(None, (self.allowed(), meant))))
         return value
 
     def allowed(self) -> str:

@@ -40,6 +40,7 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
     """
     if math.isnan(value):
         return "-"
+    value += 0.0  # which makes 0 of -0
     if unit == "1":
         return f"{value:.{digits}g}"
     if value == 0.0 or math.isinf(value) or unit.startswith("kg"):

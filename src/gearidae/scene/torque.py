@@ -98,6 +98,11 @@ class Law(Group):
     def known_keys(cls, data: Mapping[str, Any]) -> list[str]:
         """Return the keys of the table, with the names of the law's parameters."""
         name = data.get("name")
+        if name is not None:  # a misspelt law would make its parameters unknown keys
+            try:
+                Named(torque_names).read(name)
+            except ValueError as error:
+                raise SceneError("name", shorten(name), str(error)) from None
         named = torque_law(name).named if name in torque_names() else ()
         return [*cls.model_fields, *(one.name for one in named)]
 

@@ -48,6 +48,27 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
         return ds, found
 
 
+def open(path: str | os.PathLike[str]) -> xr.Dataset:  # noqa: A001
+    """Read a file that gearidae has written: a run, a sweep, or what any study has found.
+
+    Parameters
+    ----------
+    path : path-like
+        A netCDF file.
+
+    Returns
+    -------
+    xarray.Dataset
+        Identical to the saved dataset; an unfinished run as `open_archive` reads it. ``ds.gearidae`` says what it is.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read or is something else.
+    """
+    return open_product(path)[0]
+
+
 def kind_of(ds: xr.Dataset) -> str:
     """Say what a dataset is.
 

@@ -212,7 +212,8 @@ class Study:
         try:
             return self.require(ds)
         except SceneError as error:
-            raise SceneError(self._file, path, error.allowed) from None
+            other = "; gearidae.open reads it as what it is" if "scene" in ds.attrs else ""
+            raise SceneError(self._file, path, f"{error.allowed}{other}") from None
 
     def read(self, path: str | os.PathLike[str]) -> xr.Dataset:
         """Read a netCDF file, whatever is in it; errors say that it is no file of this study."""

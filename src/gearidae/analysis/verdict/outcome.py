@@ -19,6 +19,7 @@ from gearidae.archive.energy import doubt, imbalance, imbalance_of
 from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, refuse_other_labels, run_value, runs, scene_of, swept_dims
+from gearidae.archive.tables import run_labels
 from gearidae.errors import SceneError
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import Holding
@@ -76,6 +77,8 @@ class GearOutcome(Shown):
         Whether a torque or the held speed follows a schedule.
     old : bool
         Whether the verdict is that of an archive of version 0.2 by the rule of that version.
+    chained : bool
+        Whether the run goes on from another: times, exits and extremes are those of the chain.
     """
 
     label: dict[str, Any]
@@ -94,6 +97,7 @@ class GearOutcome(Shown):
     turned_back: float = math.nan
     scheduled: bool = False
     old: bool = False
+    chained: bool = False
 
     def resolved_min_speed(self, rtol: float) -> float:
         """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
@@ -103,6 +107,10 @@ class GearOutcome(Shown):
     def words(self) -> str:
         """The verdict in words, with its window, and a doubt where the energy balance does not close."""
         return self._verdict_in_words + (OLD if self.old else "") + doubt(self.imbalance)
+
+    @property
+    def _window(self) -> str:
+        return f"{_seconds(self.window)}{' of the chain' * self.chained}"
 
     @property
     def _verdict_in_words(self) -> str:
@@ -115,7 +123,7 @@ class GearOutcome(Shown):
             return f"turned back by {self.turned_back:.3g} pitches, as driven"
         words = _IN_WORDS[self.verdict]
         if self.verdict != "runs back" or math.isnan(self.stick_time):
-            return f"{words} through {exits} in {_seconds(self.window)}"
+            return f"{words} through {exits} in {self._window}"
         if self.stick_time > 0.0:
             return f"{words} at {_seconds(self.stick_time)} ({exits})"
         return f"runs back from the start ({exits})"
@@ -126,12 +134,12 @@ class GearOutcome(Shown):
         held = f", held by {self.holding.words}" if self.holding else ""
         since = f"{_seconds(self.stick_time)} ({exits})" if self.stick_time > 0.0 else ""
         if self.verdict == "sticks":
-            words = f"sticks at {since}" if since else f"does not start in {_seconds(self.window)}"
+            words = f"sticks at {since}" if since else f"does not start in {self._window}"
             return f"{words}: {free}" if self.scheduled and since and self.free_advance > 0.0 else words
         if self.free_advance > 0.0:
-            words = f"came to rest at {since}" if since else f"does not start in {_seconds(self.window)}"
+            words = f"came to rest at {since}" if since else f"does not start in {self._window}"
             return f"{words}: {free}{held}"
-        return (f"came to rest at {since}" if since else f"not driven in {_seconds(self.window)}") + held
+        return (f"came to rest at {since}" if since else f"not driven in {self._window}") + held
 
 
 _IN_WORDS = {
@@ -243,13 +251,14 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
         wall_time=float(run_value(run, "wall_time")),
         stick_time=kept.back_time if math.isnan(kept.stick_time) else kept.stick_time,
         mesh_exits=kept.stick_exits,
-        window=float(label.get("duration", run.attrs["t_end"])),
+        window=float(run.coords.get("duration", run.attrs["t_end"])),  # zipped keys are no part of the label
         imbalance=imbalance_of(run),
         free_advance=kept.free_advance,
         holding=Holding(kept.holding),
         turned_back=kept.turned_back,
         scheduled=scheduled,
         old=old,
+        chained="start_time" in run.attrs,
     )
 
 
@@ -288,6 +297,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     labels = product(*(ds[dim].values.tolist() for dim in dims))
     columns = {name: ds[name].values.ravel().tolist() for name in _KEPT if name in ds}
     scheduled = is_scheduled(scene_of(ds))
+    windows = run_labels(ds, dims).get("duration", [ds.attrs["t_end"]] * math.prod(ds["verdict"].shape))
     roller, found = is_roller(ds), list[GearOutcome | RollerOutcome]()
     for number, label in enumerate(labels):
         row = _KEPT | {name: values[number] for name, values in columns.items()}
@@ -305,7 +315,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
             numbers |= {name: row[name] for name in ("free_advance", "turned_back")}
             numbers |= {"holding": Holding(row["holding"]), "scheduled": scheduled}
             numbers["old"] = scheduled and "followed_time" not in columns
-            found.append(GearOutcome(**both, **numbers, window=float(ds.attrs["t_end"])))
+            found.append(GearOutcome(**both, **numbers, window=float(windows[number])))
     return found
 
 

@@ -169,7 +169,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is none of starting torques, or adhesion holds the gear nowhere.
     """
-    from matplotlib.ticker import StrMethodFormatter
+    from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
     from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
 
@@ -199,8 +199,9 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         )
     ax.set_yscale("log")
     ax.set_xlabel("SAM (%)")
-    ax.set_ylabel("starting torque on the pinion (N m)")
+    ax.set_ylabel("starting torque on the pinion")
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.yaxis.set_major_formatter(EngFormatter("N m"))
     tidy(ax)
     if len(percent) > 1:
         ax.set_xlim(percent.min(), percent.max())
@@ -257,11 +258,11 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             label=f"SAM {100.0 * float(one['sam_fraction']):.4g} %",
         )
     ax.set_xscale("log")
-    ax.xaxis.set_major_formatter(EngFormatter(sep=" "))
+    ax.xaxis.set_major_formatter(EngFormatter("N m"))
     ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set_ylim(0.0, 1.02)
-    ax.set_xlabel("starting torque on the pinion (N m)")
+    ax.set_xlabel("starting torque on the pinion")
     ax.set_ylabel(f"share of {count} gears")
     tidy(ax)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:

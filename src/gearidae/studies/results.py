@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import html
+import math
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,19 +12,23 @@ import xarray as xr
 
 from gearidae.archive.energy import energy_balance
 from gearidae.archive.run_summary import Account, account
-from gearidae.archive.select import run_scene, runs, scene_of, swept_dims
+from gearidae.archive.select import is_roller, own_events, run_scene, runs, scene_of, swept_dims
 from gearidae.archive.single import single_run
 from gearidae.archive.tables import LARGEST_TABLE, event_table, run_labels, time_series
-from gearidae.archive.variables import EXTREMES
+from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
+from gearidae.scene.carried import cf_unit, number_of
+from gearidae.scene.units import from_text
+from gearidae.studies.declared import studies
+from gearidae.studies.products import kind_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 class Results:
-    """A dataset of `gearidae.simulate`, `gearidae.sweep` or `gearidae.open_archive`, read as what it is.
+    """A dataset of gearidae, read as what it is; its text lists what it offers.
 
     Parameters
     ----------
@@ -31,7 +37,8 @@ class Results:
     Examples
     --------
     >>> import gearidae as gd
-    >>> ds = gd.open_archive("sweep.nc")  # doctest: +SKIP
+    >>> ds = gd.open("sweep.nc")  # doctest: +SKIP
+    >>> ds.gearidae  # doctest: +SKIP
     >>> ds.gearidae.verdicts()  # doctest: +SKIP
     >>> ds.gearidae.run(sam_fraction=0.5).gearidae.scene.coating.sam_fraction  # doctest: +SKIP
     0.5
@@ -39,6 +46,28 @@ class Results:
 
     def __init__(self, ds: xr.Dataset) -> None:
         self._ds = ds
+
+    def __repr__(self) -> str:
+        """Say what the dataset is, and list what can be asked of it."""
+        rows = list(self._offers())
+        width = max((len(name) for name, _ in rows), default=0)
+        return "\n".join([self._title(), *(f"  {name:<{width}}  {words}" for name, words in rows)])
+
+    def _repr_html_(self) -> str:
+        """Show the same in a notebook."""
+        return f"<pre>{html.escape(repr(self))}</pre>"
+
+    @property
+    def kind(self) -> str:
+        """What the dataset is: ``runs`` of `gearidae.simulate` and `gearidae.sweep`, else the name of a study.
+
+        Raises
+        ------
+        SceneError
+            If it is no dataset of gearidae.
+        """
+        scene_of(self._ds)
+        return kind_of(self._ds)
 
     @property
     def scene(self) -> Scene:
@@ -73,14 +102,36 @@ class Results:
         """Energy balance of a single run [J] by the names of its variables, with ``time`` [s]; None without one."""
         return energy_balance(self._ds)
 
+    def sel(self, **labels: Any) -> xr.Dataset:
+        """Pick runs by their labels, with only their own events.
+
+        Parameters
+        ----------
+        **labels
+            As for `run`.
+
+        Returns
+        -------
+        xarray.Dataset
+
+        Raises
+        ------
+        SceneError
+            If a label is unknown.
+        """
+        ds = self._ds
+        for name, value in labels.items():
+            ds = _picked(ds, name, value)
+        return own_events(ds)
+
     def run(self, **labels: Any) -> xr.Dataset:
-        """Pick one run, with its own scene and only its own events.
+        """Pick one run by its labels, with its own scene and only its own events.
 
         Parameters
         ----------
         **labels
             Value of each swept key, by the name of its dimension or of a coordinate that was zipped with it
-            (``sam_fraction=0.5``); numbers as they are printed will do.
+            (``sam_fraction=0.5``): numbers, as they are printed will do, or as in a scene with a unit (``"5 aN m"``).
 
         Returns
         -------
@@ -92,9 +143,7 @@ class Results:
         SceneError
             If a label is unknown, or the labels leave more runs than one.
         """
-        ds = self._ds
-        for name, value in labels.items():
-            ds = _picked(ds, name, value)
+        ds = self.sel(**labels)
         several = [dim for dim in swept_dims(ds) if ds.sizes[dim] != 1]
         if several:
             named = ", ".join(f"{dim}={_shown(ds[dim].values[:1])}" for dim in several)
@@ -179,6 +228,58 @@ class Results:
         """Make a table of the events of these runs; see `gearidae.archive.tables.event_table`."""
         return event_table(self._ds)
 
+    def _title(self) -> str:
+        """Say what the dataset is, in a line."""
+        ds = self._ds
+        try:
+            kind = self.kind
+        except SceneError as error:
+            return f"<no dataset of gearidae: it {error.allowed}>"
+        if kind != "runs":
+            return f"<{studies()[kind].words}: {studies()[kind].sentence(ds)}>"
+        name, dims = scene_of(ds).get("name", ""), swept_dims(ds)
+        along = ", ".join(f"{dim} ({_shown(ds[dim].values)})" for dim in dims)
+        count = math.prod(ds.sizes[dim] for dim in dims)
+        of = "" if "name" in dims else f" of {name}"
+        what = f"{count} runs{of} along {along}" if dims else f"run of {name}"
+        ended = ": ".join(filter(None, (str(ds.attrs.get(each, "")) for each in ("status", "message"))))
+        return f"<{what}, {ended}>"
+
+    def _offers(self) -> Iterator[tuple[str, str]]:
+        """What can be asked of the dataset, with what it is."""
+        ds = self._ds
+        if "scene" not in ds.attrs and "scene" not in ds.variables:
+            return
+        kind = kind_of(ds)
+        dims = [dim for dim in swept_dims(ds) if ds.sizes[dim] != 1]
+        single, of_runs = (
+            not dims,
+            kind == "runs" or ("swept" in ds.attrs and "min_gear_speed" in ds),
+        )  # of ensembles, too
+        one = ", ".join(f"{dim}={_label(ds[dim])}" for dim in dims)
+        names = {
+            "scene": of_runs and single,
+            f"run({one})": of_runs and not single,
+            "sel": of_runs and not single,
+            "scenes": of_runs and not single,
+            "template": not (of_runs and single),
+            "account": of_runs and single and not is_roller(ds),
+            "energy_balance": of_runs and single,
+            "verdicts()": of_runs,
+            "standstills()": of_runs and STANDSTILL_LIST.name in ds,
+            "to_dataframe()": "time" in ds.dims,
+            "events()": "event" in ds.dims,
+        }
+        for name, offered in names.items():
+            if offered:
+                yield name, _first_line(getattr(type(self), name.partition("(")[0]))
+        if kind == "runs":
+            yield "gearidae.plot.overview(ds)", "Pictures of the runs"
+            return
+        for picture in studies()[kind].pictures:
+            if picture.needs(ds):
+                yield f"gearidae.plot.{picture.name}(ds)", picture.caption
+
 
 def _picked(ds: xr.Dataset, name: str, value: Any) -> xr.Dataset:
     """Pick the runs that have a value of a coordinate."""
@@ -187,6 +288,7 @@ def _picked(ds: xr.Dataset, name: str, value: Any) -> xr.Dataset:
     if name not in known:
         raise SceneError("run", name, f"must be one of {', '.join(known)}")
     labels = np.atleast_1d(ds[name].values)
+    asked, value = value, _plain(ds[name], value) if labels.dtype.kind in "fiu" else value
     if labels.dtype.kind in "fiu" and isinstance(value, int | float | np.number):
         # a value as it is printed is not always the same float
         exact = labels == value
@@ -194,13 +296,32 @@ def _picked(ds: xr.Dataset, name: str, value: Any) -> xr.Dataset:
     else:
         found = labels == value
     if not np.any(found):
-        raise SceneError(f"run({name})", value, f"must be one of {_shown(labels)}")
+        raise SceneError(f"run({name})", asked, f"must be one of {_shown(labels)}")
     if not ds[name].dims:
         return ds
     (dim,) = ds[name].dims
     assert dim in dims
     places = np.flatnonzero(found)
     return ds.isel({dim: int(places[0]) if len(places) == 1 else places})
+
+
+def _plain(label: xr.DataArray, value: Any) -> Any:
+    """Turn a value with a unit, in a text or a quantity, into the number that it is [SI]."""
+    unit = cf_unit(str(label.attrs.get("units", "1")))
+    try:
+        number = from_text(value, unit) if isinstance(value, str) else number_of(value, unit)
+    except ValueError as error:
+        raise SceneError(f"run({label.name})", value, str(error)) from None
+    return value if number is None else number
+
+
+def _first_line(member: Any) -> str:
+    return str(member.__doc__).partition("\n")[0].partition(";")[0].rstrip(".")
+
+
+def _label(values: xr.DataArray) -> str:
+    """Write the first label of a dimension as Python does."""
+    return repr(values.values[:1].tolist()[0])
 
 
 def _shown(values: np.ndarray[Any, Any]) -> str:

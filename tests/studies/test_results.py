@@ -197,3 +197,40 @@ def test_a_dataset_of_something_else():
 
     with pytest.raises(gd.SceneError, match="must come from simulate"):
         _ = xr.Dataset().gearidae.scene
+
+
+def test_labels_may_be_written_as_in_a_scene(ds):
+    """Texts with a unit and quantities pick what their number picks, of one run or of several."""
+    pint = pytest.importorskip("pint")
+    wanted = ds.gearidae.run(sam_fraction=0.5, torque=5e-18)
+    for torque in ("5 aN m", "5e-6 pN m", pint.UnitRegistry().Quantity(5.0, "aN m")):
+        assert ds.gearidae.run(sam_fraction="50 %", torque=torque).identical(wanted)
+    both = ds.gearidae.sel(torque="5 aN m")
+    assert dict(both.sizes) | {"sam_fraction": 2} == dict(both.sizes)
+    assert set(both.event_torque.values.tolist()) == {5e-18}
+    with pytest.raises(gd.SceneError, match=r"run\(torque\) = 7 aN m: must be one of 4e-18, 5e-18"):
+        ds.gearidae.run(torque="7 aN m")
+    with pytest.raises(gd.SceneError, match="does not fit; expected a number with a unit that fits N m"):
+        ds.gearidae.sel(torque="5 um")
+
+
+def test_the_accessor_lists_what_works(ds):
+    """What it lists can be called as it stands there."""
+    for each in (ds, ds.gearidae.run(sam_fraction=0.5, torque=5e-18), ds.sel(torque=5e-18)):
+        title, *rows = repr(each.gearidae).splitlines()
+        assert title.startswith("<")
+        assert len(rows) > 5
+        for row in rows:
+            call = row.split("  ")[1]
+            value = eval(
+                call if call.startswith("gearidae.") else f"ds.gearidae.{call}", {"ds": each, "gearidae": gd}
+            )
+            assert value is not None, call
+    assert "6 runs of teodorescu2009_low_speed along sam_fraction (1, 0.5), torque" in repr(ds.gearidae)
+    assert ds.gearidae._repr_html_().startswith("<pre>&lt;6 runs")
+
+
+def test_the_accessor_of_something_else_has_a_text():
+    import xarray as xr
+
+    assert repr(xr.Dataset({"a": 1}).gearidae).startswith("<no dataset of gearidae")
