@@ -314,7 +314,7 @@ def test_values_that_cannot_be_shown(gears: Scene) -> None:
         gears.replace({"run.rtol": 10**5000})
     with pytest.raises(SceneError, match=r"run\.rtol = \['x{55}\.\.\.: must be a number"):
         gears.replace({"run.rtol": ["x" * 10_000]})
-    with pytest.raises(SceneError, match=r"contact\.model = '\\x1b\[2J'"):
+    with pytest.raises(SceneError, match=r"contact\.bodies = '\\x1b\[2J'"):
         gears.replace({"contact.bodies": "\x1b[2J"})
 
 

@@ -46,7 +46,7 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
 
 def _handed_over(source: Model, state: Floats, new: Problem, time: float, y: Floats) -> Floats:
     """Checkpoint of the new problem: held friction is decided on anew, and the change of the stored energy booked."""
-    if new.model.scene.friction.on != 0:
+    if new.model.scene.friction.rubs != 0:
         settle_start(new.model, time, y, False)
     carry_balance(source, state, new.model, y)
     return new.checkpoint(time, y)

@@ -126,7 +126,7 @@ def force_of_nodes(
     stiff[:] = 0.0
     if known and is_stretched(m, k, rate):
         added = scratch(m, POINT_ADDED, m.scene.points)
-        add_stretched(m, k, t, y, gap, rate, force_scales(m, k), added, stiff)
+        add_stretched(m, k, t, y, (gap, rate), force_scales(m, k), (added, stiff))
         add_to_nodes(m, added, pressure)
     force = 0.0
     stiffness = 0.0
@@ -159,13 +159,24 @@ def add_stretched(
     k: int,
     t: float,
     y: Floats,
-    gap: float,
-    rate: float,
+    there: tuple[float, float],
     scales: Shares,
-    added: Floats,
-    stiff: Floats,
+    out: tuple[Floats, Floats],
 ) -> None:
-    """Set the pressure of stretched asperities at the points by the materials' scales, and add its slopes."""
+    """Set the pressure of stretched asperities at the points by the materials' scales, and add its slopes.
+
+    Parameters
+    ----------
+    m, k, t, y
+        As for `force_of_nodes`.
+    there : tuple of float
+        The pair's gap and gap rate.
+    scales : tuple of float
+        Of the materials' pressures.
+    out : tuple of two ndarrays, shape (points,)
+        Pressures, and slopes.
+    """
+    (gap, rate), (added, _) = there, out
     h = m.state.history[k]
     turned = h.direction * rate < 0.0
     points = m.scene.points
@@ -183,22 +194,20 @@ def add_stretched(
     way = _TURNED if turned else _OPENING if opening else _CLOSING
     for material in range(MATERIALS):
         if m.scene.material[material].stretch_limit != 0.0:
-            _add_material(m, k, material, way, scales[material], gaps, turning, added, stiff)
+            _add_material(m, k, (material, way), scales[material], (gaps, turning), out)
 
 
 @compiled
 def _add_material(
     m: Model,
     k: int,
-    material: int,
-    way: int,
+    which: tuple[int, int],
     scale: float,
-    gaps: Floats,
-    turning: Floats,
-    added: Floats,
-    stiff: Floats,
+    at: tuple[Floats, Floats],
+    out: tuple[Floats, Floats],
 ) -> None:
-    """Add the pressure of a material's stretched asperities at the points, and its slopes."""
+    """Add the pressure of stretched asperities at the points, and its slopes; `which` is a material and a way."""
+    (material, way), (gaps, turning), (added, stiff) = which, at, out
     own, points = m.scene.material[material], m.scene.points
     limit, offset = own.stretch_limit, own.gap_offset
     table, heights = m.tables[own.table_at :], joined_at(m, k, material)

@@ -41,6 +41,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     PairState,
     acts,
     contact_length,
+    flank_of_history,
     pair_at,
     pair_force,
     pair_state,
@@ -76,7 +77,7 @@ def _with_limit(
 ) -> PairForce:
     """Return the force of an elastic pair with the limit of its friction, of materials with different coefficients."""
     follow = row(m, pair.k, TANGENT) if settling else np.zeros(m.scene.nodes)
-    limit, slope = limit_of_nodes(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length, follow)
+    limit, slope = limit_of_nodes(m, t, y, pair, length, follow)
     return PairForce(
         f.load, f.by_gap, 0.0, 0.0, f.contact, f.contact_by_gap, 0.0, 0.0, 0.0, limit, slope, 0.0
     )
@@ -147,8 +148,8 @@ def follow_slopes(m: Model, t: float, y: Floats, ahead: float, later: Floats) ->
         noted.slope += more
         noted.contact_slope += more
         if rubs_by_material(m):
-            known, gap, rate = m.state.history[k].pair == noted.pair, noted.gap, noted.gap_rate
-            noted.limit_slope = limit_of_nodes(m, k, known, t, y, gap, rate, length, follow)[1]
+            pair = pair_state(m, flank_of_history(m, k), int(noted.pair), y)
+            noted.limit_slope = limit_of_nodes(m, t, y, pair, length, follow)[1]
         first = first_unknown(m, k)
         for node in range(m.scene.nodes):
             later[first + node] = y[first + node] + ahead * follow[node] * noted.gap_rate
