@@ -43,5 +43,6 @@ if TYPE_CHECKING:
     from gearidae.contact.rough import maximum_tension as maximum_tension
     from gearidae.contact.rough import rough_pressure as rough_pressure
     from gearidae.contact.rough import rough_pressure_slopes as rough_pressure_slopes
+    from gearidae.studies.hub_contact import hub_adhesion as hub_adhesion
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)
