@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, Unpack
+from typing import Any, Final, Unpack
 
 import xarray as xr
 
@@ -74,7 +74,7 @@ def hub_adhesion(
         )
     )
     tables = scene.to_dict()
-    hub = {name: tables[name] for name in ("surface", "coating") if name in tables}
+    hub: dict[str, Any] = {name: tables[name] for name in ("surface", "coating") if name in tables}
     hub["contact"] = {key: value for key, value in tables.get("contact", {}).items() if key in _OF_ASPERITIES}
     hub["roller"] = {"radius": r * (r + c) / c, "width": length, **_AT_REST}
     hub |= {"name": f"hub of {scene.name}", "run": {"duration": 1e-6}}
