@@ -10,6 +10,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.archive import combine, save, to_dataset
 from gearidae.archive import netcdf as netcdf_module
+from gearidae.archive.variables import CONTACT
 from gearidae.cli import main
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
@@ -51,7 +52,7 @@ def flipped(path, place, bit):
     return other
 
 
-TEXTS = {"status", "message", "backend", "method", "skipped", "scene"}
+TEXTS = {"status", "message", "backend", "method", "skipped", "scene", *(each.name for each in CONTACT)}
 """Of each run of a sweep, of varying length."""
 
 

@@ -19,10 +19,11 @@ from gearidae.errors import SceneError
 from gearidae.plot.asperities import flank_asperities, half_width, joined_asperities, touching_arc
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
+from gearidae.records import sampled_columns
 from gearidae.scene import MATERIAL_NAMES, Scene
 
 if TYPE_CHECKING:
-    from gearidae.records import Flank, sampled_columns
+    from gearidae.records import Flank
     from gearidae.studies.tooth_states import MeshState, ToothContact
 
 MOST_STATES = 3000
