@@ -26,6 +26,7 @@ from gearidae.engine.model.state import ROLLER, U, V, W
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.problem import Problem
 from gearidae.errors import SolverError
+from gearidae.scene.older_names import MODELS
 from gearidae_bench.error import run_error
 from gearidae_bench.loop import run_dop853, run_gauss
 from gearidae_bench.roots import FAILED
@@ -118,7 +119,7 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
         "shear_strength": 0.0,
     },
     "gears": {"hub_friction": 0.0, "pinion_hub_radius": 0.0, "gear_hub_radius": 0.0},
-    "mesh": {"radius_force": False},
+    "mesh": {"radius_force": False, "film_damping": 0.0, "film_gap": 0.0},
     "surface": {"provenance": "", "hamaker": 0.0},
     "drive": {"speed_gain": 0.0},
     "load": {"viscous": 0.0},
@@ -139,6 +140,9 @@ def scene_hash(bench: BenchScene) -> str:
         del solved["surface"]["interaction_range"]
     if bench.scene.initial is not None:  # a length, in whichever way it is written
         solved["initial"]["gap"] = float(bench.scene.initial.gap)
+    contact = solved["contact"]  # in the names of the shipped references
+    named = contact.pop("bodies"), contact.pop("roughness")
+    contact["model"] = next(model for model, names in MODELS.items() if names == named)
     for table, defaults in _YOUNGER.items():
         for key, default in defaults.items():
             if solved.get(table, {}).get(key) == default:

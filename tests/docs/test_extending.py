@@ -196,9 +196,10 @@ for sign in (1.0, -1.0):
 """
 
 DRIVE_POWER = """
-from gearidae.archive.variables import SAMPLES, columns
+from gearidae.archive.variables import SAMPLES
+from gearidae.records import sampled_columns
 from gearidae.records import GEAR_COLUMNS
-assert columns(False)[12] == GEAR_COLUMNS[12] == "drive_power"
+assert sampled_columns(roller=False)[12] == GEAR_COLUMNS[12] == "drive_power"
 assert SAMPLES["drive_power"].units == "W"
 import inspect
 from gearidae.engine.motion import observe
@@ -218,7 +219,7 @@ from gearidae.records.quantity import in_si
 assert "viscous_loss" in LOSSES
 assert ENERGY_BALANCE["viscous_loss"].units == "J"
 scene = SimpleNamespace(
-    phase_rate=1.0, drag=0.0, viscous=3.0, damping=0.0, force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
+    phase_rate=1.0, drag=0.0, viscous=3.0, damping=0.0, film_damping=0.0, force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
 )
 energy = np.zeros(1, STATE["energy"])[0]
 state, work = SimpleNamespace(energy=energy), SimpleNamespace(resistance=SimpleNamespace())
