@@ -1,7 +1,7 @@
 """Unfinished archives and folders of compiled code with damaged bytes: no death, and no silent value.
 
 ``python -m gearidae_bench.damage archives 200`` damages the archive of a run that was cut off, opens it and goes on
-with the run; ``caches 200`` damages files of compiled code and computes a run twice. Each case has its own process.
+with the run; ``caches 200`` damages files of compiled code that a run loads. Each case has its own process.
 """
 
 from __future__ import annotations
@@ -164,34 +164,55 @@ import sys, gearidae as gd
 ds = gd.simulate(gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 11}))
 print(ds.gear_speed.values.tobytes().hex())
 """
+_LOAD = (
+    """
+import os, sys
+from gearidae.compiled import cache
+def noticed(message, reason):
+    print("noticed")
+    sys.stdout.flush()
+    os._exit(0)
+cache._say_once = noticed
+"""
+    + _RUN
+)
+_MADE_ANEW = 20
+"""One of so many damaged files is made anew, which takes minutes; of the others, whether damage is noticed is seen."""
 
 
 def damaged_caches(folder: Path, seeds: range) -> dict[str, int]:
-    """Count what happens in two runs after files of compiled code have been damaged."""
+    """Count what happens in runs after files of compiled code have been damaged."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")}
 
-    def run() -> tuple[int, str, str]:
+    def run(text: str) -> tuple[int, str, str]:
         ended = subprocess.run(
-            [sys.executable, "-c", _RUN], env=environment, capture_output=True, text=True, check=False
+            [sys.executable, "-c", text], env=environment, capture_output=True, text=True, check=False
         )
         return ended.returncode, ended.stdout, ended.stderr
 
-    _, right, words = run()
+    def word_of(text: str) -> str:
+        code, out, err = run(text)
+        lines = err.strip().splitlines()
+        said = "silently" if not lines else "with a line" if len(lines) == 1 else f"{len(lines)} LINES"
+        if code or out not in (right, "noticed\n"):
+            return f"DIED or WRONG ({code})"
+        return "noticed" if out != right else f"right {said}"
+
+    _, right, words = run(_RUN)
     assert right, words
     files = sorted(path for path in (folder / "cache").rglob("*") if path.is_file())
+    largest = max(files, key=lambda path: path.stat().st_size)
     found: collections.Counter[str] = collections.Counter()
     for seed in seeds:
-        path = files[int(np.random.default_rng(seed).integers(len(files)))]
-        if seed % 2:
-            path = max(files, key=lambda each: each.stat().st_size)
+        path = largest if seed % 2 else files[int(np.random.default_rng(seed).integers(len(files)))]
         sound = path.read_bytes()
         path.write_bytes(damage(sound, seed))
-        word = ""
-        for again in ("", ", then "):
-            code, out, err = run()
-            lines = err.strip().splitlines()
-            said = "silently" if not lines else "with a line" if len(lines) == 1 else f"{len(lines)} LINES"
-            word += again + (f"right {said}" if out == right and not code else f"DIED or WRONG ({code})")
+        word = word_of(_LOAD)
+        if word == "noticed" and seed % _MADE_ANEW == 0:
+            path.write_bytes(damage(sound, seed))
+            word += f", made anew: {word_of(_RUN)}, then {word_of(_RUN)}"
+        else:
+            path.write_bytes(sound)
         found[word] += 1
         if "DIED" in word or "LINES" in word:
             say(seed, path.name, word)

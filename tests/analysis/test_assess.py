@@ -231,7 +231,7 @@ def test_wrong_arguments_are_named(chart, worn):
         (["drive.torque"], 'must be "drive.torque" or a table'),
         ({"drive.torque": 4e-18}, "must be a list of values"),
         ({"drive.torque": "4e-18 N m"}, "must be a list of values"),
-        ({"drive.torque": []}, "must be a list of values"),
+        ({"drive.torque": []}, "must be a list of at least one value"),
     ],
 )
 def test_wrong_further_keys_are_named(over, message):

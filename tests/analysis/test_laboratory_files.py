@@ -48,6 +48,8 @@ def tektronix():
 
 
 BY_STEP = {"interval": "10 us"}
+STATED = -1e-5
+"""First time that the file of Rigol states."""
 FILES = [
     (labview(), {"columns": "Untitled [rad/s]", **BY_STEP}),
     (labview(), {"columns": ("2 [rad/s]",), **BY_STEP}),
@@ -55,6 +57,10 @@ FILES = [
     (labview("One"), {"columns": ("X_Value [s]", "Untitled [rad/s]")}),
     (labview("One"), {"columns": ("1 [s]", "2 [rad/s]")}),
     *((rigol(end), {"columns": name, **BY_STEP}) for end in ENDS for name in ("CH1 [rad/s]", "2 [rad/s]")),
+    (labview(), {"columns": "Untitled [rad/s]"}),
+    (labview(), {"columns": "2 [rad/s]"}),
+    (labview().replace("Untitled\t", "n [rad/s]\t"), {}),
+    (labview().replace("0,000010", "0,000010\t0,000010"), {"columns": "2 [rad/s]"}),
     (tektronix(), {"columns": ("4 [s]", "5 [rad/s]")}),
     ("".join(f"{w:.6f}\n" for w in SPEED), {"columns": "1 [rad/s]", **BY_STEP}),
     ("".join(f"{t:.6f} {w:.6f}\n" for t, w in zip(TIME, SPEED, strict=True)), {"columns": ("1 [s]", "2 [rad/s]")}),
@@ -91,7 +97,7 @@ def test_a_row_short_in_the_middle_stays_refused(text, how, file):
     [
         ({"columns": ("1 [s]", "7 [rad/s]")}, "has no rows with numbers in column 1 and 7"),
         ({"columns": ("1", "2 [rad/s]")}, "states no unit"),
-        ({"columns": "2 [rad/s]"}, "must be two headings"),
+        ({"columns": ()}, "must be two headings"),
         ({"columns": ("a", "b", "c"), "interval": 1e-5}, "that of the speed alone"),
         ({}, "interval=..., --interval"),
         ({"interval": "0 s"}, "interval = 0 s: must be above 0 s"),
@@ -102,6 +108,44 @@ def test_a_row_short_in_the_middle_stays_refused(text, how, file):
 def test_what_is_missing_is_named(how, message, file):
     with pytest.raises(gd.SceneError, match=message):
         read_signal(file(labview("One")), **how)
+
+
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("name", ["CH1 [rad/s]", "2 [rad/s]"])
+def test_start_and_increment_of_rigol_are_times(end, name, file):
+    found = read_signal(file(rigol(end)), columns=name)
+    np.testing.assert_allclose(found.time, STATED + TIME, rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(found.gear_speed, SPEED, rtol=1e-12)
+    assert "samples 10 us apart" in found.attrs["reading"]
+
+
+def test_rigol_with_decimal_commas(file):
+    text = rigol("").replace(",", ";").replace(".", ",")
+    np.testing.assert_allclose(
+        read_signal(file(text), columns="CH1 [rad/s]").time, STATED + TIME, rtol=1e-12, atol=1e-18
+    )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        labview().replace("Delta_X", "Delta"),
+        labview().replace("0,000010", "0,000010\t0,000020"),
+        labview().replace("0,000010", "0"),
+        labview().replace("X_Dimension\tTime", "X_Dimension\tLength"),
+        rigol("").replace("1.000000e-05\n", "x\n"),
+    ],
+)
+def test_a_distance_that_is_not_stated_is_not_made_up(text, file):
+    with pytest.raises(gd.SceneError, match=r"states no distance of its samples.*--interval"):
+        read_signal(file(text), columns="2 [rad/s]")
+
+
+def test_one_column_is_enough_for_files_that_state_times_only(tmp_path):
+    path = tmp_path / "record.nc"
+    xr.Dataset({"gear_speed": ("time", SPEED, {"units": "rad/s"})}, {"time": ("time", TIME)}).to_netcdf(path)
+    with pytest.raises(gd.SceneError, match="columns = gear_speed: must be two headings"):
+        read_signal(path, columns="gear_speed")
 
 
 def test_a_heading_in_another_unit_of_the_kind_is_not_overruled(file):

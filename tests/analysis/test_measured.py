@@ -212,15 +212,15 @@ def test_frames_are_read_by_their_headings():
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"columns": "time"}, "columns = time: must be two headings"),
+        ({"columns": "gear_speed"}, "states no distance of its samples"),
         ({"columns": ("a", "b", "c")}, "must be two headings"),
         ({"columns": ("time [s]", "omega")}, "has no column 'omega'"),
-        ({"skip": -1}, "skip = -1: must be a whole number of lines"),
+        ({"skip": -1}, "skip = -1: must be a whole number, 0 or more"),
         ({"skip": 1}, "has no column time"),
         ({"delimiter": "ab"}, "delimiter = ab: must be one character"),
         ({"delimiter": ";"}, "line 2: row 1 has 1 cell, but there are 2 headings"),
         ({"decimal": ";"}, "decimal = ;: must be '.' or ','"),
-        ({"bridge": -1}, "bridge = -1: must be a whole number of samples"),
+        ({"bridge": -1}, "bridge = -1: must be a whole number, 0 or more"),
         ({"bridge": 1.5}, "bridge = 1.5"),
     ],
 )

@@ -70,6 +70,19 @@ def test_an_impossible_width_of_the_terminal_is_bounded(columns, monkeypatch, ca
     assert 40 <= int(os.environ["COLUMNS"]) <= 1000
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="has no such limit")
+@pytest.mark.parametrize("command", [["run"], ["sweep", "--over", "coating.sam_fraction=1,0.9"]])
+def test_a_limit_below_what_the_solver_takes_is_a_line(command, monkeypatch, capsys, tmp_path):
+    """LLVM ends the process where it gets no memory."""
+    import resource
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (10**9, 10**9))
+    assert main([command[0], "low_speed", *command[1:]]) == 3
+    assert capsys.readouterr().err == "gearidae: there is not enough memory for this (ulimit -v limits it)\n"
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     "error", [MemoryError(), ImportError("_libs.so: failed to map segment from shared object")]
 )

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gearidae.cli import main
 from gearidae.cli.case import default_output
 from gearidae.cli.command_line import spread
 from gearidae.errors import SceneError
@@ -122,6 +123,10 @@ def test_results_are_named_after_their_case(case):
 
 
 @pytest.mark.parametrize("text", ["4.4 aN m,4.6", "4.4e-18,4.6 aN m", "[4.4e-18, '4.6 aN m']"])
-def test_swept_values_have_units_all_or_none(text):
-    with pytest.raises(SceneError, match="has no unit beside"):
-        sweep_values([f"drive.torque={text}"])
+@pytest.mark.parametrize("command", ["sweep", "threshold", "coating-map", "operating-map"])
+def test_swept_values_have_units_all_or_none(command, text, capsys):
+    over = ["--over", f"drive.torque={text}"]
+    if command == "operating-map":
+        over.append("coating.sam_fraction=1,0.5")
+    assert main([command, "low_speed", *over]) == 2
+    assert "has no unit beside" in capsys.readouterr().err

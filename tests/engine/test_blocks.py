@@ -1,10 +1,13 @@
 """Cutting a run into blocks changes nothing; resuming from a checkpoint neither."""
 
+import itertools
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import solve
+from gearidae.engine import drivers, solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate import driver, epilogue, native, portable, start
@@ -44,6 +47,21 @@ def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
     assert max(len(block.events) for block in pieces[2]) < len(whole[1])
     np.testing.assert_array_equal(pieces[0], whole[0])
     np.testing.assert_array_equal(pieces[1], whole[1])
+
+
+def test_a_block_of_slow_steps_ends_after_a_few(monkeypatch):
+    """Each block seems to take a second: the first has one step and so have all others, and the tiny run few blocks."""
+    clock = itertools.count()
+    monkeypatch.setattr(native, "time", SimpleNamespace(monotonic=lambda: float(next(clock))))
+    statistics = Statistics()
+    blocks = run_blocks(make_problem(SCENE), 1e-6, 301, "native", statistics)
+    steps = [statistics.steps for _ in itertools.islice(blocks, 20)]
+    assert np.diff([0, *steps]).max() == 1  # a step that ends at an event may be another's end
+    blocks.close()
+    monkeypatch.setattr(drivers, "_ready", set())
+    began = next(clock)
+    drivers.ready_driver("native", make_problem(SCENE))
+    assert (next(clock) - began - 1) / 2 <= drivers.TINY_BLOCKS
 
 
 COUNTS = ("steps", "residual_evaluations", "jacobian_evaluations", "guard_evaluations", "error_test_failures")

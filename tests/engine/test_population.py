@@ -326,14 +326,12 @@ def _asperities_begin(checkpoint):
     [
         (lambda c, k: c.__setitem__(k, c[k] + 1.0), "asperities_sha256"),
         (lambda c, k: c.__setitem__(k + 4, c[k + 4] + 1.0), "places of asperities in order"),
-        (lambda c, k: c.__setitem__(k + 4, c[k + 4] - 1.0), "followed by zeros"),
         (lambda c, k: c.__setitem__(k + 4, -1.0), "a number of them"),
         (lambda c, k: c.__setitem__(k + 4, 1e300), "a number of them"),
         (lambda c, k: c.__setitem__(k + 5, 1e15), "places of asperities in order"),
         (lambda c, k: c.__setitem__(k + 5, -3.0), "places of asperities in order"),
         (lambda c, k: c.__setitem__(k + 5, np.nan), "places of asperities in order"),
         (lambda c, k: c.__setitem__(k + 5, c[k + 5] - 0.5), "places of asperities in order"),
-        (lambda c, k: c.__setitem__(k + 5, c[k + 5] - 1.0), "those that the overlaps allow"),
         (lambda c, k: c.__setitem__(k + 4 + int(c[k + 4]), 110_000.0), "those of pairs that are near"),
     ],
 )

@@ -512,10 +512,10 @@ MUTANTS = (
         ("engine/test_population.py::test_a_roller_meets_three_asperities",),
     ),
     Mutant(
-        "joined asperities of a checkpoint not compared with their overlaps",
+        "joined asperities of a checkpoint taken though no pair has them",
         "engine/setup/kept_asperities.py",
-        "require(asperity_guard(m, y) >= -slack,",
-        "require(asperity_guard(m, y) >= -1e9,",
+        "require(take_joined(m, y, joined) == joined.size,",
+        "require(take_joined(m, y, joined) >= 0,",
         ("engine/test_population.py::test_joined_asperities_that_no_run_has_left_are_refused",),
     ),
     Mutant(

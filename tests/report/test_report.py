@@ -242,6 +242,16 @@ def test_pictures_are_in_the_page(roller):
     assert light != dark
 
 
+def test_a_page_says_what_a_direct_call_warns_of(single):
+    """2 kHz are below twice the frequency of the loaded contact, some 1.8 kHz."""
+    coarse = single.isel(time=slice(None, None, 50))
+    with pytest.warns(UserWarning, match=r"below twice the frequency .* \(aliasing\)"):
+        gd.analysis.power_spectrum(coarse)
+    note = "Power spectrum of the gear's speed. Sampling at 2000 Hz is below twice"
+    assert note in Page(build_report(coarse)).text
+    assert note not in Page(build_report(single)).text
+
+
 def test_parts_of_drawings_are_named_apart(swept):
     """Names hold for the whole page: of two drawings with the same one, one would lose its clipping or its marks."""
     page = Page(build_report(swept))

@@ -16,6 +16,7 @@ from gearidae.analysis import read_signal
 from gearidae.analysis.signal import signals
 from gearidae.runs.sweep_plan import plan_sweep
 from gearidae.scene.carried import number_of, numbers_of
+from gearidae.studies.declared.coating_map import further_keys
 from gearidae.studies.distributions import read_distributions
 from gearidae.surfaces.height_map import height_map
 
@@ -108,6 +109,23 @@ def test_sweeps_take_them_too(torques):
 def test_sweeps_refuse_what_does_not_fit(values):
     with pytest.raises(gd.SceneError, match=r"drive\.torque"):
         plan_sweep(LOW, {"drive.torque": values})
+
+
+@pytest.mark.parametrize("torques", [["4.4 aN m", 4.6], [4.4e-18, "4.6 aN m"], ["4.4 aN m", "4.6"]])
+def test_swept_values_have_units_all_or_none(torques):
+    with pytest.raises(gd.SceneError, match=r"drive\.torque.*has no unit beside"):
+        plan_sweep(LOW, {"drive.torque": torques})
+    with pytest.raises(ValueError, match="has no unit beside"):
+        numbers_of(torques, "N m")
+    with pytest.raises(gd.SceneError, match=r"between.*has no unit beside"):
+        gd.studies.sticking_threshold(LOW, "drive.torque", torques, 1)
+    with pytest.raises(gd.SceneError, match=r"drive\.torque.*has no unit beside"):
+        further_keys(LOW, {"drive.torque": torques})
+
+
+def test_zero_has_every_unit():
+    scenes = plan_sweep(LOW, {"drive.torque": [0, "4.6 aN m"]}).scenes
+    assert [scene.drive.torque for scene in scenes] == [0.0, 4.6e-18]
 
 
 def test_distributions_with_units_are_refused():

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from gearidae import engine
 from gearidae.analysis import coating_map, open_map
 from gearidae.cli import main
 from gearidae.errors import Interrupted
+from gearidae.studies.declared.coating_map import STUDY
 from sweeps import without_times
 
 CASE = "teodorescu2009_low_speed"
@@ -89,6 +91,31 @@ def test_an_unfinished_map_is_not_lost_by_mistake(cut_off, computed, expected):
     chart = coating_map(LOW, FRACTIONS, over=TORQUES, jobs=1, archive=cut_off, overwrite=True)
     assert len(computed) == RUNS
     xr.testing.assert_identical(without_times(chart), expected)
+
+
+def test_a_run_that_fails_is_kept_out_of_the_map_and_named(monkeypatch, expected):
+    """It has got half its way: nothing of that stands for the whole run."""
+    solve = engine.solve
+
+    def failing(scene, **options):
+        solution = solve(scene, **options)
+        if (scene.coating.sam_fraction, scene.drive.torque) != (0.9, 5e-18):
+            return solution
+        half = len(solution.time) // 2
+        cut = {name: column[:half] for name, column in solution.samples.items()}
+        return replace(
+            solution, time=solution.time[:half], samples=cut, status="chatter", message="of a test"
+        )
+
+    monkeypatch.setattr(engine, "solve", failing)
+    chart = coating_map(LOW, FRACTIONS, over=TORQUES, jobs=1)
+    failed = chart.status == "chatter"
+    assert failed.sum() == 1
+    assert chart.message.where(failed, drop=True).item() == "of a test"
+    for name in ("characteristic_frequency", "uncertainty", "median_gear_speed", "min_gear_speed"):
+        np.testing.assert_array_equal(chart[name], expected[name].where(~failed))
+    words = [row[2] for row in STUDY.rows(chart)]
+    assert words.count("its run could not be finished") == 1
 
 
 def test_ctrl_c_keeps_runs_to_go_on_from(tmp_path, expected):

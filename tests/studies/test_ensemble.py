@@ -21,6 +21,8 @@ from gearidae.records import EventKind
 from gearidae.runs import batch
 from gearidae.runs.kept_runs import folder_beside
 from gearidae.runs.running import solve, unsolved
+from gearidae.scene.prefixes import with_prefix
+from gearidae.studies.declared.ensemble import _rows, _sentence
 from sweeps import without_times
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 11})
@@ -153,8 +155,28 @@ def test_members_that_fail_are_named_and_kept(monkeypatch, tmp_path):
     assert np.isnan(ds.sticks.values[failed]).all()
     assert (ds.status.values[~failed] == "finished").all()
     assert ds.attrs["index_rows"] == 8  # of 16, some of which are incomplete
+    counted = int(gd.studies.sticking_probability(ds).members)
+    assert _sentence(ds).startswith(f"0 of {counted} members stick")
+    assert _sentence(ds).endswith(f"; {failed.sum()} of 48 are unfinished and do not count.")
     gd.save(ds, tmp_path / "failed.nc")
     assert (gd.open_archive(tmp_path / "failed.nc").status.values == ds.status.values).all()
+
+
+def test_members_without_the_figure_are_counted(caplog):
+    """A gear that turns has no time at which it sticks: the indices rest on the rows in which all members stick."""
+    vary = {"coating.sam_fraction": "uniform(0.3, 0.6)"}
+    ds = gd.studies.ensemble(STICKING, vary, 16, of="stick_time")
+    none = np.isnan(ds.stick_time.values)
+    assert 0 < none.sum() < none.size
+    table = ds.stick_time.values.reshape(3, 16)
+    complete = int(np.isfinite(table).all(axis=0).sum())
+    assert ds.attrs["index_rows"] <= complete < 16
+    assert f"{none.sum()} of {none.size} members have no stick_time" in caplog.text
+    assert np.isfinite(ds.total_order).all() == (ds.attrs["index_rows"] >= 8)
+    (row,) = [row for row in _rows(ds) if row[0] == "stick time"]
+    assert row[2].endswith(f"of the {(~none).sum()} members that have one")
+    middle = np.nanquantile(ds.stick_time.values, 0.5)
+    assert row[1] == with_prefix(float(middle), "s", 4)
 
 
 def test_draws_outside_of_a_key_are_refused_with_their_number():

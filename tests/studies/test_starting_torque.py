@@ -11,6 +11,9 @@ import gearidae as gd
 from gearidae.analysis import starting_torque, static_starting_torque
 from gearidae.contact import line_force
 from gearidae.mesh.friction import starting_ratio
+from gearidae.runs.running import unsolved
+from gearidae.studies import _starting_torque
+from gearidae.studies.declared.starting_torque import STUDY
 from gearidae.studies.equilibrium import pair_law
 from gearidae.studies.release import holding_forces
 
@@ -55,6 +58,29 @@ def test_bare_surfaces_hold_with_what_the_fully_stretched_contact_can_pull():
     tension = -min(law(gap, -math.inf, radius) for gap in np.linspace(0.0, 8.0, 400) * sigma)
     slope = math.sqrt(2.0 * 8.0 * sigma / SCENE.mesh.tip_relief_radius)
     assert 0.0 < hold < tension * slope
+
+
+def test_a_coverage_that_cannot_be_followed_is_left_out_and_named(monkeypatch, caplog):
+    usual = _starting_torque.solve_to_end
+
+    def solve(scene, backend):
+        return (
+            unsolved("failed", "of a test")
+            if scene.coating.sam_fraction in failing
+            else usual(scene, backend)
+        )
+
+    monkeypatch.setattr(_starting_torque, "solve_to_end", solve)
+    failing = (0.5,)
+    ds = starting_torque(SCENE, [0.6, 0.5], impacts=1, tolerance=1.0)
+    assert "one coverage has no simulated torque: the run of SAM 50 %" in caplog.text
+    assert np.isfinite(ds.simulated_torque.values).tolist() == [True, False]
+    assert np.isfinite(ds.static_torque).all()
+    rows = tuple(STUDY.rows(ds))
+    assert rows[2][:2] == ("SAM 50 %", "-")
+    failing = (0.6, 0.5)
+    with pytest.raises(gd.SolverError, match=r"no coverage could be followed; the last one: .* of a test"):
+        starting_torque(SCENE, [0.6, 0.5], impacts=1, tolerance=1.0)
 
 
 def test_static_torque_is_where_drive_and_hold_balance():

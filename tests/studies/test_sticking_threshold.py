@@ -14,7 +14,10 @@ from gearidae.analysis.verdict import outcomes
 from gearidae.cli import main
 from gearidae.errors import Interrupted
 from gearidae.runs.kept_runs import folder_beside
+from gearidae.runs.running import unsolved
 from gearidae.studies import sticking_threshold as door
+from gearidae.studies import threshold_run
+from gearidae.studies.declared.threshold import _rows
 
 LOW = gd.preset("teodorescu2009_low_speed")
 BETWEEN = (0.4, 0.6)
@@ -54,6 +57,41 @@ def test_executors_do_not_matter(found):
     with ThreadPoolExecutor(1) as executor:
         other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01, executor=executor)
     assert other.drop_attrs().identical(found.drop_attrs())
+
+
+def failing(monkeypatch, module, name, fails):
+    """Let runs of some scenes fail."""
+    usual = getattr(module, name)
+    monkeypatch.setattr(
+        module,
+        name,
+        lambda scene, *more: unsolved("failed", "of a test") if fails(scene) else usual(scene, *more),
+    )
+
+
+def test_a_run_that_fails_is_left_out_and_named(found, monkeypatch, caplog):
+    """The first point between the ends fails: the bracket is found all the same, beside it."""
+    failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: scene.coating.sam_fraction == 0.45)
+    other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01)
+    assert "one run is left out: the run at 0.45 could not be finished: of a test" in caplog.text
+    assert other.attrs["left_out"] == 1
+    assert 0.45 not in other.value.values
+    one = other.sel(exits=5)
+    assert float(one.sticks) <= float(one.passes)
+    assert float(one.limit) == pytest.approx(float(found.limit.sel(exits=5)), abs=0.05)
+    assert ("runs", str(other.sizes["run"]), "1 more could not be finished") in tuple(_rows(other))
+
+
+def test_a_bracket_whose_inner_runs_all_fail_stays_as_it_is(monkeypatch):
+    failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: 0.4 < scene.coating.sam_fraction < 0.6)
+    one = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01).sel(exits=5)
+    assert (float(one.sticks), float(one.passes)) == BETWEEN
+
+
+def test_an_end_that_fails_is_an_error(monkeypatch):
+    failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: scene.coating.sam_fraction == 0.6)
+    with pytest.raises(gd.SolverError, match=r"the run at 0\.6 could not be finished: of a test"):
+        gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01)
 
 
 def test_cut_off_and_resumed_it_ends_alike(found, tmp_path):

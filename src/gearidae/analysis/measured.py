@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -18,9 +17,10 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.group import shorten
-from gearidae.scene.quantity import Quantity
+from gearidae.scene.prefixes import with_prefix
+from gearidae.scene.quantity import Quantity, whole
 from gearidae.scene.table_head import open_table
-from gearidae.scene.text_table import check_regular, split_unit
+from gearidae.scene.text_table import TextTable, check_regular, split_unit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,6 +37,7 @@ _DELIMITERS = {
     "blanks": "",
     " ": "",
 }
+_TWO = "must be two headings, that of the time and that of the speed"
 _STEP = Quantity(unit="s", above=0.0)
 _LARGEST = 2**30
 """Files larger than this [bytes] are refused: a record of a minute at 100 kHz has a tenth of it."""
@@ -74,9 +75,9 @@ def read_signal(
         remark (after ``#``) as ``numpy.savetxt`` writes them. Other columns are ignored.
     columns : pair of str, optional
         Headings of time and speed, with the units where the headings have none, or their numbers from 1 with the units
-        (``"1 [s]"``, ``"2 [rad/s]"``), for which no headings are needed; variables of a netCDF file. With `interval`
-        that of the speed is enough. By default the columns called ``time`` (or ``t``) and ``gear_speed`` (or
-        ``speed``), or else the only ones with a unit of time and of angular speed.
+        (``"1 [s]"``, ``"2 [rad/s]"``), for which no headings are needed; variables of a netCDF file. With `interval`,
+        or where the file states it, that of the speed is enough. By default the columns called ``time`` (or ``t``) and
+        ``gear_speed`` (or ``speed``), or else the only ones with a unit of time and of angular speed.
     skip : int, optional
         Lines above that of the headings, which is recognised by the columns otherwise.
     delimiter : str, optional
@@ -88,7 +89,8 @@ def read_signal(
         of the record.
     interval : float or str, optional
         Time between samples [s], or with a unit (``"10 us"``), of a table: no column of time is needed, and none is
-        read.
+        read. By default that which LabVIEW (``Delta_X``, ``X0``) and Rigol (``Increment``, ``Start``) write above the
+        numbers, if there is no column of time or that of the speed alone is given.
 
     Returns
     -------
@@ -106,10 +108,13 @@ def read_signal(
     try:
         step = None if interval is None else _STEP.take("interval", interval)
         wanted, most = _checked(columns, bridge, timed=step is None), int(bridge)
+        is_text = isinstance(signal, str | os.PathLike) and not _is_netcdf(Path(signal))
+        if step is None and "time" not in wanted and not is_text:
+            raise SceneError("columns", shorten(columns), _TWO)
         if not isinstance(signal, str | os.PathLike):
             _refuse(table, "a DataFrame")
             ds = _from_frame(signal, wanted, step)
-        elif _is_netcdf(Path(signal)):
+        elif not is_text:
             _refuse({**table, "interval": interval}, "a netCDF file")
             ds = _from_netcdf(Path(signal), wanted)
         else:
@@ -127,18 +132,15 @@ def read_signal(
 
 def _checked(columns: Sequence[str] | None, bridge: int, *, timed: bool) -> dict[str, str | None]:
     """Refuse settings that are none; return what columns are wanted."""
-    if isinstance(bridge, bool) or not isinstance(bridge, Integral) or bridge < 0:
-        raise SceneError("bridge", shorten(bridge), "must be a whole number of samples, 0 or more")
+    whole("bridge", bridge, 0)
     wanted: dict[str, str | None] = dict.fromkeys(_SI if timed else ("gear_speed",))
-    names = [columns] if isinstance(columns, str) and not timed else columns
+    names = [columns] if isinstance(columns, str) else columns
     if names is None:
         return wanted
-    if isinstance(names, str) or not len(wanted) <= len(names) <= 2 or set(map(type, names)) != {str}:
-        both = "" if timed else ", or that of the speed alone"
-        raise SceneError(
-            "columns", shorten(columns), f"must be two headings, that of the time and that of the speed{both}"
-        )
-    return dict(zip(wanted, [name.strip() for name in names[-len(wanted) :]], strict=True))
+    if not 1 <= len(names) <= 2 or set(map(type, names)) != {str}:
+        raise SceneError("columns", shorten(columns), f"{_TWO}, or that of the speed alone")
+    meanings = [*wanted][-len(names) :]
+    return dict(zip(meanings, [name.strip() for name in names[-len(meanings) :]], strict=True))
 
 
 def _refuse(table: Mapping[str, object], what: str) -> None:
@@ -192,23 +194,47 @@ def _from_frame(frame: Any, wanted: Wanted, step: float | None) -> xr.Dataset:
 
 
 def _from_text(source: Path, wanted: Wanted, given: Mapping[str, Any], step: float | None) -> xr.Dataset:
-    table = open_table(
+    try:
+        table = _opened(source, wanted, given)
+        found = find_columns(table.headings, wanted)
+    except ValueError:
+        if wanted.get("time", "given") is not None:
+            raise
+        wanted = {"gear_speed": None}
+        table = _opened(source, wanted, given)
+        if table.clock is None:
+            raise
+        found = find_columns(table.headings, wanted)
+    numbers, said, start = table.numbers([each.place for each in found], holes=True), table.recognised, 0.0
+    if step is None and "time" not in wanted:
+        if table.clock is None:
+            raise ValueError(
+                "states no distance of its samples: name the column of time, too, or give it (interval=..., --interval)"
+            )
+        start, step = table.clock
+        said = (*said, f"samples {with_prefix(step, 's')} apart as it states")
+    return _dataset(list(numbers.T), found, said, step, start)
+
+
+def _opened(source: Path, wanted: Wanted, given: Mapping[str, Any]) -> TextTable:
+    return open_table(
         source,
         largest=_LARGEST,
         names=lambda headings: has_columns(headings, wanted),
         delimiter=_character(given["delimiter"]),
         decimal=_decimal(given["decimal"]),
-        skip=_lines(given["skip"]),
+        skip=None if given["skip"] is None else whole("skip", given["skip"], 0),
         unit_row=True,
         places=numbered_places(wanted),
     )
-    found = find_columns(table.headings, wanted)
-    numbers = table.numbers([each.place for each in found], holes=True)
-    return _dataset(list(numbers.T), found, table.recognised, step)
 
 
 def _dataset(
-    columns: Sequence[Any], found: Sequence[Column], said: Sequence[str], step: float | None
+    columns: Sequence[Any],
+    found: Sequence[Column],
+    said: Sequence[str],
+    step: float | None,
+    start: float = 0.0,
 ) -> xr.Dataset:
     """Put columns into SI units; say which they are where their names do not."""
     read = {}
@@ -220,7 +246,7 @@ def _dataset(
         except ValueError as error:
             raise ValueError(f"column {each.heading!r}: {error}") from None
     if step is not None:
-        read["time"] = step * np.arange(len(read["gear_speed"]), dtype=np.float64)
+        read["time"] = start + step * np.arange(len(read["gear_speed"]), dtype=np.float64)
     said = [*said, *(f"{each.heading!r} taken for the {each.meaning}" for each in found if each.recognised)]
     return xr.Dataset(
         {"gear_speed": ("time", read["gear_speed"], {"units": _SI["gear_speed"]})},
@@ -271,9 +297,3 @@ def _decimal(decimal: str | None) -> str | None:
     if decimal not in (None, ".", ","):
         raise SceneError("decimal", shorten(decimal), "must be '.' or ','")
     return decimal
-
-
-def _lines(skip: int | None) -> int | None:
-    if skip is not None and (isinstance(skip, bool) or not isinstance(skip, Integral) or skip < 0):
-        raise SceneError("skip", shorten(skip), "must be a whole number of lines, 0 or more")
-    return skip

@@ -21,7 +21,7 @@ from gearidae.analysis.aliasing import warn_of_aliasing
 from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.scene.group import shorten
+from gearidae.scene.quantity import whole
 
 _MOST_PADDING = 64
 _PIECES = 64
@@ -70,8 +70,7 @@ def power_spectrum(
     UserWarning
         If the sampling rate is below twice the frequency of the loaded contact.
     """
-    if not (isinstance(padding, int) and 1 <= padding <= _MOST_PADDING):
-        raise SceneError("padding", shorten(padding), f"must be a whole number in 1..{_MOST_PADDING}")
+    padding = whole("padding", padding, 1, _MOST_PADDING)
     batch = signals(data, variable)
     size, rate = _segment(batch, segment, 0.5), batch.signals[0].rate
     warn_of_aliasing(data, rate)

@@ -221,7 +221,8 @@ def assess(
     interval: Annotated[
         str | None,
         Parameter(
-            help="Time between samples, such as '10 us': no column of time is needed, and none is read."
+            help="Time between samples, such as '10 us': no column of time is needed, and none is read. "
+            "Default: the column of time, or what LabVIEW and Rigol state."
         ),
     ] = None,
     skip: Annotated[int | None, Parameter(help="Lines above the headings. Default: recognised.")] = None,

@@ -15,7 +15,7 @@ from gearidae.archive.select import scene_of, swept_dims
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.summary_rows import summary_rows
 from gearidae.cli.output import complain, say, show, show_rows
-from gearidae.scene.validity_row import ATTRIBUTE, holds_rows, mean_note, rows_from_json
+from gearidae.scene.validity_row import ATTRIBUTE, mean_note, rows_from_json
 
 _NAMED = 3
 """Failed members that are named."""
@@ -44,8 +44,7 @@ def show_outcomes(ds: xr.Dataset) -> None:
     if specimen := specimen_note(ds):
         say(specimen)
         return
-    kept = ds.attrs.get(ATTRIBUTE)
-    if isinstance(kept, str) and holds_rows(kept) and (note := mean_note(rows_from_json(kept))):
+    if note := mean_note(rows_from_json(ds.attrs.get(ATTRIBUTE))):
         say(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")
 
 

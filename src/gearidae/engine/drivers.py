@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Iterator
 from functools import cache, partial
 from importlib import import_module
+from itertools import islice
 from types import ModuleType
 
 from gearidae.engine.compiling import HOW_LONG, SOLVER, compiling, make_part_ready
@@ -20,6 +21,8 @@ ADAMS, BDF = "adams", "bdf"
 """Formulas: those of Adams, with IDA's own where they are better; IDA's own, iteration and root search throughout."""
 
 TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
+TINY_BLOCKS = 3
+"""Blocks after which that run is left, though asperities by the million may make it a long one."""
 
 _solver_compiling = partial(compiling, SOLVER, HOW_LONG[SOLVER])
 """Says so while the solver is compiled."""
@@ -90,7 +93,7 @@ def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block
     if kind not in _ready:
         bodies = "gear pairs" if kind[2] == GEARS else "rollers"
         with compiling(f"the solver for {bodies}{' in elastic contact' if kind[3] else ''}", "some seconds"):
-            for _ in run(problem.shortened(TINY), 1e-3, 2, Statistics()):
+            for _ in islice(run(problem.shortened(TINY), 1e-3, 2, Statistics()), TINY_BLOCKS):
                 pass
         _ready.add(kind)
     return run

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 
 import xarray as xr
@@ -48,22 +49,25 @@ def pictures(ds: xr.Dataset) -> str:
 def figures(ds: xr.Dataset, wanted: Mapping[str, str]) -> str:
     """Draw pictures, functions of `gearidae.plot` with their captions; those without enough data are left out."""
     with usual_style():
-        drawn = [(name, _drawn(ds, name, caption), caption) for name, caption in wanted.items()]
-    shown = [(name, text, caption) for name, text, caption in drawn if text]
+        drawn = [(name, *_drawn(ds, name, caption), caption) for name, caption in wanted.items()]
+    shown = [(name, text, note, caption) for name, text, note, caption in drawn if text]
     if not shown:
         return ""
     content = "\n".join(
         f'<figure class="picture" data-name="{html.text(name)}"><div class="wide" role="region" tabindex="0" '
-        f'aria-label="{html.text(caption)}">{text}</div><figcaption>{html.text(caption)}</figcaption></figure>'
-        for name, text, caption in shown
+        f'aria-label="{html.text(caption)}">{text}</div><figcaption>{html.text(caption + note)}</figcaption></figure>'
+        for name, text, note, caption in shown
     )
-    return f"<style>\n{colour_rules(text for _, text, _ in shown)}</style>\n{content}"
+    return f"<style>\n{colour_rules(text for _, text, *_ in shown)}</style>\n{content}"
 
 
-def _drawn(ds: xr.Dataset, name: str, caption: str) -> str:
+def _drawn(ds: xr.Dataset, name: str, caption: str) -> tuple[str, str]:
+    """Return the drawing, empty without enough data, and what it warns of: a reader of the page has no terminal."""
     try:
-        made = getattr(plot, name)(ds)
+        with warnings.catch_warnings(record=True, action="always", category=UserWarning) as caught:
+            made = getattr(plot, name)(ds)
     except SceneError:
-        return ""
+        return "", ""
     figure = made if isinstance(made, Figure) else made.get_figure(root=True)
-    return drawing(figure, name, caption)
+    notes = dict.fromkeys(str(one.message) for one in caught if one.category is UserWarning)
+    return drawing(figure, name, caption), "".join(f". {note[:1].upper()}{note[1:]}" for note in notes)

@@ -22,7 +22,7 @@ from gearidae.report import html
 from gearidae.scene import describe_keys
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.shown import flat
-from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, holds_rows, rows_from_json
+from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, rows_from_json
 
 _NAMED_KEYS = 12
 _PREFIXED = ("m", "s", "N", "J", "Pa", "Hz", "W")
@@ -200,13 +200,12 @@ def law_table(ds: xr.Dataset) -> str:
 
 def validity_table(ds: xr.Dataset) -> str:
     """List the limits of the model that an archive carries, marked where they are exceeded; nothing if it has none."""
-    kept = ds.attrs.get(ATTRIBUTE, "")
-    if not holds_rows(kept):
-        return ""
     rows = [
         (row.quantity, row.value, "" if row.holds else "!", row.limit, row.verdict)
-        for row in rows_from_json(kept)
+        for row in rows_from_json(ds.attrs.get(ATTRIBUTE))
     ]
+    if not rows:
+        return ""
     about = contact_subject(roller=is_roller(ds), swept=list(json.loads(ds.attrs.get("swept", "{}"))))
     caption = f"Limits of the model: contact {about}. ! marks a limit that is exceeded."
     return html.table(("quantity", "value", "", "limit", "what follows"), rows, caption=caption)

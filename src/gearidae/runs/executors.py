@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 from gearidae import __version__
 from gearidae.errors import SceneError
 from gearidae.runs.halting import heed
+from gearidae.scene.quantity import whole
 
 Made = TypeVar("Made")
 
@@ -31,11 +32,7 @@ def check_jobs(jobs: int | None) -> int:
     SceneError
         If `jobs` is not a positive whole number.
     """
-    if jobs is None:
-        return _cores()
-    if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1:
-        raise SceneError("jobs", jobs, "must be a whole number, 1 or more")
-    return jobs
+    return _cores() if jobs is None else whole("jobs", jobs, 1)
 
 
 def check_executor(executor: object) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.archive.select import run_scene, scene_of, swept_dims
 from gearidae.scene import Scene
-from gearidae.scene.validity_row import ATTRIBUTE, ValidityRow, holds_rows, rows_from_json
+from gearidae.scene.validity_row import ATTRIBUTE, ValidityRow, rows_from_json
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,8 +50,8 @@ def validity_of(ds: xr.Dataset) -> list[ValidityRow]:
     """
     scene = Scene.from_dict(scene_of(ds)) if swept_dims(ds) else run_scene(ds)
     of_base = scene.to_dict() == json.loads(ds.attrs.get("scene", "{}"))
-    if of_base and holds_rows(ds.attrs.get(ATTRIBUTE)):
-        return rows_from_json(ds.attrs[ATTRIBUTE])
+    if of_base and (rows := rows_from_json(ds.attrs.get(ATTRIBUTE))):
+        return rows
     from gearidae.runs.validity import validity_rows
 
     return validity_rows(scene)

@@ -4,7 +4,7 @@ A solver that keeps to its tolerance takes a number of steps for each oscillatio
 oscillation decides. Its frequency follows from the contact's stiffness: where the teeth rest under the mean torque, and
 where they are at the start. Of real asperities, few of which touch at a time, the stiffness of a single one decides.
 Measured on the shipped cases and on presets with 0 to 100 % of the monolayer the estimate is within a factor of three;
-a run that sticks, or whose teeth stop vibrating, takes fewer steps than it says.
+a run that sticks, flies freely, or whose teeth stop vibrating, takes fewer steps than it says.
 """
 
 from __future__ import annotations
@@ -17,14 +17,17 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.mesh.pair_contact import PairContact, asperity_stiffness
 from gearidae.runs.estimates import balanced_speed, mean_drive_torque, rest_of
 from gearidae.scene.combinations import may_deflect
+from gearidae.scene.friction import has_flank_friction, has_hub_friction
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 _STEPS_A_PERIOD: Final = 15.0
 """Steps for each oscillation on approaching flanks at a relative tolerance of 1e-6, turning points included."""
-_STEPS_OF_ONE: Final = 40.0
-"""Steps for each oscillation of gears on a single asperity: 18 to 74 in drawn scenes."""
+_STEPS_A_BOUNCE: Final = 2.5
+"""The same of gears that start pressed together, and fly from flank to flank: 1 to 6 in drawn scenes."""
+_STEPS_OF_ONE: Final = 30.0
+"""Steps for each oscillation of gears on real asperities: 16 to 40 in drawn scenes."""
 _STEPS_A_PASSAGE: Final = 50.0
 """Steps to bring a pair into mesh and out of it."""
 _STEPS_AN_IMPACT: Final = 50.0
@@ -35,10 +38,10 @@ _GAP_ERROR: Final = 0.02
 """Error of the gap at rest, in roughnesses: 5 % of the frequency."""
 _ORDER: Final = 0.125
 """Steps grow as the tolerance to the power of minus this."""
-_RIGID_STEP, _ELASTIC_STEP, _POPULATION_STEP = 1e-6, 10e-6, 2e-6
-"""Wall time of a step without and with elastic bodies, and with real asperities [s]."""
-_SETUP: Final = 0.04
-"""Wall time of a run beside its steps: tables of the force law, the verdict [s]."""
+_RIGID_STEP, _ELASTIC_STEP, _POPULATION_STEP, _FRICTION_STEP = 1e-6, 20e-6, 3e-6, 4e-6
+"""Wall time of a step without and with elastic bodies, with real asperities, and with friction [s]."""
+_SETUP, _ELASTIC_SETUP = 0.04, 0.1
+"""Wall time of a run beside its steps: tables of the force law, the verdict [s]; with elastic bodies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,19 +80,27 @@ def run_time(scene: Scene) -> RunTime:
     RunTime
     """
     rest = rest_of(scene, _GAP_ERROR)
-    gaps, steps = [rest.gap], _STEPS_AN_IMPACT
+    steps, oscillations = _STEPS_AN_IMPACT, [_rate(rest.contact, rest.gap, rest.mass)]
     if scene.initial is not None and scene.mesh is not None:
         # a start within the flanks' reach is an oscillation too, and nothing but adhesion takes its energy away
-        gaps.append(min(scene.initial.gap, scene.mesh.backlash - scene.initial.gap))
+        gap = min(scene.initial.gap, scene.mesh.backlash - scene.initial.gap)
+        rate, frequency, load = _rate(rest.contact, gap, rest.mass)
+        has_play = scene.mesh.backlash > scene.surface.roughness
+        bounces = has_play and load > rest.load and float(rest.contact.force(gap)) > 0.0
+        oscillations.append((rate * _STEPS_A_BOUNCE / _STEPS_A_PERIOD if bounces else rate, frequency, load))
         steps = _STEPS_A_PASSAGE * _passages(scene)
-    rate, frequency, load = max(_rate(rest.contact, gap, rest.mass) for gap in gaps)
-    cost = _ELASTIC_STEP if _is_elastic(scene, rest.contact, load) else _RIGID_STEP
+    rate, frequency, load = max(oscillations)
+    cost, setup = _RIGID_STEP, _SETUP
+    if has_flank_friction(scene) or has_hub_friction(scene):
+        cost = _FRICTION_STEP
+    if _is_elastic(scene, rest.contact, load):
+        cost, setup = max(cost, _ELASTIC_STEP), _ELASTIC_SETUP
     if scene.contact.is_discrete:
         stiffness = asperity_stiffness(scene)
-        frequency = max(math.sqrt(stiffness / rest.mass) / (2.0 * math.pi), frequency)
-        rate, cost = max(_STEPS_OF_ONE * frequency, rate), _POPULATION_STEP
+        frequency = max(math.sqrt(stiffness / rest.mass) / (2.0 * math.pi), *(one[1] for one in oscillations))
+        rate, cost = _STEPS_OF_ONE * frequency, max(cost, _POPULATION_STEP)
     steps = (steps + rate * scene.run.duration) * (scene.run.rtol / 1e-6) ** -_ORDER
-    return RunTime(steps, _SETUP + steps * cost, frequency)
+    return RunTime(steps, setup + steps * cost, frequency)
 
 
 def _rate(contact: PairContact, gap: float, mass: float) -> tuple[float, float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from gearidae import engine
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
+_LEAST_MEMORY = 1.25e9
+"""Addresses [bytes] that the solver's libraries and threads take; in memory there is a fourth of it."""
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
 
 
@@ -48,17 +51,33 @@ def prepare(
     ------
     SceneError
         If one of the settings is not allowed.
+    MemoryError
+        If the process may not use enough memory.
     """
     if not isinstance(scene, Scene):
         raise SceneError(
             "scene", type(scene).__name__, "must be a Scene (from load_case, preset or Scene.from_dict)"
         )
+    _require_memory()
     from gearidae import engine  # what reads results does without it
 
     engine.choose_backend(backend, scene.run.method)  # refuses what is unknown or cannot work here
     settings = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     given = {key: value for key, value in settings.items() if value is not None}
     return scene.replace(given) if given else scene
+
+
+def _require_memory() -> None:
+    """Refuse a process that may use too little memory: compiled libraries end it where they get none."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit != resource.RLIM_INFINITY and limit < _LEAST_MEMORY:
+        raise MemoryError(
+            f"a simulation takes {_LEAST_MEMORY / 1e9:g} GB of addresses; ulimit -v allows fewer"
+        )
 
 
 def solve(

@@ -14,6 +14,7 @@ import numpy as np
 from gearidae.archive.stack import Axis, swept_values, zipped_keys
 from gearidae.errors import SceneError
 from gearidae.scene.keys import scene_value
+from gearidae.scene.units import refuse_bare
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -111,23 +112,37 @@ def _listed(over: Mapping[str, Iterable[Any]]) -> dict[str, list[Any]]:
         raise SceneError(
             "over", over, 'must be a table of keys and their values, {"coating.sam_fraction": [1, 0.5]}'
         )
-    listed: dict[str, list[Any]] = {}
     for key, values in over.items():
         if key in _ONE_TIME_AXIS:
             raise SceneError(key, values, "cannot be swept, because all runs share one time axis")
-        if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
-            raise SceneError(key, values, "must be a list of values to sweep over")
-        taken = list(itertools.islice(values, MOST_RUNS + 1))
-        # numpy's texts and flags become plain ones; numbers are read with their units, in the scene
-        listed[key] = [
-            value.item() if isinstance(value, np.generic) and value.dtype.kind != "m" else value
-            for value in taken
-        ]
-        if not listed[key]:
-            raise SceneError(key, "[]", "must be a list of at least one value")
-        if len(taken) > MOST_RUNS:
-            raise SceneError(key, f"(more than {MOST_RUNS} values)", _TOO_MANY)
-    return listed
+    return {key: values_of(key, values) for key, values in over.items()}
+
+
+def values_of(key: str, values: object) -> list[Any]:
+    """Return the values of a key as a list that is not empty; the scene reads them.
+
+    Raises
+    ------
+    SceneError
+        If they are no list, none or too many, or numbers with a unit stand beside others without one.
+    """
+    if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
+        raise SceneError(key, values, "must be a list of values to sweep over")
+    taken = list(itertools.islice(values, MOST_RUNS + 1))
+    if not taken:
+        raise SceneError(key, "[]", "must be a list of at least one value")
+    if len(taken) > MOST_RUNS:
+        raise SceneError(key, f"(more than {MOST_RUNS} values)", _TOO_MANY)
+    if any(isinstance(value, str) for value in taken):
+        try:
+            refuse_bare(taken)
+        except ValueError as error:
+            raise SceneError(key, values, str(error)) from None
+    # numpy's texts and flags become plain ones; numbers are read with their units, in the scene
+    return [
+        value.item() if isinstance(value, np.generic) and value.dtype.kind != "m" else value
+        for value in taken
+    ]
 
 
 def _groups(listed: dict[str, list[Any]], zipped: bool | Collection[str]) -> list[Axis]:

@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.scene.units import from_text
+from gearidae.scene.units import from_text, refuse_bare
 
 _EXPONENT: Final = re.compile(r"(?<=[A-Za-z])(?=-?\d)")
 """Where an exponent begins in a unit as CF writes it (``s-1``)."""
@@ -94,10 +94,13 @@ def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
     Raises
     ------
     ValueError
-        If something is no number, or a unit does not fit; an entry of a list is named by its row from 1.
+        If something is no number, has a unit beside others without one, or one that does not fit; an entry of a list
+        is named by its row from 1.
     """
     own, plain = carried_unit(values)
     if isinstance(plain, list | tuple) and not set(map(type, plain)) <= {int, float}:
+        if any(isinstance(cell, str) for cell in plain):
+            refuse_bare(plain)
         return np.array([_entry(cell, unit, own or stated, row) for row, cell in enumerate(plain, 1)])
     cells = np.asarray(plain)
     if cells.dtype.kind in "OUST" and cells.ndim:

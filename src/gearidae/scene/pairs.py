@@ -8,7 +8,7 @@ from typing import Any
 
 from gearidae.errors import SceneError
 from gearidae.scene.literal import literal
-from gearidae.scene.units import from_text, refuse_bare
+from gearidae.scene.units import from_text
 
 _LONGEST_RANGE = 100_000
 
@@ -121,14 +121,8 @@ def _listed(key: str, text: str) -> list[Any]:
         return _range(key, text)
     if text.startswith("["):
         found = literal(text)
-        listed = found if isinstance(found, list) else [found]
-    else:
-        listed = [literal(part.strip()) for part in text.split(",")]
-    try:
-        refuse_bare(listed)
-    except ValueError as error:
-        raise SceneError(key, text, str(error)) from None
-    return listed
+        return found if isinstance(found, list) else [found]
+    return [literal(part.strip()) for part in text.split(",")]
 
 
 def _range(key: str, text: str) -> list[float]:

@@ -93,6 +93,13 @@ class _Bounded:
         """Turn what the user gave into a number within the limits."""
         raise NotImplementedError
 
+    def take(self, name: str, value: object) -> float:
+        """Read a setting of this name as `read` does; a `SceneError` says what is wrong with it."""
+        try:
+            return self.read(value)
+        except ValueError as error:
+            raise SceneError(name, shorten(value), str(error)) from None
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quantity(_Bounded):
@@ -139,13 +146,6 @@ class Quantity(_Bounded):
             raise ValueError(f"must {self._wanted()}")
         return number
 
-    def take(self, name: str, value: object) -> float:
-        """Read a setting of this name as `read` does; a `SceneError` says what is wrong with it."""
-        try:
-            return self.read(value)
-        except ValueError as error:
-            raise SceneError(name, shorten(value), str(error)) from None
-
     def allowed(self) -> str:
         """Return what may stand here, in words."""
         if self.unit == "1":
@@ -187,7 +187,8 @@ class Count(_Bounded):
 
     def allowed(self) -> str:
         """Return what may stand here, in words."""
-        return f"must be a whole number {self.range()}"
+        bare = self.at_most is None and self.at_least is not None
+        return f"must be a whole number{f', {self.at_least:g} or more' if bare else f' {self.range()}'}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -238,6 +239,11 @@ class Sampling(Count):
     def rate(text: str) -> float:
         """Return the rate [Hz] in a text as `read` makes it."""
         return float(text.removesuffix(" Hz"))
+
+
+def whole(name: str, value: object, least: int, most: int | None = None) -> int:
+    """Read a setting that is a whole number from `least` to `most`; a `SceneError` says what is wrong with it."""
+    return int(Count(at_least=least, at_most=most).take(name, value))
 
 
 Phase = Annotated[float, Quantity(unit="rad", at_least=-1e9, at_most=1e9)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import math
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -108,6 +109,7 @@ def open_table(
         skipped=sum(line.number < (heading or rows[0]).number for line in plain) + (skip or 0) if rows else 0,
         above=above,
         encoding=encoding,
+        clock=_clock([line.text for line in plain if line.number <= above], between),
     )
 
 
@@ -214,6 +216,37 @@ def _is_of_units(headings: tuple[str, ...], text: str, delimiter: str) -> bool:
 def _joined(headings: tuple[str, ...], units: list[str]) -> tuple[str, ...]:
     pairs = zip(headings, units, strict=False)
     return tuple(f"{name} [{unit.strip('[]() ')}]" if unit else name for name, unit in pairs)
+
+
+def _clock(texts: list[str], delimiter: str) -> tuple[float, float] | None:
+    """Read the first time and the distance of samples [s] from lines above them.
+
+    LabVIEW has lines ``X0`` and ``Delta_X`` with a cell for each channel; Rigol has headings ``Start`` and
+    ``Increment`` above their cells. None if there is no distance, or channels differ.
+    """
+    try:
+        rows = [_split(text, delimiter) for text in texts]
+    except ValueError:
+        return None  # a quotation mark in a line above the table
+    cells: dict[str, list[str]] = {"x0": ["0"]}
+    for row, below in zip(rows, [*rows[1:], []], strict=False):
+        names = [cell.lower() for cell in row]
+        if names[:1] in (["x0"], ["delta_x"], ["x_dimension"]):
+            cells[names[0]] = row[1:]
+        if {"start", "increment"} <= {*names}:
+            for name, heading in (("x0", "start"), ("delta_x", "increment")):
+                cells[name] = below[names.index(heading) :][:1]
+    if {*map(str.lower, cells.pop("x_dimension", []))} - {"time", ""}:
+        return None
+    numbers = {
+        name: {as_number(cell.replace(",", "."), ".") for cell in row if cell} for name, row in cells.items()
+    }
+    start, step = (
+        numbers[name].pop() if len(numbers.get(name, ())) == 1 else None for name in ("x0", "delta_x")
+    )
+    if start is None or step is None or not (math.isfinite(start) and 0.0 < step < math.inf):
+        return None
+    return start, step
 
 
 def _delimiter(texts: list[str]) -> str:

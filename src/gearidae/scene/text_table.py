@@ -46,6 +46,8 @@ class TextTable:
         Lines above the headings that are no remarks.
     above : int
         Number of lines above the first row.
+    clock : tuple of float, or None
+        First time and distance of the samples [s], where a measuring program has written them above the first row.
     """
 
     path: Path
@@ -57,6 +59,7 @@ class TextTable:
     skipped: int
     above: int
     encoding: str
+    clock: tuple[float, float] | None = None
 
     @property
     def recognised(self) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.scene.quantity import whole
 from gearidae.studies.cycle_jump import Life, jump
 from gearidae.studies.declared.life import STUDY
 from gearidae.studies.life_coverage import coverage_of
@@ -231,8 +232,7 @@ def _check(
     for name, value, least in zip(
         ("places", "cycles", "settle", "starts"), numbers, (2, 1, 0, 1), strict=True
     ):
-        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= 1000:
-            raise SceneError(name, value, f"must be a whole number in {least}..1000")
+        whole(name, value, least, 1000)
     for name, size in zip(("tolerance", "bracket"), tolerances, strict=True):
         if not 1e-8 <= size <= 0.1:
             raise SceneError(name, size, "must lie in 1e-08..0.1")

@@ -14,9 +14,10 @@ import xarray as xr
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
-from gearidae.errors import SceneError, SolverError
+from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.scene.quantity import whole
 from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
 from gearidae.studies.starting_ramp import (
     FAILS,
@@ -24,6 +25,7 @@ from gearidae.studies.starting_ramp import (
     constant,
     laid,
     least_damping,
+    nothing_followed,
     pilot,
     pitch_of,
     place_of_seed,
@@ -138,9 +140,7 @@ def starting_torques(
     SceneError
         If a setting is not allowed.
     """
-    count = SEEDS if seeds is None else seeds
-    if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= _MOST_SEEDS:
-        raise SceneError("seeds", seeds, f"must be a whole number in 1..{_MOST_SEEDS}")
+    count = whole("seeds", SEEDS if seeds is None else seeds, 1, _MOST_SEEDS)
     numbers = range(base.contact.seed, base.contact.seed + count)
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
@@ -160,13 +160,7 @@ def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
         dry = pitch_of(one.scene).dry
         started = torques[np.isfinite(torques)] - dry
         if np.isnan(torques).all():
-            raise SolverError(
-                f"no gear could be followed; the last one: {runs.failures[-1]}",
-                time=0.0,
-                state={},
-                last_event="none",
-                advice="tighten run.rtol, or reduce the torque",
-            )
+            raise nothing_followed("gear", runs.failures[-1])
         if not started.size:
             raise SceneError("scene", one.scene.name, "has no gear that any torque starts")
         one.scale = float(np.median(started))

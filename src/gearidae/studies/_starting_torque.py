@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -22,16 +23,19 @@ from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.rubbing import flank_coefficient, hub_radii
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.carried import numbers_of
+from gearidae.scene.quantity import whole
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
-from gearidae.studies.starting_ramp import pitch_of
+from gearidae.studies.starting_ramp import FAILS, nothing_followed, pitch_of
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import Scene
+
+log = logging.getLogger(__name__)
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
 _LOWEST = 1e-3
@@ -145,7 +149,8 @@ def starting_torque(
     SceneError
         If the scene has no gears, its load follows a schedule, or a setting is not allowed.
     SolverError
-        If a run could not be finished.
+        If no gear, or no coverage, could be followed. Otherwise what has failed is named in the log, and its torque is
+        NaN.
     Interrupted
         On Ctrl-C.
 
@@ -227,17 +232,25 @@ class _Search:
     impacts: int
     lowest: float
     static: float
+    failure: str = ""
     turned: dict[float, bool] = field(default_factory=dict)
 
     def next_torque(self, tolerance: float) -> float | None:
-        """Torque to try next; None when the bracket is narrow, or there is nothing in reach."""
+        """Torque to try next; None when the bracket is narrow, there is nothing in reach, or a run has failed."""
+        if self.failure:
+            return None
         guess = self.static - _dry(self.scene)
         first = guess if self.lowest < guess < math.inf else self.lowest
         return next_value(self.turned, first, self.lowest, tolerance)
 
     @property
     def result(self) -> tuple[float, float]:
-        """Smallest torque that turns and largest that sticks [N m]; alike if the gear turns at the lowest."""
+        """Smallest torque that turns and largest that sticks [N m]; alike if the gear turns at the lowest.
+
+        NaN if a run has failed: the torque may lie on either side of it.
+        """
+        if self.failure:
+            return math.nan, math.nan
         dry = _dry(self.scene)
         if all(self.turned.values()):
             return dry, dry
@@ -259,6 +272,11 @@ def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, k
             found = compute(_run_from_rest, scenes, _way(todo[0][0]))
             for (each, torque), (_, word) in zip(todo, found, strict=True):
                 each.turned[torque] = word == "turns"
+                if word.startswith(FAILS):
+                    each.failure = word.removeprefix(FAILS)
+                    log.warning("one coverage has no simulated torque: %s", each.failure)
+            if all(each.failure for each in searches):
+                raise nothing_followed("coverage", searches[-1].failure)
 
 
 def _way(search: _Search) -> float:
@@ -289,11 +307,13 @@ def _from_rest(search: _Search, torque: float) -> Scene:
 
 
 def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, str]:
-    """Run a scene; ``turns`` if the gear comes that far, else ``sticks``."""
+    """Run a scene; ``turns`` if the gear comes that far, else ``sticks``; `FAILS` and a message if it fails."""
     solution = solve_to_end(scene, backend)
     if solution.status != "finished":
         assert scene.drive is not None
-        raise unfinished(solution, f"the run at {scene.drive.torque:g} N m")
+        coverage = 100.0 * float(np.mean(scene.coating.fractions))
+        words = f"the run of SAM {coverage:.4g} % at {scene.drive.torque:g} N m"
+        return solution, f"{FAILS}{unfinished(solution, words)}"
     angle, none = solution.samples["gear_angle"], unsolved("", "")
     word = "turns" if angle.max() - angle[0] >= way else "sticks"
     return replace(solution, time=none.time, samples=none.samples, events=none.events), word
@@ -330,5 +350,4 @@ def _lowest(scene: Scene, given: float | None) -> float:
 def _require(scene: Scene, impacts: int) -> None:
     require_gears(scene)
     require_constant(scene, "a starting torque", "it holds against one load", ("load",))
-    if not isinstance(impacts, int) or isinstance(impacts, bool) or impacts < 1:
-        raise SceneError("impacts", impacts, "must be a whole number, 1 or more")
+    whole("impacts", impacts, 1)

@@ -13,6 +13,7 @@ from gearidae.analysis.verdict.codes import sticking, verdict_codes
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.specimen import SEED, has_seeds
 from gearidae.errors import SceneError
+from gearidae.scene.quantity import whole
 
 _PER_BIN: Final = 25
 """Members that a bin has at least, by default: a probability of one half is then known to 0.1."""
@@ -129,9 +130,7 @@ def _groups(values: np.ndarray[Any, Any], bins: int | None) -> list[np.ndarray[A
 def _bin_count(members: int, bins: int | None) -> int:
     if bins is None:
         return max(1, min(_MOST_BINS, members // _PER_BIN))
-    if not isinstance(bins, int) or isinstance(bins, bool) or not 1 <= bins <= members:
-        raise SceneError("bins", bins, f"must be a whole number in 1..{members}")
-    return bins
+    return whole("bins", bins, 1, members)
 
 
 def _band(groups: list[np.ndarray[Any, Any]], dims: tuple[str, ...], confidence: float) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import MOST_RUNS
+from gearidae.scene.quantity import whole
 from gearidae.studies.distributions import Distribution
 
 DESIGNS = ("sobol", "random")
@@ -61,14 +62,12 @@ def check_design(size: int, design: str, seed: int, *, indices: bool) -> None:
     ------
     SceneError
     """
-    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MOST_RUNS:
-        raise SceneError("size", size, f"must be a whole number in 1..{MOST_RUNS}")
+    size = whole("size", size, 1, MOST_RUNS)
     if indices and (size < 2 or size & (size - 1)):
         raise SceneError("size", size, "must be a power of 2 for Sobol' indices, such as 256 or 1024")
     if design not in DESIGNS:
         raise SceneError("design", design, f"must be one of {', '.join(DESIGNS)}")
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise SceneError("seed", seed, "must be a whole number, 0 or more")
+    whole("seed", seed, 0)
 
 
 def plain_design(distributions: Sequence[Distribution], size: int, design: str, seed: int) -> Design:

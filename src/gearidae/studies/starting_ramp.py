@@ -14,6 +14,7 @@ import numpy as np
 
 from gearidae.archive.dataset import reached
 from gearidae.asperities.tip import asperity_of
+from gearidae.errors import SolverError
 from gearidae.mesh.pair_contact import asperity_stiffness
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
@@ -198,6 +199,17 @@ def run_from_rest(at: Scene, backend: str) -> tuple[Solution, str]:
         word = repr(float(np.interp(end, times, torques)))
     none = unsolved("", "")
     return replace(solution, time=none.time, samples=none.samples, events=none.events), word
+
+
+def nothing_followed(what: str, last: str) -> SolverError:
+    """Error of a study of which no run could be finished, with the message of the last."""
+    return SolverError(
+        f"no {what} could be followed; the last one: {last}",
+        time=0.0,
+        state={},
+        last_event="none",
+        advice="tighten run.rtol, or reduce the torque",
+    )
 
 
 def _laying(pitch: Pitch, torque: float, time: float) -> Knots:

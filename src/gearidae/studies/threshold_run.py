@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from gearidae.analysis.verdict.judge import has_stuck, is_scheduled
-from gearidae.errors import SceneError
+from gearidae.errors import SceneError, SolverError
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.keys import scene_value
 
@@ -33,25 +33,23 @@ class ThresholdRun:
         When it stuck [s]; NaN if it has not.
     window : float
         Simulated time [s].
+    failure : SolverError or None
+        Why the run could not be finished: it says nothing of the gear then.
     """
 
     value: float
     passed: int
     stick_time: float
     window: float
+    failure: SolverError | None = None
 
     @classmethod
     def of(cls, value: float, solution: Solution) -> ThresholdRun:
-        """Read a solution.
-
-        Raises
-        ------
-        SolverError
-            If the run could not be finished.
-        """
+        """Read a solution."""
         found = solution.extremes
         if found is None or solution.status != "finished":
-            raise unfinished(solution, f"the run at {value:g}")
+            failure = unfinished(solution, f"the run at {value:g}")
+            return cls(value, 0, math.nan, solution.reached or 0.0, failure)
         if not has_stuck(found):
             return cls(value, found.mesh_exits, math.nan, solution.reached or 0.0)
         time = found.back_time if math.isnan(found.stick_time) else found.stick_time

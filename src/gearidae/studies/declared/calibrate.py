@@ -24,6 +24,7 @@ from gearidae.runs.execution import RunOptions, prepared, run_kept
 from gearidae.scene import describe_key
 from gearidae.scene.literal import literal
 from gearidae.scene.pairs import texts
+from gearidae.scene.quantity import whole
 from gearidae.studies.declared.ensemble import figure_names
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.observation_files import observation_of, read_observations
@@ -200,8 +201,7 @@ def _check(method: str, keys: int, points: int, steps: int, seed: int) -> str:
     if method == "grid" and keys > 2:
         raise SceneError("method", method, "must be emcee for more than two keys")
     for name, value, least in (("points", points, 3), ("steps", steps, 8), ("seed", seed, 0)):
-        if isinstance(value, bool) or not isinstance(value, int) or value < least:
-            raise SceneError(name, value, f"must be a whole number, {least} or more")
+        whole(name, value, least)
     return ("grid" if keys <= 2 else "emcee") if method == "auto" else method
 
 

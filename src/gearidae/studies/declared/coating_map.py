@@ -23,7 +23,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions
 from gearidae.runs.running import prepare
-from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
+from gearidae.runs.sweep_plan import SweepPlan, plan_sweep, values_of
 from gearidae.runs.sweeping import run_plan
 from gearidae.scene import describe_key
 from gearidae.scene.carried import numbers_of
@@ -90,8 +90,8 @@ def coating_map(
     Dataset, dims (..., sam_fraction, impact)
         ``characteristic_frequency`` and its standard ``uncertainty`` [Hz], of the first impact; ``impact_frequency``
         and ``impact_uncertainty`` [Hz] of each, at ``impact_time`` [s]; ``median_gear_speed`` and
-        ``min_gear_speed`` [rad/s]. NaN where nothing rings or a run could not go on. The scene and how it was made
-        are attributes.
+        ``min_gear_speed`` [rad/s]. NaN where nothing rings, and of a run that could not be finished, which says so in
+        its ``status`` and ``message``. The scene and how it was made are attributes.
 
     Raises
     ------
@@ -169,21 +169,15 @@ def further_keys(scene: Scene, over: object) -> dict[str, list[Any]]:
         )
     if _FRACTION in over:
         raise SceneError("over", _FRACTION, "is the map's own axis: give it as sam_fraction")
-    keys: dict[str, list[Any]] = {}
-    for key, values in over.items():
-        if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
-            raise SceneError(str(key), values, "must be a list of values to map over")
-        keys[str(key)] = list(values)
-        if not keys[str(key)]:
-            raise SceneError(str(key), "[]", "must be a list of values to map over")
-    return keys
+    return {str(key): values_of(str(key), values) for key, values in over.items()}
 
 
 def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
-    """One line of the map."""
+    """One line of the map; what a run that could not be finished has left is no frequency of it."""
+    finished = runs["status"] == "finished"
     impacts = impact_frequencies(runs, width=width)
     first = characteristic_frequency(runs, width=width)
-    return xr.Dataset(
+    line = xr.Dataset(
         {
             "characteristic_frequency": first.drop_vars(["uncertainty", "impacts"]),
             "uncertainty": first["uncertainty"].drop_vars(["uncertainty", "impacts"]),
@@ -195,6 +189,7 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
         },
         attrs=impacts.attrs,
     )
+    return line.where(finished).assign({name: runs[name] for name in ("status", "message")})
 
 
 def _number(scene: Scene, key: str, value: Any) -> Any:
@@ -288,8 +283,11 @@ def _rows(ds: xr.Dataset) -> Rows:
             one = line.isel(sam_fraction=int(place))
             value, spread = float(one["characteristic_frequency"]), float(one["uncertainty"])
             text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
-            stops = "" if float(one["min_gear_speed"]) > 0.0 else "the gear stops within the run"
-            yield f"SAM {100 * float(one['sam_fraction']):g} %", text, stops
+            slowest = float(one["min_gear_speed"])
+            remark = "" if slowest > 0.0 else "the gear stops within the run"
+            if np.isnan(slowest):
+                remark = "its run could not be finished"
+            yield f"SAM {100 * float(one['sam_fraction']):g} %", text, remark
 
 
 STUDY = Study(

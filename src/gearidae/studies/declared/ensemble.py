@@ -17,6 +17,7 @@ import xarray as xr
 from gearidae.archive.keep import read_keep
 from gearidae.archive.specimen import SEED, has_seeds
 from gearidae.archive.variables import extreme_names
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweeping import run_study
@@ -226,7 +227,9 @@ def _sentence(ds: xr.Dataset) -> str:
         return f"None of {ds.sizes['member']} members has been finished."
     found = sticking_probability(ds)
     stuck, members = int(found["stuck"]), int(found["members"])
-    return f"{stuck} of {members} members stick: probability of sticking {_probability(found)}."
+    unfinished = int(np.isnan(ds["sticks"].values).sum())
+    rest = f"; {unfinished} of {ds.sizes['member']} are unfinished and do not count" if unfinished else ""
+    return f"{stuck} of {members} members stick: probability of sticking {_probability(found)}{rest}."
 
 
 def _probability(found: xr.Dataset) -> str:
@@ -259,7 +262,17 @@ def _rows(ds: xr.Dataset) -> Rows:
             low, middle, high = (
                 _in_words(value, str(ds[name].attrs["units"])) for value in (low, middle, high)
             )
-            yield name.replace("_", " "), middle, f"90 % between {low} and {high}"
+            yield (
+                name.replace("_", " "),
+                middle,
+                f"90 % between {low} and {high}{_of_members(ds[name].values)}",
+            )
+
+
+def _of_members(values: Floats) -> str:
+    """Say how many members have a figure, if not all of them."""
+    count = int(np.isfinite(values).sum())
+    return "" if count == values.size else f", of the {count} members that have one"
 
 
 def _in_words(value: float, unit: str) -> str:
@@ -297,10 +310,11 @@ def _mean_rows(ds: xr.Dataset) -> Rows:
         if found.size > 1:
             spread = float(np.std(found, ddof=1))
             low, high = np.quantile(found, (0.05, 0.95))
+            rest = _of_members(values)
             yield (
                 name,
                 _with_error(float(found.mean()), spread / math.sqrt(found.size), unit),
-                f"standard deviation of one gear {spread:.2g}, 90 % between {low:.4g} and {high:.4g}",
+                f"standard deviation of one gear {spread:.2g}, 90 % between {low:.4g} and {high:.4g}" + rest,
             )
 
 

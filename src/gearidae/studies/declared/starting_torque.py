@@ -93,7 +93,10 @@ def _rows(ds: xr.Dataset) -> Rows:
             with_prefix(float(one[name]), "N m", 4)
             for name in ("simulated_torque", "simulated_stuck", "static_torque")
         )
-        yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, f"sticks at {sticks}, static {static}"
+        words = f"sticks at {sticks}, static {static}"
+        if np.isnan(one["simulated_torque"]):
+            turns, words = "-", f"no simulated torque, static {static}"
+        yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, words
 
 
 def _gears_sentence(ds: xr.Dataset) -> str:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,8 +19,10 @@ from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, SideBySide, prepared
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.sweep_plan import values_of
 from gearidae.scene.keys import find_key
 from gearidae.scene.pairs import sweep_values
+from gearidae.scene.quantity import whole
 from gearidae.studies.bracket import bracket
 from gearidae.studies.requirements import require_gears
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
@@ -29,6 +32,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from gearidae.scene import Scene
+
+log = logging.getLogger(__name__)
 
 _PARTS = 4
 """Parts into which a bracket is divided at a time, however many runs go side by side: results do not depend on that."""
@@ -74,13 +79,15 @@ def sticking_threshold(
         ends are ``sticks``, where a run sticks within so many exits, and ``passes``, where it passes them, as at
         all values tried beyond. NaN where no run has stuck so early. Along ``run`` all runs: ``value``,
         ``exits_passed`` until it stuck or its time was over, ``stick_time`` (NaN if it has not stuck) and
-        ``simulated_time``.
+        ``simulated_time``. Runs that could not be finished are named in the log and left out; ``left_out`` counts them.
 
     Raises
     ------
     SceneError
         If the scene has no gears; a setting is not allowed; the gear does alike at both ends; or in the time of a
         schedule it neither sticks nor passes the exits.
+    SolverError
+        If the run at one of the ends could not be finished.
     Interrupted
         On Ctrl-C, with the brackets so far as its ``dataset``.
 
@@ -96,8 +103,8 @@ def sticking_threshold(
     >>> found = gd.studies.sticking_threshold(scene, between=(0.4, 0.7), exits=5)  # doctest: +SKIP
     >>> float(found.limit.sel(exits=5))  # doctest: +SKIP
     """
+    ends = _ends(scene, over, between)
     base, how = prepared(scene, options, samples="off")
-    ends = _ends(base, over, between)
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
     _check(base, exits, width)
     if not is_scheduled(base.to_dict()):  # a schedule has a time of its own
@@ -128,16 +135,20 @@ class _Pool:
     compute: SideBySide
     runs: list[ThresholdRun]
 
-    def run(self, values: Sequence[float]) -> None:
-        """Run the values that have not been run."""
+    def run(self, values: Sequence[float]) -> bool:
+        """Run the values that have not been run; whether there were any. Runs that fail are named and left out."""
         done = {each.value for each in self.runs}
         todo = sorted({value for value in values if value not in done})
         scenes = [self.scene.replace({self.over: value}) for value in todo]
         found = self.compute(run_until, scenes, self.exits)
         for value, (solution, _) in zip(todo, found, strict=True):
             run = ThresholdRun.of(value, solution)
-            _refuse_short(self.scene, run, self.exits)
+            if run.failure is None:
+                _refuse_short(self.scene, run, self.exits)
+            else:
+                log.warning("one run is left out: %s", run.failure)
             self.runs.append(run)
+        return bool(todo)
 
 
 def _refuse_short(scene: Scene, run: ThresholdRun, exits: int) -> None:
@@ -161,21 +172,28 @@ def _search(pool: _Pool, ends: tuple[float, float], waits: Sequence[int], width:
             if abs(passes - sticks) > width:  # never so of NaN
                 inner = np.linspace(sticks, passes, _PARTS + 1)[1:-1]
                 wanted += inner.tolist()
-        if not wanted:
+        if not pool.run(wanted):  # around a value whose run has failed, a bracket stays wide
             return
-        pool.run(wanted)
+
+
+def _followed(runs: Sequence[ThresholdRun]) -> list[ThresholdRun]:
+    return [run for run in runs if run.failure is None]
 
 
 def _bracket(runs: Sequence[ThresholdRun], exits: int) -> tuple[float, float]:
     """Value nearest to the passing end at which a run sticks within so many exits, and the next beyond it."""
+    runs = _followed(runs)
     first, last = (pick(runs, key=lambda run: run.value) for pick in (min, max))
     passed = {run.value: run.passed >= exits for run in runs}
     return bracket(passed, falling=first.passed > last.passed)
 
 
 def _check_ends(pool: _Pool, ends: tuple[float, float]) -> None:
-    """Require that one end sticks and the other does not."""
+    """Require that one end sticks and the other does not, and that neither has failed."""
     first, second = (next(run for run in pool.runs if run.value == end) for end in ends)
+    for run in (first, second):
+        if run.failure is not None:
+            raise run.failure
     if (first.passed < pool.exits) == (second.passed < pool.exits):
         what = "sticks" if first.passed < pool.exits else "passes them"
         passed = f"{first.passed} and {second.passed} mesh exits"
@@ -192,8 +210,10 @@ def _dataset(
     width: float,
 ) -> xr.Dataset:
     """Make the dataset of brackets and runs."""
-    brackets = np.array([_bracket(runs, each) for each in waits] if runs else [(np.nan, np.nan)] * len(waits))
-    ordered = sorted(runs, key=lambda run: run.value)
+    ordered = sorted(_followed(runs), key=lambda run: run.value)
+    brackets = np.array(
+        [_bracket(ordered, each) for each in waits] if ordered else [(np.nan, np.nan)] * len(waits)
+    )
     values = {
         "exits": np.array(waits),
         "limit": brackets.mean(axis=1),
@@ -210,6 +230,7 @@ def _dataset(
         "summary": f"Limit of {over} at which the gear begins to stick, against mesh exits waited for.",
         "between": list(ends),
         "width": width,
+        "left_out": len(runs) - len(ordered),
     }
     return STUDY.dataset(values, attributes, over=over, unit=find_key(type(scene), over).unit or "1")
 
@@ -218,7 +239,7 @@ def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, flo
     """Both ends in SI units."""
     if len(between) != 2:
         raise SceneError("between", list(between), "must be two values")
-    low, high = (value_of(scene.replace({over: end}), over) for end in between)
+    low, high = (value_of(scene.replace({over: end}), over) for end in values_of("between", between))
     if low == high:
         raise SceneError("between", list(between), "must be two different values")
     return low, high
@@ -226,8 +247,7 @@ def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, flo
 
 def _check(scene: Scene, exits: int, width: float) -> None:
     require_gears(scene)
-    if not isinstance(exits, int) or isinstance(exits, bool) or exits < 1:
-        raise SceneError("exits", exits, "must be a whole number, 1 or more")
+    whole("exits", exits, 1)
     if not 0.0 < width < math.inf:
         raise SceneError("width", width, "must be positive")
 
@@ -283,7 +303,8 @@ def _rows(ds: xr.Dataset) -> Rows:
             continue
         sticks, passes = _ends_in_words(one)
         yield waited, _number(float(one["limit"]), one), f"sticks at {sticks}, passes at {passes}"
-    yield "runs", str(ds.sizes["run"]), ""
+    left_out = int(ds.attrs.get("left_out", 0))
+    yield "runs", str(ds.sizes["run"]), f"{left_out} more could not be finished" if left_out else ""
 
 
 def _key(ds: xr.Dataset) -> str:
