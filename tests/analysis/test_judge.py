@@ -54,6 +54,7 @@ BACK = Extremes(MOVES, turned_back=12.0, free_turned_back=12.0, back_time=0.1)
         (BACK, "turns back"),
         (Extremes(BACK, free_turned_back=6.0), "turns back"),
         (Extremes(BACK, free_turned_back=5.9), "runs back"),
+        (Extremes(BACK, turned_back=0.4, free_turned_back=0.5), "turns back"),  # a little forward since
         (Extremes(BACK, turned_back=0.0, free_turned_back=0.0, back_time=math.nan), None),
     ],
 )

@@ -32,18 +32,22 @@ PAIR = gd.Scene.from_dict(
             "pressure_angle": math.radians(20.0),
             "density": 2330.0,
         },
-        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6, "damping": 2e-8},
+        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6, "damping": 2e-8, "radius_force": False},
         "drive": {"torque": 4e-18},
         "load": {"torque": 3e-18, "drag": 8e-18},
         "initial": {"gear_speed": 0.0, "gap": 26e-9, "mesh_phase": 0.3},
         "run": {"duration": 1.0, "samples": 41},
     }
 )
-"""An own pair of gears, whose mesh damping ends the vibration of the pinion on a gear that is held."""
+"""An own pair of gears, whose mesh damping ends the vibration of the pinion on a gear that is held.
+
+One body has no force of a contact whose length changes, which is 7e-5 of the push.
+"""
 RATIO = 3.0
 INERTIA = PAIR.gears.gear_inertia + RATIO**2 * PAIR.gears.pinion_inertia
-ADVANCE = 0.02
-"""About how far [rad] the gear turns in a slip."""
+ADVANCE = 0.006
+"""About how far [rad] the gear turns in a slip: four of them within the path of one tooth pair, without the loss by
+adhesion of a pair that leaves."""
 LARGEST = 5e-12
 """Torque of the drive [N m] at which teeth are still rigid."""
 DAMPING = 2e-9
@@ -84,25 +88,17 @@ def turned(run):
     return run.samples["gear_angle"][-1] - run.samples["gear_angle"][2]
 
 
-def instants(scene):
-    return np.linspace(0.0, scene.run.duration, 4_001)
+def assert_all_slips(run, scene, frequency, within=1e-6, rel=2e-3):
+    """Each due slip comes when it is due, and the gear turns as far.
 
-
-def assert_all_slips(run, scene, frequency):
-    """Each due slip comes, and the gear turns as far to 1 %.
-
-    The tip relief of a second pair and contacts that still vibrate change the push by 1e-4 of it, which shifts the
-    slips by as much of a period, and changes the angle of a dip of 1 % by another per cent.
+    At 20 kHz teeth vibrate in a slip, which takes 1e-3 of its work.
     """
     due, angle = train.slips(scene, frequency)
-    depth = max(
-        1.0 - train.torque(scene.load, t) / train.torque(scene.drive, t) / RATIO for t in instants(scene)
-    )
     times = slip_times(run)
     assert len(due) >= 3
     for time in due:
-        assert np.abs(times - time).min() < 5e-4 / frequency
-    assert turned(run) == pytest.approx(angle, rel=0.01 + 1e-4 / depth)
+        assert np.abs(times - time).min() < within / frequency
+    assert turned(run) == pytest.approx(angle, rel=rel)
 
 
 # -- dips of the load and pulses of the drive ------------------------------------------------------------------------
@@ -110,11 +106,22 @@ def assert_all_slips(run, scene, frequency):
 DIPS = [
     (50.0, 0.01, 0.06),
     (50.0, 0.9, 0.12),
+    (90.5, 0.85, 0.12),
     (100.0, 0.3, 0.1),
+    (119.0, 0.055, 0.076),
     (200.0, 0.6, 0.14),
+    (267.8, 0.08, 0.062),
+    (296.6, 0.62, 0.058),
+    (305.1, 0.014, 0.055),
+    (361.2, 0.015, 0.097),
     (500.0, 0.1, 0.08),
+    (735.3, 0.18, 0.077),
+    (1145.1, 0.063, 0.057),
+    (2024.1, 0.12, 0.063),
     (2e3, 0.3, 0.1),
+    (3363.3, 0.16, 0.097),
     (5e3, 0.05, 0.06),
+    (6310.6, 0.39, 0.05),
     (2e4, 0.01, 0.14),
     (2e4, 0.9, 0.1),
 ]
@@ -124,25 +131,32 @@ DIPS = [
 @pytest.mark.parametrize("method", ["auto", "bdf"])
 @pytest.mark.parametrize("dip", DIPS)
 def test_no_dip_of_the_load_is_missed(dip, method):
-    """Against the train as one body, solved from rest to rest by an independent method."""
+    """Against the train as one body, solved from rest to rest by an independent method.
+
+    With ``bdf`` the pinion may vibrate by a tolerance until a slip, which changes its push by 1e-4.
+    """
     scene = dipping(*dip, **{"run.method": method})
     run = solve(scene)
-    assert_all_slips(run, scene, dip[0])
+    assert_all_slips(run, scene, dip[0], within=1e-6 if method == "auto" else 1e-4)
     assert_balanced(run.balance, scene)
 
 
-@pytest.mark.parametrize("dip", [(100.0, 0.3, 0.1), (500.0, 0.05, 0.06)])
-def test_no_dip_is_missed_by_the_portable_driver(dip):
-    scene = dipping(*dip)
-    assert_all_slips(solve(scene, backend="sksundae"), scene, dip[0])
+@pytest.mark.parametrize("method", ["auto", "bdf"])
+@pytest.mark.parametrize("dip", [(100.0, 0.3, 0.1), (500.0, 0.05, 0.06), (2e4, 0.01, 0.14)])
+def test_no_dip_is_missed_by_the_portable_driver(dip, method):
+    scene = dipping(*dip, **{"run.method": method})
+    assert_all_slips(solve(scene, backend="sksundae"), scene, dip[0], within=1e-4)
 
 
 @pytest.mark.parametrize("method", ["auto", "bdf"])
 @pytest.mark.parametrize("frequency", [100.0, 2e3])
 def test_no_pulse_of_the_drive_is_missed(frequency, method):
-    """The pinion follows the drive on its teeth, so that steps are integrated: they are short enough."""
+    """The pinion follows the drive on its teeth, so that steps are integrated: they are short enough.
+
+    Its motion changes the push by a 10,000th, which shifts the slips by as much of a period.
+    """
     scene = dipping(frequency, 0.04, 0.1, shaft="drive", **{"run.method": method})
-    assert_all_slips(solve(scene), scene, frequency)
+    assert_all_slips(solve(scene), scene, frequency, within=5e-4, rel=0.01)
 
 
 def wave(t, speed, p):
@@ -169,7 +183,7 @@ def test_no_dip_of_a_registered_law_is_missed(backend):
         "frequency": harmonic.frequency,
     }
     by_law = scene.replace({"load.harmonic": [], "load.torque": 0.0, "load.law": law})
-    assert_all_slips(solve(by_law, backend=backend), scene, 200.0)
+    assert_all_slips(solve(by_law, backend=backend), scene, 200.0, within=1e-4)
 
 
 KINDS = {

@@ -174,3 +174,25 @@ def test_a_gear_that_starts_as_free_gears_do_has_not_stood():
     )  # 0.5 s: the torque is that of the dry load
     assert table["verdict"].tolist() == ["stops", "sticks"]
     assert (table["held_torque"] > 0.0).tolist() == (table["free_advance"] > 0.0).tolist() == [False, True]
+
+
+def test_a_gear_that_creeps_past_half_a_pitch_stands_on_from_a_later_zero():
+    """A harmonic above the mean pushes it on a little in each period; free gears have long gone on."""
+    drive = {
+        "drive.schedule": [(0.0, 5.4417e-18), (0.13725, 1.9657e-18), (0.25869, 5.4417e-18)],
+        "drive.harmonic": [{"amplitude": 1.07855e-17, "frequency": 37.0, "phase": 1.73814}],
+    }
+    rubs = {
+        "contact.friction": 0.05,
+        "gears.hub_friction": 0.3,
+        "gears.pinion_hub_radius": 3e-6,
+        "gears.gear_hub_radius": 6e-6,
+    }
+    start = {"coating.sam_fraction": 0.6, "initial.mesh_phase": 0.47193}
+    ds = ended(0.3, **drive, **rubs, **start)
+    (outcome,) = outcomes(ds)
+    assert outcome.verdict == "sticks"
+    assert outcome.stick_time == pytest.approx(0.061, abs=1e-3)
+    table = ds.gearidae.standstills()
+    assert table["verdict"].tolist() == ["sticks", "sticks"]
+    assert table["begin"][1] == table["end"][0] == pytest.approx(0.2857, abs=1e-3)

@@ -16,8 +16,6 @@ from gearidae.scene import Scene
 
 IRREGULAR_ABOVE = 0.25
 """A gear turns irregularly if its speed both falls and rises again by more than this fraction of its mean."""
-BACK_FROM = 0.5
-"""Pitches that a gear must be turned back by to be said to run back."""
 
 
 def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int, int]:
@@ -61,7 +59,9 @@ def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str
         return "unfinished"
     if not math.isnan(found.stick_time):
         return standing_verdict(found.free_advance, found.driven_time, found.followed_time)
-    if found.turned_back > BACK_FROM:
+    if (
+        found.turned_back > 0.0
+    ):  # the last movement of more than half a pitch was back; a smaller one may follow
         return "turns back" if found.free_turned_back >= 0.5 * found.turned_back else "runs back"
     if status != "finished":
         return "unfinished"

@@ -115,8 +115,8 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     """Add the losses since the last call, and note the powers here.
 
     The corrected trapezoidal rule is extrapolated with the powers in the middle, where the formula of the step gives
-    the state there. Rates are infinite before an asperity detaches: there powers at three points inside the interval
-    are taken.
+    the state there. Rates are infinite before an asperity detaches, and those of a hub's load jump nearly where it
+    passes zero: there powers at three points inside the interval are taken, or the rate before.
 
     Parameters
     ----------
@@ -134,7 +134,8 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     if h == 0.0:
         return
     first = _powers(m)
-    if root and m.scene.population.flanks != 0 and a.order_used > 0:
+    bends = root and (m.scene.population.flanks != 0 or has_hubs(m))
+    if bends and a.order_used > 0:
         _book_inside(m, start, h, between, rates)
         note_rubbing(m, t, y)
         return
@@ -155,8 +156,9 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     last = _powers(m)
     for i in range(_POWERS):
         j = _POWERS + i
-        loss = integral(h, first[i], last[i], first[j], last[j])
-        error = error_estimate(h, first[i], last[i], first[j], last[j])
+        rate = 2.0 * (last[i] - first[i]) / h - first[j] if bends else last[j]  # of a parabola
+        loss = integral(h, first[i], last[i], first[j], rate)
+        error = error_estimate(h, first[i], last[i], first[j], rate)
         if halved:
             rough, loss = loss, integral_with_middle(h, first[i], middle[i], last[i], first[j], last[j])
             error = min(error, abs(loss - rough) / 16.0)

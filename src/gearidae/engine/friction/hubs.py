@@ -14,6 +14,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
 
 _TINY = 1e-300
+_ROUNDING = 1e-12
 
 
 class Mesh(NamedTuple):
@@ -53,7 +54,7 @@ def turning_load(m: Model, mesh: Mesh) -> tuple[float, float]:
     load = math.hypot(along, over)
     if abs(mesh.coast) > abs(mesh.drive):
         along, over = -own.cosine * along - own.sine * over, own.sine * along - own.cosine * over
-    if m.state.load_sign * along < 0.0 and abs(over) <= 2.0 * own.even * abs(along):
+    if m.state.load_sign * along < 0.0 and abs(over) <= (2.0 * own.even + _ROUNDING) * abs(along):
         load = -load
     return load, along
 

@@ -66,11 +66,13 @@ def add_zero(m: Model, t: float, position: float, y: Floats, at_start: bool) -> 
         z = s.zero[i]
         z.lowest, z.highest = min(z.lowest, position), max(z.highest, position)
     if s.zero_count > 0 and s.zero[0].free_farthest > DECIDED:
-        s.zero_count = 1  # whatever comes, from the first on the gear stands until it leaves
+        # whatever comes, from the first on the gear stands until it leaves; from then on others count
         if time - s.zero[0].free_time > SELDOM * (m.scene.end - m.scene.start) * m.scene.time_unit:
-            follow_zeros(m, t)
-        return
-    follow_zeros(m, t)
+            _follow_zero(m, 0, t)
+        if _has_one_near(m, position):
+            return
+    else:
+        follow_zeros(m, t)
     if s.zero_count == MOST_ZEROS:
         _drop(m, _most_alike(m))
     make_zero(m, s.zero_count, time, position, y, at_start)
@@ -96,10 +98,23 @@ def _note_turn(m: Model, time: float, position: float, y: Floats) -> None:
 @compiled
 def follow_zeros(m: Model, t: float) -> None:
     """Follow the free gears of all zeros to a time over tau, than which no standstill ends earlier."""
-    s = m.state.standing
+    for i in range(m.state.standing.zero_count):
+        _follow_zero(m, i, t)
+
+
+@compiled
+def _follow_zero(m: Model, i: int, t: float) -> None:
+    follow_free(m, i, t, math.inf)
+    m.state.standing.zero[i].free_before = m.state.standing.zero[i].free_farthest
+
+
+@compiled
+def _has_one_near(m: Model, position: float) -> bool:
+    """Whether there is a zero in the same place whose standstill has not ended."""
+    s, near = m.state.standing, False
     for i in range(s.zero_count):
-        follow_free(m, i, t, math.inf)
-        s.zero[i].free_before = s.zero[i].free_farthest
+        near |= s.zero[i].spent == 0 and abs(s.zero[i].position - position) < _PLACE
+    return near
 
 
 @compiled
