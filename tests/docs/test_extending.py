@@ -219,7 +219,8 @@ from gearidae.records.quantity import in_si
 assert "viscous_loss" in LOSSES
 assert ENERGY_BALANCE["viscous_loss"].units == "J"
 scene = SimpleNamespace(
-    phase_rate=1.0, drag=0.0, viscous=3.0, damping=0.0, film_damping=0.0, force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
+    phase_rate=1.0, drag=0.0, viscous=3.0, damping=0.0, film_damping=0.0,
+    force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
 )
 energy = np.zeros(1, STATE["energy"])[0]
 state, work = SimpleNamespace(energy=energy), SimpleNamespace(resistance=SimpleNamespace())
