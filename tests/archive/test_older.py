@@ -4,9 +4,11 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import gearidae as gd
 from gearidae.archive import save
+from gearidae.archive.select import scene_of
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.records.energy import TERMS
 
@@ -81,3 +83,16 @@ def test_energies_of_an_unfinished_run_are_those_of_its_checkpoint(tmp_path, mon
     assert left["drive_work"] == pytest.approx(wanted["drive_work"], rel=1e-5, abs=0.0)
     assert 0.0 < abs(left["residual"]) <= left["residual_bound"]
     np.testing.assert_allclose(left["throughput"], wanted["throughput"], rtol=1e-3)
+
+
+def test_older_names_of_the_contact_are_read_without_a_word(caplog):
+    """Scenes of archives up to 0.2.0 have `contact.model` and the friction law `net`."""
+    scene = gd.preset("teodorescu2009").to_dict()
+    del scene["contact"]["bodies"], scene["contact"]["roughness"]
+    scene["contact"] |= {"model": "population", "friction_law": "net", "friction": 0.1}
+    ds = xr.Dataset(attrs={"scene": json.dumps(scene)})
+    found = scene_of(ds)["contact"]
+    assert (found["bodies"], found["roughness"], found["friction_law"]) == ("rigid", "discrete", "coulomb")
+    assert "model" not in found
+    assert gd.Scene.from_dict(scene_of(ds)).contact.is_discrete
+    assert not caplog.messages
