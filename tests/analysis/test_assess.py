@@ -39,7 +39,7 @@ def test_map_rises_as_the_coating_wears(chart):
 
 
 def test_map_over_torque_has_a_line_for_each():
-    both = coating_map(SCENE, [1.0, 0.8], over={"drive.torque": ["4.5e-18 N m", 9e-18]})
+    both = coating_map(SCENE, [1.0, 0.8], over={"drive.torque": ["4.5e-18 N m", "9e-18 N m"]})
     assert both.impact_frequency.dims == ("torque", "sam_fraction", "impact")
     assert list(both.torque.values) == [4.5e-18, 9e-18]
     assert both.torque.attrs["units"] == "N m"

@@ -17,7 +17,8 @@ from gearidae.analysis.verdict import outcomes
 from gearidae.archive import netcdf, pieces, save, time_index, to_dataset
 from gearidae.archive import run_summary as account_module
 from gearidae.archive.growing import GrowingArchive
-from gearidae.plot import spectra, style
+from gearidae.drawing import style
+from gearidae.plot import spectra
 from gearidae.report import build_report, series
 from same import assert_same
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -69,10 +68,10 @@ def prepare(
 
 def _require_memory() -> None:
     """Refuse a process that may use too little memory: compiled libraries end it where they get none."""
-    if sys.platform == "win32":
+    try:
+        import resource
+    except ImportError:  # of Windows
         return
-    import resource
-
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if limit != resource.RLIM_INFINITY and limit < _LEAST_MEMORY:
         raise MemoryError(

@@ -264,7 +264,8 @@ def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Intege
     """Follow every pair that counts at one of the wanted samples."""
     laws = material_laws(scene)
     for near in _near(record, scene, limits, wanted):
-        start, gaps, places = record.path_to(near.flank, near.pair, int(near.sample[-1]), limits.reach)
+        ends = int(near.sample[0]), int(near.sample[-1])
+        start, gaps, places = record.path_to(near.flank, near.pair, ends, limits.reach)
         joined = {
             name: joined_heights(gaps, places[near.sample - start], _stretch_limit(law, scene))
             for name, law in laws.items()

@@ -94,13 +94,15 @@ class ToothRecord:
         relief = separation(self.geometry, place, self._relief_radius)[0]
         return self._half_backlash + (u if flank == Flank.COAST else -u) + relief
 
-    def path_to(self, flank: Flank, pair: int, last: int, reach: float) -> tuple[int, Floats, Integers]:
+    def path_to(
+        self, flank: Flank, pair: int, ends: tuple[int, int], reach: float
+    ) -> tuple[int, Floats, Integers]:
         """Gaps that a pair went through since it came near its path of contact.
 
         Parameters
         ----------
-        last : int
-            The sample to end with.
+        ends : tuple of int
+            A sample that must be among them, and the one to end with.
         reach : float
             How far outside the path a pair is near [m].
 
@@ -113,10 +115,10 @@ class ToothRecord:
         places : ndarray, shape (last - start + 1,)
             Where in `gaps` the samples are.
         """
-        length = self.geometry.path_length
+        length, (first, last) = self.geometry.path_length, ends
         here = float(self.place(flank, pair, np.zeros(1))[0])
         first_travel = -reach - here if flank == Flank.DRIVE else here - length - reach
-        start = min(int(np.searchsorted(self._furthest, first_travel)), last)
+        start = min(int(np.searchsorted(self._furthest, first_travel)), first)
         cut = slice(start, last + 1)
         gaps = self.gap(flank, self.place(flank, pair, self.travel[cut]), self.u[cut])
         times, turned = self._turning_points(flank, pair, start, last)
