@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -68,9 +69,11 @@ def prepare(
 
 def _require_memory() -> None:
     """Refuse a process that may use too little memory: compiled libraries end it where they get none."""
+    if sys.platform == "win32":
+        return
     try:
         import resource
-    except ImportError:  # of Windows
+    except ImportError:
         return
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if limit != resource.RLIM_INFINITY and limit < _LEAST_MEMORY:
