@@ -202,3 +202,14 @@ def test_the_rate_is_that_of_the_last_half_minute(kernel, monkeypatch):
     rates = [pace.rate(time) for time in times]
     assert rates[50] == pytest.approx(1e-3, rel=1e-9)
     assert rates[-1] == pytest.approx(1e-5, rel=1e-9)
+
+
+def test_a_notebook_shows_what_the_gear_does_and_the_time_left(kernel, monkeypatch):
+    clock = iter([0.0, 0.0, *(100.0 * number for number in range(20))])
+    monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
+    with progress.run_progress(True, 0.3) as report:
+        report(0.1, 12)
+        report.doing = "held by adhesion since 150 ms"
+        report(0.2, 40)
+    assert "simulating: held by adhesion since 150 ms; 200 of 300 ms, 40 events" in kernel[-1]["text/plain"]
+    assert re.search(r"about [.\d]+ min left", kernel[-1]["text/plain"])

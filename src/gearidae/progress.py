@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import logging
+import math
 import shutil
 import sys
 import threading
@@ -28,7 +29,7 @@ SweepProgress = Callable[[float, int], None]
 
 
 @contextmanager
-def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunProgress]:
+def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunReport]:
     """Show how far a run is, and say how long it will take if that is long.
 
     Parameters
@@ -41,28 +42,55 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunPro
 
     Yields
     ------
-    callable
+    RunReport
         What the engine shall call. It also logs, once, how long the run will take at the rate of its first second, if
         that is more than ten minutes.
     """
-    prefix, scale = ("ms", 1e3) if duration < 1.0 else ("s", 1.0)
-    pace = _Pace(duration)
-    with (
-        _bar("simulating", duration * scale) if wanted and not callable(wanted) else nullcontext() as advance
-    ):
+    if callable(wanted):
+        yield RunReport(duration, wanted, None)
+        return
+    scale = 1e3 if duration < 1.0 else 1.0
+    with _bar("simulating", duration * scale) if wanted else nullcontext() as advance:
+        yield RunReport(duration, None, advance)
 
-        def update(time: float, events: int) -> None:
-            rate = pace.rate(time) * scale
-            if callable(wanted):
-                wanted(time, events)
-            elif advance is not None:
-                advance(
-                    time * scale,
-                    f"{time * scale:.4g} of {duration * scale:.4g} {prefix}, {events} events, "
-                    f"{rate:.3g} {prefix} per second",
-                )
 
-        yield update
+class RunReport:
+    """Takes reports of a run and shows them.
+
+    Parameters
+    ----------
+    duration : float
+        Simulated time of the whole run [s].
+    call : callable, optional
+        Function of the caller.
+    advance : callable, optional
+        Of a bar.
+
+    Attributes
+    ----------
+    doing : str
+        What the gear does, if there is something to say; to be set as it becomes known.
+    """
+
+    def __init__(self, duration: float, call: RunProgress | None, advance: Advance | None) -> None:
+        self._duration, self._call, self._advance = duration, call, advance
+        self._pace = _Pace(duration)
+        self.doing = ""
+
+    def __call__(self, time: float, events: int) -> None:
+        """Take over the simulated time [s] and the number of events so far."""
+        prefix, scale = ("ms", 1e3) if self._duration < 1.0 else ("s", 1.0)
+        rate = self._pace.rate(time)
+        if self._call is not None:
+            self._call(time, events)
+        elif self._advance is not None:
+            doing = f"{self.doing}; " if self.doing else ""
+            self._advance(
+                time * scale,
+                f"{doing}{time * scale:.4g} of {self._duration * scale:.4g} {prefix}, {events} events, "
+                f"{rate * scale:.3g} {prefix} per second",
+                (self._duration - time) / rate if rate > 0.0 else math.nan,
+            )
 
 
 class _Pace:
@@ -129,13 +157,13 @@ def sweep_progress(wanted: bool | SweepProgress, runs: int) -> Iterator[SweepPro
 
         def update(done: float, total: int) -> None:
             if advance is not None:
-                advance(done, f"{done:.4g} of {runs} runs")
+                advance(done, f"{done:.4g} of {runs} runs", math.nan)
 
         yield update
 
 
-Advance = Callable[[float, str], None]
-"""Called with the finished part, in the unit of the whole, and the same in words."""
+Advance = Callable[[float, str, float], None]
+"""Called with the finished part, in the unit of the whole, the same in words, and the wall time left [s] or NaN."""
 
 
 @contextmanager
@@ -183,7 +211,7 @@ def _terminal_bar(title: str, total: float) -> Iterator[Advance]:
     )
     with Progress(*columns, console=console) as bar:
         task = bar.add_task(title, total=total, words="")
-        yield lambda done, words: bar.update(task, completed=done, words=words)
+        yield lambda done, words, _: bar.update(task, completed=done, words=words)
         bar.update(task, refresh=True)
 
 
@@ -201,9 +229,9 @@ def _notebook_bar(display: Any, title: str, total: float) -> Iterator[Advance]:
 
     handle = display(look(), raw=True, display_id=True)
 
-    def advance(done: float, words: str) -> None:
+    def advance(done: float, words: str, left: float) -> None:
         with busy:  # runs of a sweep report from several threads
-            state[:] = [done, words]
+            state[:] = [done, words if math.isnan(left) else f"{words}, about {in_words(left)} left"]
             if monotonic() - drawn[0] >= _REDRAWN:
                 drawn[0] = monotonic()
                 handle.update(look(), raw=True)

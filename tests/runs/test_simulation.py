@@ -10,8 +10,10 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
+from gearidae import progress
 from gearidae.engine import backend
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Ending
+from gearidae.scene.prefixes import with_prefix
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 201})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 101})
@@ -173,3 +175,22 @@ def test_modules_do_not_take_the_place_of_functions():
 
     assert not isinstance(gd.simulate, ModuleType)
     assert not isinstance(gd.sweep, ModuleType)
+
+
+def test_progress_says_that_the_gear_is_held(monkeypatch):
+    """By what, and since when; the words go when it turns."""
+    reports = []
+
+    class Report(progress.RunReport):
+        def __call__(self, time, events):
+            reports.append((time, self.doing))
+
+    monkeypatch.setattr(progress, "RunReport", Report)
+    worn = gd.preset("teodorescu2009_low_speed").replace(
+        {"coating.sam_fraction": 0.45, "run.duration": 0.6, "run.samples": 11}
+    )
+    ds = gd.simulate(worn)
+    stuck = f"held by adhesion since {with_prefix(float(ds.stick_time), 's')}"
+    assert {doing for time, doing in reports if time < float(ds.stick_time)} == {""}
+    assert {doing for time, doing in reports if time > float(ds.stick_time)} <= {"", stuck}
+    assert reports[-1][1] == stuck

@@ -47,6 +47,9 @@ _RUN: Final = "run"
 
 log = logging.getLogger(__name__)
 
+RESUMABLE: Final = "; go on with --resume (resume=True)"
+"""End of the message of a run that nobody goes on with."""
+
 
 class GrowingArchive:
     """The archive of a run under way, open for writing; `gearidae.archive.target.claims_target` keeps others away.
@@ -352,7 +355,7 @@ def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool)
         samples, events = commit.samples, commit.events
     cut = ds.isel(time=slice(samples), event=slice(events)).drop_vars([*COUNTS, RECORDS], errors="ignore")
     point = Checkpoint.newest(path, str(cut.attrs.pop(_RUN, "")))
-    remedy = "" if running else "; go on with --resume (resume=True)"
+    remedy = "" if running else RESUMABLE
     cut.attrs |= {
         "status": "running" if running else "interrupted",
         "message": f"not at its end yet{remedy}",

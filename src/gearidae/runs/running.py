@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -9,14 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.errors import SceneError, SolverError
-from gearidae.records import EventKind, Events, Flank, Solution, Statistics
+from gearidae.records import Block, EventKind, Events, Flank, Solution, Statistics
+from gearidae.records.standing import Holding
 from gearidae.runs.halting import is_halted
 from gearidae.scene import Scene
+from gearidae.scene.prefixes import with_prefix
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from gearidae import engine
+    from gearidae.progress import RunReport
 
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _LEAST_MEMORY = 1.25e9
@@ -121,6 +125,20 @@ def solve(
         return engine.solve(scene, backend=backend, on_progress=report, start=at, on_block=on_block)
     except SolverError as error:
         return unsolved("failed", str(error))
+
+
+def watched(report: RunReport, on_block: engine.OnBlock | None) -> engine.OnBlock:
+    """Return what looks at every block of a run, says to its report whether the gear stands, and calls `on_block`."""
+
+    def look(block: Block) -> object:
+        if block.extremes is not None and not math.isnan(since := block.extremes.stick_time):
+            held = Holding(block.extremes.holding).words
+            report.doing = f"{f'held by {held}' if held else 'standing'} since {with_prefix(since, 's')}"
+        elif block.extremes is not None:
+            report.doing = ""
+        return None if on_block is None else on_block(block)
+
+    return look
 
 
 def solve_to_end(scene: Scene, backend: str, start: engine.Start | None = None) -> Solution:

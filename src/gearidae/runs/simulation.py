@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.plausibility import log_doubts
-from gearidae.runs.running import early_end, prepare, solve
+from gearidae.runs.running import early_end, prepare, solve, watched
 from gearidae.runs.starting import started_attributes, started_from
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def simulate(
     if resume:
         raise SceneError("resume", resume, "needs the archive to go on from (archive=)")
     with run_progress(progress, begin.time + scene.run.duration) as report:
-        solution = solve(scene, backend, report, start=begin, on_block=on_block)
+        solution = solve(scene, backend, report, start=begin, on_block=watched(report, on_block))
 
     from gearidae.archive import reached, to_dataset
     from gearidae.runs.imbalance import log_imbalance

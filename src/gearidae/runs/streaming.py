@@ -12,12 +12,13 @@ from gearidae import __version__, engine
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
 from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
 from gearidae.archive.disk import DiskError
+from gearidae.archive.growing import RESUMABLE
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.imbalance import log_imbalance
 from gearidae.runs.kept_validity import with_validity
-from gearidae.runs.running import early_end, unsolved
+from gearidae.runs.running import early_end, unsolved, watched
 from gearidae.runs.starting import started_attributes
 from gearidae.scene.differences import first_difference
 
@@ -74,7 +75,7 @@ def stream(
     run = _Run(scene, target, engine.choose_backend(backend, scene.run.method), start)
     with run.take_up() if found is not None else run.begin() as archive:
         with run_progress(progress, run.end) as report:
-            ended = run.follow(archive, report, on_block)
+            ended = run.follow(archive, report, watched(report, on_block))
         run.leave(archive, ended)
     return open_archive(target)
 
@@ -179,7 +180,7 @@ class _Run:
     def _left(self) -> xr.Dataset:
         """Open the archive of a run that has been left; its claim lasts until the error is there."""
         ds = open_archive(self._target)
-        ds.attrs["status"] = "interrupted"
+        ds.attrs |= {"status": "interrupted", "message": f"{ds.attrs['message']}{RESUMABLE}"}
         return ds
 
     def _ended_at(self, point: Checkpoint) -> Ended:
