@@ -18,7 +18,7 @@ from reference.small_scenes import SCENES
 
 RUN = (
     "import gearidae as gd, gearidae.engine as e; "
-    "r = e.solve(gd.preset('roller_slow').replace({{'contact.model': '{model}'}}), t_end=1e-6); "
+    "r = e.solve(gd.preset('roller_slow').replace({{'contact.bodies': '{model}'}}), t_end=1e-6); "
     "print(r.statistics.backend, r.samples['height'][-1])"
 )
 
@@ -45,7 +45,7 @@ def run(folder, model, code=RUN, more=NOTHING):
     return done
 
 
-MODELS = ("asperity", "elastic")
+MODELS = ("rigid", "elastic")
 CHECKED = {"NUMBA_BOUNDSCHECK": "1"}
 """Every index is looked at."""
 
