@@ -1,0 +1,177 @@
+"""Start-up and braking runs of every kind, drawn and cut at earlier ends, beside a judge that has samples alone."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.analysis.verdict import outcomes
+from reference.standing import Plant, judge
+
+PITCH = 2.0 * math.pi / 54
+PAIR = gd.Scene.from_dict(
+    gd.preset("teodorescu2009").to_dict()
+    | {
+        "gears": {
+            "pinion_teeth": 18,
+            "gear_teeth": 54,
+            "module": 3e-6,
+            "pressure_angle": math.radians(20.0),
+            "face_width": 2.5e-6,
+            "density": 2330.0,
+        },
+        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6},
+        "drive": {"torque": 0.0},
+        "load": {"torque": 3e-18, "drag": 8e-18},
+        "initial": {"gear_speed": 0.0, "gap": 0.1e-6, "mesh_phase": 0.3},
+        "run": {"duration": 1.0},
+    }
+)
+HUBS = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
+TORQUE = 4.5e-18
+"""About what takes coated gears through the mesh [N m]."""
+SAMPLES = 20_000
+"""In a second."""
+
+
+def motor(t, speed, p):
+    """Torque that rises, and falls with the speed: a law that the engine does not know."""
+    return p[0] * (1.0 - speed / p[1]) * (0.5 - 0.5 * math.cos(2.0 * math.pi * min(t / p[2], 1.0)))
+
+
+@pytest.fixture(autouse=True)
+def drawn_motor():
+    gd.register_torque("drawn_motor", parameters=("stall", "free", "rise"))(motor)
+    yield
+    gd.unregister_torque("drawn_motor")
+
+
+def ramp(random, end, torque):
+    t = np.sort(random.uniform(0.0, end, 3))
+    return {
+        "drive.schedule": [
+            (0.0, 0.0),
+            (t[0] + 0.1 * end, torque),
+            (t[1] + 0.11 * end, torque),
+            (1.2 * end, 0.0),
+        ]
+    }
+
+
+def reversal(random, end, torque):
+    t = np.sort(random.uniform(0.0, end, 2))
+    return {
+        "drive.schedule": [(0.0, torque), (t[0], torque), (t[1] + 1e-3, -torque * random.uniform(0.2, 1.2))]
+    }
+
+
+def steps_of_both(random, end, torque):
+    t = np.sort(random.uniform(0.0, end, 3))
+    drive = [(0.0, 0.2), (t[0], 0.2), (t[0] + 1e-4, 1.0), (t[2] + 2e-4, 1.0), (t[2] + 4e-4, 0.3)]
+    load = [(0.0, 0.0), (t[1], 0.0), (t[1] + 1e-4, random.uniform(0.5, 3.0) * 3e-18)]
+    return {"drive.schedule": [(time, share * torque) for time, share in drive], "load.schedule": load}
+
+
+def alternation(random, end, torque):
+    return {"drive.schedule": [(end * i / 6, torque * (-1) ** i) for i in range(7)]}
+
+
+def harmonic_above_the_mean(random, end, torque):
+    t = np.sort(random.uniform(0.0, end, 2))
+    wave = {
+        "amplitude": torque * random.uniform(0.8, 2.0),
+        "frequency": float(random.choice([10.0, 20.0, 37.0])),
+        "phase": random.uniform(0.0, 6.0),
+    }
+    knots = [(0.0, torque), (t[0], torque * random.uniform(0.2, 1.0)), (t[1] + 1e-3, torque)]
+    return {"drive.schedule": knots, "drive.harmonic": [wave]}
+
+
+def switched_off(random, end, torque):
+    off = random.uniform(0.0, end)
+    return {
+        "drive.schedule": [(0.0, torque), (off, torque), (off + 1e-3, 0.0)],
+        "initial.gear_speed": float(random.choice([0.0, 1.0])),
+    }
+
+
+def held_speed(random, end, torque):
+    t = np.sort(random.uniform(0.0, end, 3))
+    w = random.uniform(0.3, 3.0)
+    knots = [(0.0, 0.0), (t[0] + 0.05, w), (t[1] + 0.06, w), (t[2] + 0.1, 0.0)]
+    return {"drive.speed": knots, "drive.speed_gain": 10.0 ** random.uniform(-18.0, -17.0)}
+
+
+def law(random, end, torque):
+    numbers = {"stall": torque, "free": random.uniform(3.0, 20.0), "rise": end * random.uniform(0.2, 0.9)}
+    return {"drive.law": {"name": "drawn_motor", **numbers}}
+
+
+KINDS = (ramp, reversal, steps_of_both, alternation, harmonic_above_the_mean, switched_off, held_speed, law)
+FRICTION = ({}, {"contact.friction": 0.2}, HUBS, HUBS | {"contact.friction": 0.05})
+
+
+def drawn(seed):
+    """Scene of a number: its remainders decide on the torque, on what rubs and on the asperities."""
+    random = np.random.default_rng(seed)
+    end, torque = float(random.choice([0.3, 1.0])), TORQUE * random.uniform(0.3, 3.0)
+    changes = {
+        "run.duration": end,
+        "coating.sam_fraction": float(random.choice([1.0, 0.6, 0.45, 0.2, 0.0])),
+        "load.torque": float(random.choice([0.0, 1e-18, 3e-18])),
+        "initial.mesh_phase": random.uniform(0.0, 1.0),
+    }
+    changes |= KINDS[seed % 8](random, end, torque) | FRICTION[seed // 8 % 4]
+    if seed % 11 == 10:
+        changes["contact.model"] = "population"
+    return PAIR.replace(changes)
+
+
+def law_of(scene):
+    """Registered law of a scene, of the time and the pinion's speed; None without one."""
+    if scene.drive.law is None:
+        return None
+    numbers = tuple(scene.drive.law.model_extra[name] for name in ("stall", "free", "rise"))
+    return lambda t, speed: motor(t, speed, numbers)
+
+
+def assert_judged_alike(scene):
+    """The verdict is that of the judge, and so is the time of sticking, but for what lies between its samples."""
+    end = scene.run.duration
+    samples = max(int(SAMPLES * end), 2_000) + 1
+    ds = gd.simulate(scene.replace({"run.samples": samples}))
+    (outcome,) = outcomes(ds)
+    moves = outcome.verdict not in ("sticks", "stops", "turns back", "runs back")
+    period = max((1.0 / wave.frequency for wave in scene.drive.harmonic), default=0.0)
+    track = (ds.time.values, ds.gear_angle.values, ds.gear_speed.values)
+    wanted, since = judge(*track, Plant.of(scene, law_of(scene)), PITCH, period)
+    assert ("moves" if moves else outcome.verdict) == wanted
+    if not math.isnan(since):
+        assert outcome.stick_time == pytest.approx(since, abs=max(3e-3 * end, 6.0 / SAMPLES))
+
+
+SEEDS = (0, 1, 2, 3, 6, 8, 11, 12)
+"""Runs that take a second or two of computing."""
+
+
+def cuts(seed, number):
+    """Shares of a run at which it ends, the whole among them."""
+    return [1.0, *np.random.default_rng(seed + 1_000_000).uniform(0.05, 0.98, number)]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_drawn_runs_are_judged_as_from_samples_alone(seed):
+    for cut in cuts(seed, 2):
+        scene = drawn(seed)
+        assert_judged_alike(scene.replace({"run.duration": cut * scene.run.duration}))
+
+
+@pytest.mark.by_hand
+@pytest.mark.parametrize("seed", range(200))
+def test_two_hundred_drawn_runs_and_ten_earlier_ends_of_each(seed):
+    for cut in cuts(seed, 10):
+        scene = drawn(seed)
+        assert_judged_alike(scene.replace({"run.duration": cut * scene.run.duration}))
