@@ -47,8 +47,8 @@ from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import DKY, HANDLES, IDA, YP, Places, Y, close_solver, open_solver
 from gearidae.records import Statistics
 
-FIRST_STEPS = 1
-"""Steps of the first block, before it is known what a step costs: one with a million real asperities takes 40 ms."""
+FIRST_STEPS = 1_000
+"""Steps of the first block, before it is known what a step costs; of elastic bodies and discrete asperities, one."""
 GROWTH_HIGH = 50
 """By how much a block may have more steps than the one before."""
 
@@ -261,7 +261,8 @@ def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) ->
     """Run with an open solver, block by block."""
     m = problem.model
     driver, elastic = m.work.driver, bool(m.scene.nodes > 0)
-    beyond, budget = False, FIRST_STEPS
+    costly = elastic or m.scene.population.flanks > 0
+    beyond, budget = False, 1 if costly else FIRST_STEPS
     while driver.done == 0 and driver.error == 0 and not beyond:
         started = time.monotonic()
         advance(problem.located.place, s, out, budget)
