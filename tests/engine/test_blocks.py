@@ -50,7 +50,7 @@ def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
 
 
 def test_a_block_of_slow_steps_ends_after_a_few(monkeypatch):
-    """Each block seems to take a second: all have one step as the first of costly scenes, and the tiny run few blocks."""
+    """Blocks seem to take a second: all have one step, as the first of costly scenes, and the tiny run few blocks."""
     monkeypatch.setattr(native, "FIRST_STEPS", 1)
     clock = itertools.count()
     monkeypatch.setattr(native, "time", SimpleNamespace(monotonic=lambda: float(next(clock))))
