@@ -153,7 +153,7 @@ def assert_judged_alike(scene):
         assert outcome.stick_time == pytest.approx(since, abs=max(3e-3 * end, 6.0 / SAMPLES))
 
 
-SEEDS = (0, 1, 2, 3, 6, 8, 11, 12)
+SEEDS = (0, 1, 3, 8)
 """Runs that take a second or two of computing."""
 
 
@@ -164,7 +164,7 @@ def cuts(seed, number):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_drawn_runs_are_judged_as_from_samples_alone(seed):
-    for cut in cuts(seed, 2):
+    for cut in cuts(seed, 1):
         scene = drawn(seed)
         assert_judged_alike(scene.replace({"run.duration": cut * scene.run.duration}))
 
