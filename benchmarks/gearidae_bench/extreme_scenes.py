@@ -119,6 +119,7 @@ def extreme_population(seed: int, number: int, alive: Callable[[], None] | None 
     extreme, rng = extreme_scene(seed, number, alive), np.random.default_rng([seed, number, 18])
     scene, sigma = extreme.scene, extreme.scene.surface.roughness
     changes: dict[str, Any] = {
+        "contact.bodies": "rigid",
         "contact.roughness": "discrete",
         "contact.seed": int(rng.integers(0, 2**32)),
         "run.asperity_events": bool(rng.random() < 0.7),

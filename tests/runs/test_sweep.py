@@ -86,7 +86,7 @@ def test_processes_change_nothing():
 
 
 def test_two_keys_make_a_product_with_units():
-    ds = gd.sweep(LOW, {KEY: [1.0, 0.5], "mesh.backlash": ["0.2 um", 1e-7]}, samples=11)
+    ds = gd.sweep(LOW, {KEY: [1.0, 0.5], "mesh.backlash": ["0.2 um", "0.1 um"]}, samples=11)
     assert ds.gear_speed.dims == ("sam_fraction", "backlash", "time")
     assert ds.backlash.values.tolist() == [2e-7, 1e-7]
     assert ds.backlash.attrs["units"] == "m"

@@ -81,7 +81,7 @@ def test_what_is_no_list_is_refused_by_column_and_row(value, told):
 
 
 def test_a_list_needs_the_model_that_reads_it():
-    with pytest.raises(SceneError, match=r'needs contact\.model = "population"'):
+    with pytest.raises(SceneError, match=r'needs contact\.roughness = "discrete"'):
         preset("teodorescu2009").replace({"contact.asperities": {"arc": [1e-6], "height": [1e-8]}})
     with pytest.raises(SceneError, match="a roller has no coast flank"):
         preset("roller_slow").replace(

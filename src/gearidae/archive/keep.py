@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.archive.variables import (
+    CONTACT,
     ENERGY_BALANCE,
     EVENTS,
     EXPOSURES,
@@ -116,7 +117,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     members: dict[str, tuple[str, ...]] = {
         "verdict": tuple(VERDICT),
         "extremes": (*extremes, *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
-        "statistics": tuple(RUN),
+        "statistics": (*RUN, *(each.name for each in CONTACT)),
         "energy_balance": tuple(ENERGY_BALANCE),
         "scene": ("scene",),
         "exposures": tuple(EXPOSURES),

@@ -93,7 +93,7 @@ def member_table(ds: xr.Dataset, listed: Sequence[str]) -> str:
             for number, one in ((number, ds.isel(member=number)) for number in range(ds.sizes["member"]))
         ]
         table = html.table(("member", *(name.replace("_", " ") for name in columns)), rows, caption="Members")
-    elif "status" not in ds:
+    elif "status" not in ds or "swept" not in ds.attrs:  # a map has no runs in it
         return ""
     elif "member" in ds.dims:
         judged, rtol = outcomes(ds), scene_of(ds)["run"]["rtol"]
