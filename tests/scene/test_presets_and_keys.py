@@ -14,8 +14,8 @@ CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
     "gears": "density pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
     "face_width hub_friction pinion_hub_radius gear_hub_radius",
-    "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order static_error.amplitude "
-    "static_error.phase",
+    "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order "
+    "static_error.amplitude static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
     "hamaker provenance",
     "coating": "sam_fraction energy hamaker pairing thickness pinion_fraction gear_fraction pinion_table gear_table "
