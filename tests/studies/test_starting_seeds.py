@@ -198,5 +198,5 @@ def test_what_a_population_does_not_take_is_named():
     for given, name in cases:
         with pytest.raises(gd.SceneError, match=name):
             gd.studies.starting_torque(BARE, **given)
-    with pytest.raises(gd.SceneError, match="population"):
+    with pytest.raises(gd.SceneError, match="discrete"):
         gd.studies.starting_torque(gd.preset("teodorescu2009"), seeds=3)
