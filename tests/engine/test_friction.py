@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from balances import assert_balanced
 from gearidae.asperities.tip import contact_modulus
 from gearidae.contact.line import line_area
 from gearidae.contact.psi import psi
@@ -619,6 +620,16 @@ def test_the_limit_of_elastic_bodies_is_not_that_of_rigid_ones_at_their_gap():
     forces_at_shafts(m, 0.0, y)
     rigid = m.work.notes.pair[: m.work.notes.count]["limit"].max()
     assert 0.0 < bodies < 0.95 * rigid
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.1])
+def test_elastic_gears_with_hubs_close_their_balance_over_many_events(mu):
+    """The losses of a step that ends at an event need the deflections at the times inside it."""
+    bare = {"coating.sam_fraction": 0.0, "contact.friction": mu, "contact.bodies": "elastic"}
+    scene = HIGH.replace({**HUBS, **bare, "run.duration": 1e-5, "run.samples": "off", "run.rtol": 1e-8})
+    found = run(scene)
+    assert len(found.events) > 50
+    assert_balanced(found.balance, scene)
 
 
 def test_a_friction_loss_of_elastic_bodies_with_different_coefficients_is_that_of_rigid_ones():

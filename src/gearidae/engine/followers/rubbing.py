@@ -23,7 +23,7 @@ from gearidae.engine.friction.hubs import Mesh
 from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
 from gearidae.engine.model.record_types import HELD_PAIR
 from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.pair_forces import follow_slopes, set_deflections
+from gearidae.engine.motion.pair_forces import follow_slopes, is_eliminated, set_deflections
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, static_error
 
@@ -143,10 +143,7 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     end, bend = (7.0 / 30.0 * h, h * h / 60.0) if halved else (0.5 * h, h * h / 12.0)  # weights of the rule
     add_rubbing(m, end, bend)
     if halved:
-        adams.between(a, start + 0.5 * h, between, rates)
-        if m.scene.nodes > 0:
-            set_deflections(m, start + 0.5 * h, between, False)
-        note_rubbing(m, start + 0.5 * h, between)
+        _note_within(m, start + 0.5 * h, between, rates)
         add_rubbing(m, 16.0 / 30.0 * h, 0.0)
         middle = _powers(m)
     note_rubbing(m, t, y)
@@ -166,12 +163,20 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
 
 
 @compiled
+def _note_within(m: Model, t: float, between: Floats, rates: Floats) -> None:
+    """Note the powers at a time within the step, at the state that its formula gives, which is left in `between`."""
+    adams.between(m.work.adams, t, between, rates)
+    if is_eliminated(m):
+        set_deflections(m, t, between, False)
+    note_rubbing(m, t, between)
+
+
+@compiled
 def _book_inside(m: Model, start: float, h: float, between: Floats, rates: Floats) -> None:
     """Add the losses of an interval from the powers at three points inside it, by the Gaussian rule."""
     for point in range(3):
         then = start + (0.5 + (point - 1) * _OUTER) * h
-        adams.between(m.work.adams, then, between, rates)
-        note_rubbing(m, then, between)
+        _note_within(m, then, between, rates)
         weight = (8.0 if point == 1 else 5.0) / 18.0 * h
         for i in range(_POWERS):
             _book(m, i, weight * m.work.rubbing.power[i], 0.0)
