@@ -183,8 +183,8 @@ MUTANTS = (
     Mutant(
         "drag proportional to the speed",
         "engine/motion/shafts.py",
-        "force = m.scene.drag * w * abs(w)",
-        "force = m.scene.drag * w",
+        "return m.scene.drag * w * abs(w)",
+        "return m.scene.drag * w",
         ("engine/test_closed_forms.py",),
     ),
     Mutant(
@@ -211,8 +211,8 @@ MUTANTS = (
     Mutant(
         "dry resistance that pushes a gear that turns backwards",
         "engine/motion/shafts.py",
-        "force += m.state.slip * max(",
-        "force += max(",
+        "+ m.state.slip * dry_force(m, t, y)",
+        "+ dry_force(m, t, y)",
         ("properties/test_engine_symmetries.py",),
     ),
     Mutant(

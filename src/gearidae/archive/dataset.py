@@ -59,7 +59,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     """
     fraction = scene.coating.sam_fraction
     variables: dict[Hashable, Any] = {
-        name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in _columns(scene)
+        name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in columns_of(scene)
     }
     variables |= _event_variables([scene], [solution], np.array([fraction]))
     variables["reached"] = ((), reached(solution), OF_SWEPT_RUN["reached"].attributes)
@@ -273,10 +273,6 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
 def _samples(solution: Solution, name: str) -> NDArray[np.float64]:
     """Return the samples of a column; a run that could not even start has none."""
     return solution.samples.get(name, np.empty(0))
-
-
-def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns_of(scene)
 
 
 def key_labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:

@@ -64,7 +64,7 @@ class Keep:
 
     def columns(self, scene: Scene) -> tuple[str, ...]:
         """List the sampled columns that are kept."""
-        return tuple(name for name in _columns(scene) if self.holds(name))
+        return tuple(name for name in columns_of(scene) if self.holds(name))
 
     @property
     def events(self) -> bool:
@@ -121,10 +121,10 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
         "energy_balance": tuple(ENERGY_BALANCE),
         "scene": ("scene",),
         "exposures": tuple(EXPOSURES),
-        "samples": _columns(scene),
+        "samples": columns_of(scene),
         "events": (*EVENTS, "impacts"),
     }
-    single = (*RUN, *OF_SWEPT_RUN, *extremes, *ENERGY_BALANCE, *EXPOSURES, *_columns(scene), *VERDICT)
+    single = (*RUN, *OF_SWEPT_RUN, *extremes, *ENERGY_BALANCE, *EXPOSURES, *columns_of(scene), *VERDICT)
     members |= {name: (name,) for name in single if name not in members}
     names = set(_ALWAYS) | (set(_IN_WORDS) if scene.roller is None else set())
     for name in asked:
@@ -151,7 +151,3 @@ def kept_in(attributes: Any, scene: Scene) -> Keep:
     except (TypeError, ValueError):
         asked = [shorten(text)]
     return read_keep(asked, scene)
-
-
-def _columns(scene: Scene) -> tuple[str, ...]:
-    return columns_of(scene)

@@ -144,12 +144,12 @@ class Mesh(Group):
         default=0.0, description="viscous damping of the transmission error; it acts without contact, too"
     )
     film_damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
-        default=0.0, description="damping of the film of gas between two flanks whose gap is zero"
+        default=0.0, description="damping of a film of gas between two flanks, at a gap of zero"
     )
     film_gap: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, least=1e-10, shown=("nm", -9))] = (
         Field(
             default=0.0,
-            description="height that the film has besides the gap: its damping falls with the third power of both",
+            description="height of that film; the damping falls with the third power of height and gap together",
         )
     )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(

@@ -7,12 +7,12 @@ from typing import Any, Final, Unpack
 
 import xarray as xr
 
-from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions
 from gearidae.scene import Scene
 from gearidae.scene.quantity import Quantity
 from gearidae.studies.declared.pull_off import pull_off
 
+_SIZE, _LOAD = Quantity(unit="m", above=0, at_most=1), Quantity(unit="N", above=0, at_most=1)
 _AT_REST: Final = {"mass": 1e-12, "speed": 1e-3, "height": 1e-6}
 """Of a roller whose contact is only parted, so that they do not count."""
 _OF_ASPERITIES: Final = ("asperity", "seed")
@@ -21,10 +21,10 @@ _OF_ASPERITIES: Final = ("asperity", "seed")
 
 def hub_adhesion(
     scene: Scene,
-    radius: float,
-    clearance: float,
-    width: float,
-    load: float,
+    radius: float | str,
+    clearance: float | str,
+    width: float | str,
+    load: float | str,
     seeds: int | Sequence[int] = 40,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
@@ -64,25 +64,12 @@ def hub_adhesion(
     >>> bool(ds.pull_off.median() > 0.0)
     True
     """
-    r, c, length, force = (
-        _read(name, value, unit)
-        for name, value, unit in (
-            ("radius", radius, "m"),
-            ("clearance", clearance, "m"),
-            ("width", width, "m"),
-            ("load", load, "N"),
-        )
-    )
+    sizes = (("radius", radius), ("clearance", clearance), ("width", width))
+    r, c, length = (_SIZE.take(name, size) for name, size in sizes)
+    force = _LOAD.take("load", load)
     tables = scene.to_dict()
     hub: dict[str, Any] = {name: tables[name] for name in ("surface", "coating") if name in tables}
     hub["contact"] = {key: value for key, value in tables.get("contact", {}).items() if key in _OF_ASPERITIES}
     hub["roller"] = {"radius": r * (r + c) / c, "width": length, **_AT_REST}
     hub |= {"name": f"hub of {scene.name}", "run": {"duration": 1e-6}}
     return pull_off(Scene.from_dict(hub), seeds, load=force, **options)
-
-
-def _read(name: str, value: float | str, unit: str) -> float:
-    try:
-        return Quantity(unit=unit, above=0, at_most=1).read(value)
-    except ValueError as error:
-        raise SceneError(name, value, str(error)) from None

@@ -29,8 +29,6 @@ from gearidae.engine.torques.torque import torque_force
 
 RETURN: Final = 0.05
 """Rate at which the sliding that errors have brought about in a pair that rolls is taken out again, over 1/tau."""
-
-
 NO_FORCE: Final = 1e-12
 """Of the reference load: less than this neither holds a gear nor moves it from rest."""
 

@@ -53,12 +53,6 @@ def is_at_rest(m: Model, t: float, y: Floats) -> bool:
 
 
 @compiled
-def holds_anything(m: Model) -> bool:
-    """Whether dry resistance or friction holds anything."""
-    return bool(m.state.hold != FREE)
-
-
-@compiled
 def _holds_gear(m: Model) -> bool:
     """Whether the gear is held at rest, and the pinion by nothing but its teeth, whose bodies are rigid."""
     bare = m.scene.friction.flanks == 0 and m.scene.friction.pinion_hub == 0.0
@@ -127,6 +121,6 @@ def longest_step(m: Model) -> float:
     Registered laws bound none: what is known of them is the duration of a run, on which its steps must not depend.
     """
     longest, look = m.scene.longest_step, m.scene.rest_look
-    if holds_anything(m) and look < np.inf and m.scene.rest_bend < np.inf:
+    if m.state.hold != FREE and look < np.inf and m.scene.rest_bend < np.inf:
         return min(longest, look) if longest > 0.0 else look
     return longest

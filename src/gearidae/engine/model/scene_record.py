@@ -115,7 +115,7 @@ KEYED: Final = {
     "film_damping": ("mesh.film_damping", _PER_SPEED),
     "film_gap": ("mesh.film_gap", LENGTH),
 }
-"""Numbers that are those of a key of the scene, in the units of the run: 0 of a roller."""
+"""Fields with the number of a key of the scene in the units of the run, and these units; 0 for a roller."""
 
 SCENE: Final = record_type(
     ("follow", FOLLOW),

@@ -61,7 +61,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         friction, resistance = friction_at_gear(m, t, y)
         contact += friction
     elif m.state.hold == FREE:
-        resistance = resisting_force(m, t, u, phase, w)
+        resistance = resisting_force(m, t, y)
     else:
         resistance = contact
     row[GEAR.gear_contact_torque] = radius * contact * m.scene.force_unit

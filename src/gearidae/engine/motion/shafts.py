@@ -16,7 +16,7 @@ from gearidae.engine.friction.forces import (
 )
 from gearidae.engine.friction.pairs import direction, levers, set_limits
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR, HELD_PAIR
-from gearidae.engine.model.state import DRIVE, LOAD, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, PHASE, ROLLER, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.pair_force import MeshForces
 from gearidae.engine.pairs.shaft_angle import torque_angle
@@ -68,13 +68,10 @@ def pinion_speed(m: Model, y: Floats) -> tuple[float, float]:
 
 
 @compiled
-def resisting_force(m: Model, t: float, u: float, phase: float, w: float) -> float:
+def resisting_force(m: Model, t: float, y: Floats) -> float:
     """Resistance at the gear over R2, scaled: dry in the direction of slip, and both drags (Eq. 2)."""
-    force = m.scene.drag * w * abs(w) + m.scene.viscous * w
-    if m.scene.dry != 0:
-        angle = torque_angle(m, LOAD, u, phase)
-        force += m.state.slip * max(torque_force(m, LOAD, t, angle, w), 0.0)
-    return force
+    w = y[W]
+    return m.scene.drag * w * abs(w) + m.scene.viscous * w + m.state.slip * dry_force(m, t, y)
 
 
 @compiled(inline=True)
@@ -84,7 +81,7 @@ def accelerations(m: Model, t: float, y: Floats, s: Shafts) -> tuple[float, floa
         return rubbed_accelerations(m, t, y, s.turn, s.pinion, s.gear)
     pinion, gear = m.scene.pinion_inverse_mass * s.pinion, 0.0
     if m.state.hold == FREE:
-        gear = m.scene.gear_inverse_mass * (s.gear - resisting_force(m, t, y[U], y[PHASE], y[W]))
+        gear = m.scene.gear_inverse_mass * (s.gear - resisting_force(m, t, y))
     elif m.state.hold == AT_REST:
         pinion = 0.0
     return pinion, gear
@@ -210,8 +207,7 @@ def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float]:
         friction += direction(m, noted) * noted.limit * second
         if m.state.hold == HELD_PAIR and noted.history == m.state.held_pair:
             friction += found.held * second
-    w, dry = y[W], dry_force(m, t, y)
-    drags = m.scene.drag * w * abs(w) + m.scene.viscous * w
-    if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:
-        return friction, drags + min(max(gear + friction, -dry), dry)
-    return friction, drags + m.state.slip * dry
+    if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:  # without a speed, and so without drags
+        dry = dry_force(m, t, y)
+        return friction, min(max(gear + friction, -dry), dry)
+    return friction, resisting_force(m, t, y)
