@@ -87,25 +87,29 @@ def test_tables_of_single_asperities_hold_the_area(law):
         assert told == pytest.approx(float(law.area(displacement)), abs=1e-8)
 
 
+class WithoutAdhesion(AsperityLaw):
+    """What laws of one's own without adhesion have in common."""
+
+    @classmethod
+    def of(cls, tip, unit):
+        return cls()
+
+    @property
+    def detach(self):
+        return 0.0
+
+    @property
+    def pull_off(self):
+        return 0.0
+
+
 def test_laws_without_an_area_are_refused_by_name():
     @register
     @dataclass(frozen=True)
-    class Block(AsperityLaw):
+    class Block(WithoutAdhesion):
         """A law that has no contact area."""
 
         name: ClassVar[str] = "block"
-
-        @classmethod
-        def of(cls, tip, unit):
-            return cls()
-
-        @property
-        def detach(self):
-            return 0.0
-
-        @property
-        def pull_off(self):
-            return 0.0
 
         def load(self, displacement):
             return 0.5 * np.maximum(displacement, 0.0) ** 1.5
@@ -126,22 +130,10 @@ def test_a_law_that_brings_an_area_rubs_by_it():
 
     @register
     @dataclass(frozen=True)
-    class Halved(AsperityLaw):
+    class Halved(WithoutAdhesion):
         """Hertz's law on half of the area."""
 
         name: ClassVar[str] = "halved"
-
-        @classmethod
-        def of(cls, tip, unit):
-            return cls()
-
-        @property
-        def detach(self):
-            return 0.0
-
-        @property
-        def pull_off(self):
-            return 0.0
 
         def load(self, displacement):
             return np.maximum(displacement, 0.0) ** 1.5

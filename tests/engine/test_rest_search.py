@@ -19,23 +19,16 @@ from gearidae.engine.setup.build import make_problem
 from gearidae.engine.torques.harmonic import common_period
 from gearidae.records import EventKind
 from reference import train
+from reference.own_pair import OWN_PAIR
 
 PRESET = gd.preset("teodorescu2009").to_dict()
 PAIR = gd.Scene.from_dict(
     PRESET
+    | OWN_PAIR
     | {
-        "gears": {
-            "pinion_teeth": 18,
-            "gear_teeth": 54,
-            "module": 3e-6,
-            "face_width": 2.5e-6,
-            "pressure_angle": math.radians(20.0),
-            "density": 2330.0,
-        },
-        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6, "damping": 2e-8, "radius_force": False},
+        "mesh": OWN_PAIR["mesh"] | {"damping": 2e-8, "radius_force": False},
         "drive": {"torque": 4e-18},
-        "load": {"torque": 3e-18, "drag": 8e-18},
-        "initial": {"gear_speed": 0.0, "gap": 26e-9, "mesh_phase": 0.3},
+        "initial": OWN_PAIR["initial"] | {"gap": 26e-9},
         "run": {"duration": 1.0, "samples": 41},
     }
 )

@@ -10,6 +10,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
+from reference.own_pair import OWN_PAIR
 from reference.standing import Plant, judge
 
 SURFACE = {
@@ -22,21 +23,11 @@ SURFACE = {
 }
 RAMP = [(0.0, 0.0), (5.0, 1.2e-17), (7.0, 1.2e-17), (9.0, 0.0)]
 PAIR = gd.Scene.from_dict(
-    {
-        "gears": {
-            "pinion_teeth": 18,
-            "gear_teeth": 54,
-            "module": 3e-6,
-            "pressure_angle": math.radians(20.0),
-            "face_width": 2.5e-6,
-            "density": 2330.0,
-        },
-        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6},
+    OWN_PAIR
+    | {
         "surface": SURFACE,
         "coating": {"sam_fraction": 0.5, "energy": 0.1},
         "drive": {"schedule": RAMP},
-        "load": {"torque": 3e-18, "drag": 8e-18},
-        "initial": {"gear_speed": 0.0, "gap": 0.1e-6, "mesh_phase": 0.3},
         "run": {"duration": 10.0, "samples": "off", "rtol": 1e-6},
     }
 )

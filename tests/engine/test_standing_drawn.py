@@ -9,26 +9,12 @@ import pytest
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
+from reference.own_pair import OWN_PAIR
 from reference.standing import Plant, judge
 
 PITCH = 2.0 * math.pi / 54
 PAIR = gd.Scene.from_dict(
-    gd.preset("teodorescu2009").to_dict()
-    | {
-        "gears": {
-            "pinion_teeth": 18,
-            "gear_teeth": 54,
-            "module": 3e-6,
-            "pressure_angle": math.radians(20.0),
-            "face_width": 2.5e-6,
-            "density": 2330.0,
-        },
-        "mesh": {"backlash": 0.25e-6, "tip_relief_radius": 10e-6},
-        "drive": {"torque": 0.0},
-        "load": {"torque": 3e-18, "drag": 8e-18},
-        "initial": {"gear_speed": 0.0, "gap": 0.1e-6, "mesh_phase": 0.3},
-        "run": {"duration": 1.0},
-    }
+    gd.preset("teodorescu2009").to_dict() | OWN_PAIR | {"drive": {"torque": 0.0}, "run": {"duration": 1.0}}
 )
 HUBS = {"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
 TORQUE = 4.5e-18
