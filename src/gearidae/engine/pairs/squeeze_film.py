@@ -1,8 +1,9 @@
 r"""Film of gas that two flanks squeeze out: a force against the rate of their gap.
 
 A pair of the gap g has the force :math:`-c(g)\,\dot g` with :math:`c = c_0 (g_0/(g + g_0))^3`, the law of Reynolds'
-equation for a film of the height :math:`g + g_0`; below a gap of zero the damping is :math:`c_0`. A flank of mass m
-that approaches freely obeys :math:`m (v - v_a) = (c_0 g_0^3/2) ((g + g_0)^{-2} - (g_a + g_0)^{-2})`.
+equation for a film of the height :math:`g + g_0`; below a gap of zero the damping is :math:`c_0`. While a free flank of
+the mass m approaches, the rate v of its gap obeys
+:math:`m (v - v_a) = (c_0 g_0^3/2) ((g + g_0)^{-2} - (g_a + g_0)^{-2})`.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def film_force(m: Model, pair: PairState) -> PairForce:
 
 
 class _Travel(NamedTuple):
-    """A variable x with ``x'^2`` the power that a film takes, its rate and the rate of that; 0 out of the film."""
+    """A variable x whose squared rate is the power that a film takes; both rates are 0 out of the film."""
 
     x: float
     rate: float
