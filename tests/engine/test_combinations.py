@@ -32,6 +32,8 @@ TRIPLES = [
     ("shear friction", "maugis asperities", "hub friction"),
     ("coulomb friction", "static error", "mesh damping"),
     ("hub friction", "held speed", "dry resistance"),
+    ("pin friction", "hub friction", "coulomb friction"),
+    ("pin friction", "hub friction", "discrete asperities"),
 ]
 WHOLE = {"run.duration": 2 * HALF, "run.samples": 2 * SAMPLES - 1, "run.checkpoints": [HALF]}
 AGREE = 1e-5
@@ -41,7 +43,7 @@ AGREE = 1e-5
 @pytest.mark.parametrize("feature", [*CHANGES, "no friction"])
 def test_a_feature_acts_in_the_short_scene(feature):
     """What would not change the motion would be tested by nothing here."""
-    friction = {"coulomb friction", "shear friction", "hub friction"}
+    friction = {"coulomb friction", "shear friction", "hub friction", "pin friction"}
     without = solve(scene_with(), backend="native")
     run = without if feature == "no friction" else solve(scene_with(feature), backend="native")
     assert (friction_loss(run.balance) > 1e-4 * run.balance.throughput) is (feature in friction)
@@ -57,6 +59,7 @@ def friction_loss(balance):
         + balance.coast_friction_loss
         + balance.pinion_hub_loss
         + balance.gear_hub_loss
+        + balance.pin_loss
     )
 
 

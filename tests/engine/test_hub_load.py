@@ -10,7 +10,7 @@ from gearidae.engine.backend import solve
 from gearidae.engine.events.events import chatters
 from gearidae.engine.events.sliding import REVERSALS_HIGH, begin_sliding, rest_reserve
 from gearidae.engine.followers.rubbing import note_rubbing
-from gearidae.engine.friction.hubs import consistent_loads
+from gearidae.engine.friction.hubs import consistent_loads, pin_force
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.record_types import AT_REST, HELD_PAIR, STUCK
 from gearidae.engine.model.state import COAST, V, W
@@ -19,6 +19,7 @@ from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind
 from gearidae.scene import preset
+from gearidae.torques import register_torque, unregister_torque
 
 HIGH, LOW = preset("teodorescu2009"), preset("teodorescu2009_low_speed")
 R1, R2 = HIGH.geometry.base_radius_pinion, HIGH.geometry.base_radius_gear
@@ -35,6 +36,18 @@ ROLLING = {
     "load.torque": 0.0,
 }
 """One pair that begins to roll from rest."""
+
+
+@pytest.fixture(autouse=True)
+def pushed():
+    """A torque law with a constant force."""
+
+    @register_torque("pushed", parameters=2, force=True)
+    def law(t, speed, p):
+        return 0.0 * t, p[0], p[1]
+
+    yield
+    unregister_torque("pushed")
 
 
 def standing(scene):
@@ -106,23 +119,43 @@ def test_loads_solve_their_equation():
     rng, several = np.random.default_rng(3), 0
     for _ in range(1000):
         u, v = rng.normal(size=2), rng.normal(size=2) * rng.choice([0.0, 0.1, 1.0])
-        loads = consistent_loads(tuple(u), tuple(v))
+        share = rng.uniform()
+        loads = consistent_loads(tuple(u), tuple(share * v), tuple((1.0 - share) * v), (0.0, 0.0))
         grid = np.linspace(0.0, 1e3, 20_001)
         left = np.hypot(u[0] + grid * v[0], u[1] + grid * v[1]) - grid
         crossings = np.count_nonzero(np.diff(np.sign(left)))
         if loads.room >= 0.0:
             for load in (loads.near, loads.far):
-                assert np.hypot(*(u + load * v)) == pytest.approx(load, rel=1e-9)
+                assert load.pinion == load.gear
+                assert np.hypot(*(u + load.gear * v)) == pytest.approx(load.gear, rel=1e-9)
             several += loads.near != loads.far
         else:
             assert crossings == 0
     assert 20 < several < 800
 
 
+def test_loads_beside_a_pin_solve_their_equations():
+    """1,000 drawn forces of a pin, from hubs without influence to hubs that nearly lock: there is one solution always.
+
+    Vectors by which loads change the sum add up to less than 1 in length: the equations contract.
+    """
+    rng = np.random.default_rng(4)
+    for _ in range(1000):
+        u, pin = rng.normal(size=2), rng.normal(size=2) * 10.0 ** rng.uniform(-3.0, 3.0)
+        by_pinion, by_gear = rng.normal(size=(2, 2))
+        size = np.hypot(*by_pinion) + np.hypot(*by_gear)
+        by_pinion, by_gear = (rng.choice([0.0, 0.1, 0.99]) / size * v for v in (by_pinion, by_gear))
+        loads = consistent_loads(tuple(u), tuple(by_pinion), tuple(by_gear), tuple(pin))
+        assert loads.room == math.inf
+        total = u + loads.near.pinion * by_pinion + loads.near.gear * by_gear
+        assert np.hypot(*(total - pin)) == pytest.approx(loads.near.pinion, rel=1e-9)
+        assert np.hypot(*total) == pytest.approx(loads.near.gear, rel=1e-9)
+
+
 # -- rest ------------------------------------------------------------------------------------------------------------
 
 
-def drawn(rng):
+def drawn(rng, *, with_joints=False):
     """A train at rest with hubs and pairs on one flank or both, and what an optimisation needs to know of it."""
     tight = rng.random() < 0.4
     scene = HIGH.replace(
@@ -139,6 +172,20 @@ def drawn(rng):
             "drive.harmonic": None,
         }
     )
+    if with_joints:
+        scene = scene.replace(
+            {
+                "drive.law": {
+                    "name": "pushed",
+                    "parameters": list(rng.normal(size=2) * 10.0 ** rng.uniform(-8, -5)),
+                },
+                "drive.orientation": rng.uniform(-3.0, 3.0),
+                "drive.pin_radius": rng.choice([0.0, 1.0]) * rng.uniform(1e-7, 2e-6),
+                "gears.pinion_hub_adhesion": 1e-7 if scene.gears.pinion_hub_radius > 0.0 else 0.0,
+                "gears.gear_axial_load": rng.choice([0.0, 1e-7]),
+                "gears.gear_dimple_radius": 5e-6,
+            }
+        )
     m, y = standing(scene)
     m.scene.torque[1].constant = 0.0
     forces_at_shafts(m, 0.0, y)
@@ -154,7 +201,13 @@ def largest_push(m, y, rng):
     m.scene.torque[0].constant = 0.0
     _, _, gear = forces_at_shafts(m, 0.0, y)
     own, notes = m.scene.friction, m.work.notes.pair[: m.work.notes.count]
-    dry, h1, h2 = float(m.scene.torque[1].constant), float(own.pinion_hub), float(own.gear_hub)
+    dry, h1, h2 = (
+        float(m.scene.torque[1].constant + own.gear_constant),
+        float(own.pinion_hub),
+        float(own.gear_hub),
+    )
+    pin = np.array(pin_force(m, 0.0, y, 0.0))
+    held = float(own.pinion_constant + own.pin * np.hypot(*pin))
     levers, limits, axes, total = [], [], [], np.zeros(2)
     for one in notes:
         coast = flank_of_history(m, int(one["history"])) == COAST
@@ -174,8 +227,11 @@ def largest_push(m, y, rng):
     def slope(f):
         return axes @ (total + f @ axes) / max(load(f), 1e-300)
 
+    def pinion_load(f):
+        return np.hypot(*(total - pin + f @ axes))
+
     def push(f):
-        return levers[:, 0] @ f + h1 * load(f)
+        return levers[:, 0] @ f + h1 * pinion_load(f) + held
 
     sides = [
         {
@@ -191,7 +247,7 @@ def largest_push(m, y, rng):
         answer = minimize(
             lambda f: -push(f),
             0.999 * start * limits,
-            jac=lambda f: -levers[:, 0] - h1 * slope(f),
+            jac=lambda f: -levers[:, 0] - h1 * axes @ (total - pin + f @ axes) / max(pinion_load(f), 1e-300),
             bounds=[(-one, one) for one in limits],
             constraints=sides,
             method="SLSQP",
@@ -202,11 +258,12 @@ def largest_push(m, y, rng):
     return best
 
 
-def test_a_train_rests_if_and_only_if_frictions_balance_it():
+@pytest.mark.parametrize("with_joints", [False, True])
+def test_a_train_rests_if_and_only_if_frictions_balance_it(with_joints):
     """50 drawn trains: the largest push that an optimisation finds is held but for 1e-8, and no more than it."""
     rng, trains = np.random.default_rng(5), 0
     while trains < 50:
-        m, y = drawn(rng)
+        m, y = drawn(rng, with_joints=with_joints)
         edge = largest_push(m, y, rng)
         if not math.isfinite(edge):
             continue
@@ -235,11 +292,12 @@ def test_what_holds_a_train_does_not_depend_on_what_it_was_held_by():
             assert rest_reserve(m, 0.0, y) == reserve
 
 
-def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip():
+@pytest.mark.parametrize("with_joints", [False, True])
+def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip(with_joints):
     """What is held is within its limit, and what slips goes on as the accelerations say, in 300 drawn trains."""
     rng, moving = np.random.default_rng(7), 0
     for _ in range(300):
-        m, y = drawn(rng)
+        m, y = drawn(rng, with_joints=with_joints)
         m.scene.torque[0].constant = rng.uniform(-1.0, 8.0) * float(m.scene.torque[1].constant)
         state, rates = y.copy(), np.zeros_like(y)
         begin_sliding(m, 0.0, state)
@@ -251,7 +309,7 @@ def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip():
         assert int(m.state.reversals) < 100
         size = abs(pinion) + abs(gear)
         assert m.state.slip * gear >= -1e-9 * size
-        if float(m.scene.friction.pinion_hub) > 0.0:
+        if int(m.scene.friction.pinion_rubs) != 0:
             assert m.state.pinion_slip * pinion >= -1e-9 * size
         own = m.scene.friction
         for one in m.work.notes.pair[: m.work.notes.count]:

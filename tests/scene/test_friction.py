@@ -7,9 +7,11 @@ from typing import Any
 import pytest
 
 import gearidae as gd
-from gearidae.scene.friction import friction_values, has_flank_friction, has_hub_friction
+from gearidae.scene.friction import friction_values, has_flank_friction
+from gearidae.scene.joints import has_joint_friction
 
 HIGH = gd.preset("teodorescu2009")
+ENGINE = {"name": "microengine", "radius": 1e-5, "force": 1e-5, "frequency": 600.0}
 HUBS = {"gears.pinion_hub_radius": "3 um", "gears.gear_hub_radius": "6 um"}
 
 
@@ -18,7 +20,7 @@ def test_presets_have_no_friction() -> None:
         scene = gd.preset(name)
         assert friction_values(scene) == {"bare": 0.0, "coated": 0.0, "mixed": 0.0}
         assert not has_flank_friction(scene)
-        assert not has_hub_friction(scene)
+        assert not has_joint_friction(scene)
 
 
 def test_the_monolayer_has_the_flanks_friction_unless_given() -> None:
@@ -47,7 +49,7 @@ def test_hubs_with_units() -> None:
     scene = HIGH.replace({"gears.hub_friction": 0.3, **HUBS})
     assert scene.gears is not None
     assert (scene.gears.pinion_hub_radius, scene.gears.gear_hub_radius) == (3e-6, 6e-6)
-    assert has_hub_friction(scene)
+    assert has_joint_friction(scene)
     assert not has_flank_friction(scene)
 
 
@@ -74,6 +76,24 @@ def test_hubs_with_units() -> None:
             {"gears.hub_friction": 1.0, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 139e-6},
             "gears.gear_hub_radius",
         ),
+        ({"gears.pinion_hub_adhesion": 1e-6}, "gears.pinion_hub_radius"),
+        ({"gears.gear_axial_load": 1e-6}, "gears.gear_dimple_radius"),
+        ({"gears.gear_axial_load": -1e-6}, "gears.gear_axial_load"),
+        ({"drive.pin_radius": 1e-6}, "drive.pin_radius"),
+        ({"drive.pin_friction": 0.3}, "drive.pin_friction"),
+        ({"drive.orientation": 0.3}, "drive.orientation"),
+        ({"drive.law": ENGINE, "drive.pin_friction": 0.3}, "drive.pin_radius"),
+        (
+            {
+                "drive.law": ENGINE,
+                "drive.pin_radius": 2e-6,
+                "drive.pin_friction": 2.0,
+                "gears.hub_friction": 2.0,
+                "gears.pinion_hub_radius": 3.1e-6,
+            },
+            "drive.pin_radius",  # takes 4 + 6.2 um of an arm of 10 um
+        ),
+        ({"load.law": ENGINE}, "load.law.name"),
     ],
 )
 def test_bad_friction_is_refused_by_its_key(changes: dict[str, Any], key: str) -> None:

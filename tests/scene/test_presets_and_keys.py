@@ -13,7 +13,8 @@ from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, load_cas
 CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
     "gears": "density pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
-    "face_width hub_friction pinion_hub_radius gear_hub_radius",
+    "face_width hub_friction pinion_hub_radius gear_hub_radius pinion_hub_adhesion gear_hub_adhesion "
+    "pinion_axial_load gear_axial_load pinion_dimple_radius gear_dimple_radius",
     "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order "
     "static_error.amplitude static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
@@ -21,7 +22,7 @@ CONTRACT = {
     "coating": "sam_fraction energy hamaker pairing thickness pinion_fraction gear_fraction pinion_table gear_table "
     "friction shear_strength",
     "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
-    "law.name law.parameters speed speed_gain",
+    "law.name law.parameters orientation pin_friction pin_radius speed speed_gain",
     "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
     "harmonic.phase law law.name law.parameters",
     "initial": "gear_speed gap mesh_phase",

@@ -26,7 +26,8 @@ from gearidae.records.energy import LOSSES
 from gearidae.records.quantity import Totals
 from gearidae.records.standing import Holding
 from gearidae.scene import Scene
-from gearidae.scene.friction import has_flank_friction, has_hub_friction
+from gearidae.scene.friction import has_flank_friction
+from gearidae.scene.joints import has_joint_friction
 
 PIECE = 2**18
 """Samples, or events, looked at together."""
@@ -191,7 +192,7 @@ class _Events:
         assert scene.load is not None
         self.counts = dict.fromkeys(EventKind, 0)
         self._dry, self._start = scene.load.is_dry, start
-        self._hubs, self._rubs = has_hub_friction(scene), has_flank_friction(scene)
+        self._hubs, self._rubs = has_joint_friction(scene), has_flank_friction(scene)
         self._gear, self._flanks = False, set[tuple[int, int]]()  # what is held
         self._since: float | None = None  # when the gear came to rest
         self._total = 0.0

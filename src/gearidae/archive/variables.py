@@ -19,6 +19,8 @@ from gearidae.records import (
     COUNTERS,
     ELASTIC_SAMPLES,
     GEAR_SAMPLES,
+    HUB_SAMPLES,
+    PIN_SAMPLES,
     POPULATION_SAMPLES,
     ROLLER_SAMPLES,
     EventKind,
@@ -97,7 +99,14 @@ SAM_FRACTION = Variable(
 
 SAMPLES: Mapping[str, Variable] = {
     column.name: Variable(column.name, ("time",), column.units, column.long_name, comment=column.comment)
-    for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES, *ELASTIC_SAMPLES, *POPULATION_SAMPLES)
+    for column in (
+        *GEAR_SAMPLES,
+        *ROLLER_SAMPLES,
+        *ELASTIC_SAMPLES,
+        *POPULATION_SAMPLES,
+        *HUB_SAMPLES,
+        *PIN_SAMPLES,
+    )
 }
 
 _EVENTS = (

@@ -17,7 +17,8 @@ from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
-from gearidae.scene.friction import has_flank_friction, has_hub_friction
+from gearidae.scene.friction import has_flank_friction
+from gearidae.scene.joints import has_joint_friction
 from gearidae.scene.sampled import columns_of
 from gearidae.scene.validity_row import contact_subject, mean_note
 
@@ -132,7 +133,7 @@ def _friction(scene: Scene) -> Rows:
             yield "lost to flank friction", "unknown", "no mean torque presses the teeth together"
         else:
             yield "lost to flank friction", f"{100 * loss:.3g} %", "of the drive's work, at a constant force"
-    if has_hub_friction(scene):
+    if has_joint_friction(scene):
         lost = 1.0 - hub_share(geometry, coefficient, radii)
         yield "lost to hub friction", f"{100 * lost:.3g} %", "of the drive's work"
         start = hub_starting_torque(geometry, scene.load.torque, coefficient, radii)

@@ -87,11 +87,39 @@ ELASTIC_SAMPLES: Final = (
     Column("min_separation", "m", "smallest distance of the flanks, deflection included"),
 )
 
+HUB_SAMPLES: Final = (
+    Column(
+        "pinion_hub_load",
+        "N",
+        "load of the pinion's hub",
+        "size of the vector sum of the force of a pin and the mesh forces; of gears at rest without flank friction",
+        "0.3",
+    ),
+    Column(
+        "gear_hub_load",
+        "N",
+        "load of the gear's hub",
+        "size of the vector sum of the mesh forces; of gears at rest without flank friction",
+        "0.3",
+    ),
+)
+PIN_SAMPLES: Final = (
+    Column(
+        "pin_load",
+        "N",
+        "load of the pin that drives the pinion",
+        "size of the force of the torque law",
+        "0.3",
+    ),
+)
+
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
 POPULATION_COLUMNS = tuple(column.name for column in POPULATION_SAMPLES)
-"""Additional columns of elastic contacts and of populations, after the others."""
+HUB_COLUMNS = tuple(column.name for column in HUB_SAMPLES)
+PIN_COLUMNS = tuple(column.name for column in PIN_SAMPLES)
+"""Additional columns of elastic contacts, of populations, of hubs and of a pin, after the others."""
 
 
 def _places(*columns: str) -> Any:
@@ -108,9 +136,16 @@ ROLLER_POPULATION: Final = _places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
 
 
 def sampled_columns(
-    *, roller: bool, bodies: str = "rigid", roughness: str = "statistical"
+    *,
+    roller: bool,
+    bodies: str = "rigid",
+    roughness: str = "statistical",
+    hubs: bool = False,
+    pin: bool = False,
 ) -> tuple[str, ...]:
-    """Names of what is sampled of gears or a roller, by ``contact.bodies`` and ``contact.roughness``."""
+    """Names of what is sampled of gears or a roller, by ``contact.bodies``, ``contact.roughness`` and joints."""
     more = ELASTIC_COLUMNS if bodies == "elastic" else ()
     more += POPULATION_COLUMNS if roughness == "discrete" else ()
+    more += HUB_COLUMNS if hubs else ()
+    more += PIN_COLUMNS if pin else ()
     return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + more

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
-from gearidae.records.quantity import ENERGY, Quantity, Totals
+from gearidae.records.quantity import ENERGY, Quantity, Totals, Unit
 
 _energy = partial(Quantity, unit=ENERGY)
 _work, _loss = partial(_energy, sign=1, archive=True), partial(_energy, sign=-1)
@@ -50,6 +50,19 @@ ENERGY_SUMS: Final = (
         },
         group="friction",
         since="0.2",
+    ),
+    _loss("pin_loss", "energy lost to friction of the pin", archive=True, group="friction", since="0.3"),
+    Quantity(
+        "sliding",
+        "loads of the joints times the ways of their surfaces",
+        Unit("F sigma", "N m", force=1, length=1),
+        shape=(3,),
+        archive={
+            "pinion_hub_sliding": "load of the pinion's hub times the way of its surface, summed up",
+            "gear_hub_sliding": "load of the gear's hub times the way of its surface, summed up",
+            "pin_sliding": "load of the pin times the way of its surface, summed up",
+        },
+        since="0.3",
     ),
     _energy("throughput", "all works and changes of kinetic energy without regard to sign", archive=True),
     _energy("start_stored", "energy stored in contacts at the start"),

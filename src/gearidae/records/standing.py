@@ -24,6 +24,8 @@ class Holding(IntFlag):
     HUB_FRICTION = 2
     FLANK_FRICTION = 4
     ADHESION = 8
+    PIN_FRICTION = 16
+    AXIAL_LOAD = 32
 
     @property
     def words(self) -> str:

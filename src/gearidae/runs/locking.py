@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from gearidae.mesh.friction import locking_coefficients
-from gearidae.scene.friction import friction_values, has_flank_friction, has_hub_friction
+from gearidae.scene.friction import friction_values, has_flank_friction
+from gearidae.scene.joints import joints
 from gearidae.scene.validity_row import ValidityRow
 
 if TYPE_CHECKING:
@@ -24,11 +25,9 @@ def locking_rows(scene: Scene) -> Iterator[ValidityRow]:
     if has_flank_friction(scene) and scene.contact.friction_law == "coulomb":
         locks = min(locking_coefficients(geometry))
         yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")
-    if has_hub_friction(scene):
-        ratios = (
-            gears.pinion_hub_radius / geometry.base_radius_pinion,
-            gears.gear_hub_radius / geometry.base_radius_gear,
-        )
+    bases = {"pinion hub": geometry.base_radius_pinion, "gear hub": geometry.base_radius_gear}
+    ratios = [joint.radius / bases[joint.name] for joint in joints(scene) if joint.name in bases]
+    if gears.hub_friction > 0.0 and any(ratios):
         quantity, coefficient = "coefficient of friction of the hubs", gears.hub_friction
         yield _near_locking("locking_hubs", quantity, coefficient, 1.0 / max(ratios), "hubs")
 

@@ -17,7 +17,8 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.mesh.pair_contact import PairContact, asperity_stiffness
 from gearidae.runs.estimates import balanced_speed, mean_drive_torque, rest_of
 from gearidae.scene.combinations import may_deflect
-from gearidae.scene.friction import has_flank_friction, has_hub_friction
+from gearidae.scene.friction import has_flank_friction
+from gearidae.scene.joints import has_joint_friction
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -91,7 +92,7 @@ def run_time(scene: Scene) -> RunTime:
         steps = _STEPS_A_PASSAGE * _passages(scene)
     rate, frequency, load = max(oscillations)
     cost, setup = _RIGID_STEP, _SETUP
-    if has_flank_friction(scene) or has_hub_friction(scene):
+    if has_flank_friction(scene) or has_joint_friction(scene):
         cost = _FRICTION_STEP
     if _is_elastic(scene, rest.contact, load):
         cost, setup = max(cost, _ELASTIC_STEP), _ELASTIC_SETUP

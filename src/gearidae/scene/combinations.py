@@ -11,7 +11,8 @@ from itertools import combinations as pairs_of
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearidae.errors import SceneError
-from gearidae.scene.friction import has_flank_friction, has_hub_friction
+from gearidae.scene.friction import has_flank_friction
+from gearidae.scene.joints import joints
 from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
@@ -46,7 +47,12 @@ FEATURES: Final = {
     "attraction": Feature("surface.hamaker", lambda scene: scene.attracts),
     "coulomb friction": Feature("contact.friction", lambda scene: _flanks_rub(scene, "coulomb")),
     "shear friction": Feature("contact.shear_strength", lambda scene: _flanks_rub(scene, "shear")),
-    "hub friction": Feature("gears.hub_friction", has_hub_friction),
+    "hub friction": Feature(
+        "gears.hub_friction", lambda scene: any(one.holding and one.name != "pin" for one in joints(scene))
+    ),
+    "pin friction": Feature(
+        "drive.pin_radius", lambda scene: any(one.holding and one.name == "pin" for one in joints(scene))
+    ),
     "dry resistance": Feature("load.torque", lambda scene: scene.load is not None and scene.load.is_dry),
     "maugis asperities": Feature("contact.asperity", lambda scene: scene.contact.asperity == "maugis"),
     "independent coatings": Feature("coating.pairing", lambda scene: scene.coating.pairing == "independent"),

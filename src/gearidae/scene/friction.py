@@ -1,8 +1,8 @@
-"""Friction of flanks and hubs: the values of each material, and what does not go together."""
+"""Friction of flanks: the values of each material, and what does not go together."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from gearidae.asperities import has_area, law_names
 from gearidae.errors import SceneError
@@ -10,8 +10,6 @@ from gearidae.mesh.friction import locking_coefficients
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
-
-_HUBS: Final = {"pinion_hub_radius": "pinion", "gear_hub_radius": "gear"}
 
 
 def friction_values(scene: Scene) -> dict[str, float]:
@@ -43,17 +41,6 @@ def has_flank_friction(scene: Scene) -> bool:
     return any(values[one.name] > 0.0 for one in scene.materials() if one.share > 0.0)
 
 
-def has_hub_friction(scene: Scene) -> bool:
-    """Whether a hub of a scene has friction."""
-    gears = scene.gears
-    return gears is not None and gears.hub_friction > 0.0 and any(getattr(gears, key) for key in _HUBS)
-
-
-def has_friction(scene: Scene) -> bool:
-    """Whether flanks or a hub of a scene have friction."""
-    return has_flank_friction(scene) or has_hub_friction(scene)
-
-
 def check_friction(scene: Scene) -> None:
     """Refuse friction that a scene of gears cannot have.
 
@@ -63,7 +50,6 @@ def check_friction(scene: Scene) -> None:
         Naming the key.
     """
     _check_law(scene)
-    _check_hubs(scene)
     locks, values = min(locking_coefficients(scene.geometry)), friction_values(scene)
     for key, value in (("contact.friction", values["bare"]), ("coating.friction", values["coated"])):
         if scene.contact.friction_law == "coulomb" and value >= locks:
@@ -124,22 +110,3 @@ def _check_law(scene: Scene) -> None:
     for key, value in others.items():
         if value:
             raise SceneError(key, value, f"must be 0 or left out, or contact.friction_law must be {wanted}")
-
-
-def _check_hubs(scene: Scene) -> None:
-    """Refuse hubs without a radius, and those that lock."""
-    gears = scene.gears
-    assert gears is not None
-    if gears.hub_friction == 0.0:
-        return
-    radii = {"pinion": scene.geometry.base_radius_pinion, "gear": scene.geometry.base_radius_gear}
-    if not has_hub_friction(scene):
-        raise SceneError("gears.pinion_hub_radius", 0.0, "a hub must have a radius with gears.hub_friction")
-    for key, name in _HUBS.items():
-        radius = getattr(gears, key)
-        if radius * gears.hub_friction >= radii[name]:
-            raise SceneError(
-                f"gears.{key}",
-                radius,
-                f"must be below {radii[name] / gears.hub_friction:.4g} m: the hub locks the {name} from there on",
-            )

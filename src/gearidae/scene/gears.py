@@ -16,6 +16,7 @@ from gearidae.scene.tables import one_or_more
 Inertia = Annotated[float, Quantity(unit="kg m^2", at_least=1e-40, at_most=1)]
 # the disc of one atom's thickness and the smallest base radius has 1e-38 kg m^2
 HubRadius = Annotated[float, Quantity(unit="m", at_least=0, at_most=1, least=1e-10, shown=("um", -6))]
+JointForce = Annotated[float, Quantity(unit="N", at_least=0, at_most=1, shown=("uN", -6))]
 Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]
 
 
@@ -71,6 +72,18 @@ class Gears(Group):
     gear_hub_radius: HubRadius = Field(
         default=0.0, description="radius of the gear's hub, 0 for one without friction"
     )
+    pinion_hub_adhesion: JointForce = Field(
+        default=0.0, description="adhesion of the pinion's hub, which its friction takes for a load"
+    )
+    gear_hub_adhesion: JointForce = Field(default=0.0, description="the same of the gear's hub")
+    pinion_axial_load: JointForce = Field(
+        default=0.0, description="load along the pinion's axis: weight, electrostatic pull on the substrate"
+    )
+    gear_axial_load: JointForce = Field(default=0.0, description="the same of the gear")
+    pinion_dimple_radius: HubRadius = Field(
+        default=0.0, description="radius at which dimples carry the axial load of the pinion"
+    )
+    gear_dimple_radius: HubRadius = Field(default=0.0, description="the same of the gear")
 
     @model_validator(mode="before")
     @classmethod

@@ -16,6 +16,7 @@ from gearidae.scene.combinations import check_combinations
 from gearidae.scene.friction import check_friction, check_no_friction
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, did_you_mean, shorten
+from gearidae.scene.joints import check_joints
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import (
     check_gaps,
@@ -179,6 +180,7 @@ class Scene(Group):
         check_reach(self)
         check_population(self)
         check_friction(self)
+        check_joints(self)
 
     @property
     def geometry(self) -> Geometry:

@@ -14,10 +14,12 @@ from typing import Annotated, Any, Final, Self
 from pydantic import BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from gearidae.errors import SceneError
+from gearidae.scene.gears import HubRadius
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.knots import Knots, Resistance, ResistanceSchedule, Schedule, Scheduled, Time, Torque
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Phase, Quantity
+from gearidae.scene.surface import OptionalFriction
 from gearidae.scene.tables import increasing, one_or_more, pairs
 from gearidae.scene.units import to_si
 from gearidae.torques import Parameter, torque_law, torque_names
@@ -178,6 +180,14 @@ class Drive(Group):
     ] = Field(default=None, description="speed of the pinion that the drive holds, a number or a schedule")
     speed_gain: Annotated[float, Quantity(unit="N m s/rad", at_least=0, at_most=1e12)] = Field(
         default=0.0, description="torque over what the pinion's speed is short of that speed"
+    )
+
+    orientation: Phase = Field(
+        default=0.0, description="angle from the line of centres to the x axis of a law's force"
+    )
+    pin_radius: HubRadius = Field(default=0.0, description="radius of the pin joint of a law with a force")
+    pin_friction: OptionalFriction = Field(
+        default=None, description="coefficient of friction of that joint; default gears.hub_friction"
     )
 
     @model_validator(mode="after")

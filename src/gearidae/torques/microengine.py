@@ -24,13 +24,15 @@ _FIRST_KNOT = 5
         Parameter("phase", "rad", 0.0, description="of the forces at time 0"),
         Parameter("frequency", "Hz", over_time=True, description="of the forces, a number or a schedule"),
     ),
+    force=True,
 )
-def microengine(t: float, angle: float, speed: float, p: Parameters) -> float:
-    """Torque [N m] of two comb drives on the pin, ``M = r (Fy cos(angle) - Fx sin(angle))``.
+def microengine(t: float, angle: float, speed: float, p: Parameters) -> tuple[float, float, float]:
+    """Torque [N m] of two comb drives on the pin, ``M = r (Fy cos(angle) - Fx sin(angle))``, and the force on it [N].
 
     ``Fx = -F0 sin(psi) - kx r cos(angle)`` and ``Fy = F0 cos(psi) - ky r sin(angle)`` with
     ``psi = phase + 2 pi integral of frequency``. With ``kx = ky`` the springs do no work over the circle and
-    ``M = r F0 cos(psi - angle)``: a synchronous motor, which pulls out at a load of ``r F0``.
+    ``M = r F0 cos(psi - angle)``: a synchronous motor, which pulls out at a load of ``r F0``. The pin is at the angle
+    ``angle`` from the x axis of the force.
 
     Parameters
     ----------
@@ -60,4 +62,4 @@ def microengine(t: float, angle: float, speed: float, p: Parameters) -> float:
     c, s = math.cos(angle), math.sin(angle)
     x = -p[1] * math.sin(psi) - p[2] * p[0] * c
     y = p[1] * math.cos(psi) - p[3] * p[0] * s
-    return float(p[0] * (y * c - x * s))
+    return p[0] * (y * c - x * s), x, y

@@ -69,6 +69,8 @@ class TorqueLaw:
         The parameters, if they have names; empty for a list of numbers.
     takes_angle : bool
         Whether the function has four arguments.
+    has_force : bool
+        Whether it returns the force on the shaft, too.
     """
 
     name: str
@@ -76,12 +78,15 @@ class TorqueLaw:
     parameters: int
     named: tuple[Parameter, ...] = ()
     takes_angle: bool = False
+    has_force: bool = False
 
 
 _LAWS: Final = Registry[TorqueLaw]("gearidae.torques", "law.name", "torque law")
 
 
-def register_torque(name: str, *, parameters: int | Iterable[str | Parameter] = 0) -> Callable[[Law], Law]:
+def register_torque(
+    name: str, *, parameters: int | Iterable[str | Parameter] = 0, force: bool = False
+) -> Callable[[Law], Law]:
     """Register a torque law by a name; a decorator of its function.
 
     The function is ``torque(t, speed, p)`` or ``torque(t, angle, speed, p)`` with the time [s], angle [rad] and angular
@@ -106,6 +111,11 @@ def register_torque(name: str, *, parameters: int | Iterable[str | Parameter] = 
     parameters : int or iterable of str or Parameter, optional
         Number of parameters, which a scene gives as a list of numbers ``parameters``; or their names, under which a
         scene gives numbers in SI units or texts with a unit. All are required but those with a default.
+    force : bool, optional
+        Whether the function returns ``(torque, fx, fy)``: the torque, and the force [N] by which a drive pushes the
+        pinion's shaft, in axes fixed to the frame. The x axis goes from the centre of the pinion to that of the gear,
+        turned by ``drive.orientation``; y is ahead of it as the pinion turns. Such a drive pushes with a pin: its force
+        goes through the pinion's hub and the pin joint. Without it a drive is a couple. A load has no force.
 
     Returns
     -------
@@ -142,7 +152,7 @@ def register_torque(name: str, *, parameters: int | Iterable[str | Parameter] = 
             raise SceneError(
                 "law.name", name, f"takes {arguments} arguments; must take t, speed, p or t, angle, speed, p"
             )
-        _LAWS.add(name, TorqueLaw(name, function, count, named, takes_angle=arguments == 4))
+        _LAWS.add(name, TorqueLaw(name, function, count, named, takes_angle=arguments == 4, has_force=force))
         return function
 
     return register

@@ -15,7 +15,8 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import record
-from gearidae.engine.friction.forces import NO_FORCE, Shafts, has_gear_element, has_hubs, solve_shafts
+from gearidae.engine.friction.forces import NO_FORCE, Shafts, has_gear_element, solve_shafts
+from gearidae.engine.friction.hubs import has_hubs
 from gearidae.engine.friction.pairs import RUBS, lever_rate, levers
 from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
 from gearidae.engine.model.record_types import (
@@ -90,7 +91,7 @@ def sliding_guard(m: Model, t: float, y: Floats) -> float:
         least = min(least, shafts.margin + 2.0 * NO_FORCE, shafts.corner)
     if has_gear_element(m) and state.slip != 0.0:
         least = min(least, state.slip * w + STILL)
-    if m.scene.friction.pinion_hub > 0.0 and state.pinion_slip != 0.0:
+    if m.scene.friction.pinion_rubs != 0 and state.pinion_slip != 0.0:
         least = min(least, state.pinion_slip * turn + STILL)
     return least
 
@@ -187,8 +188,8 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
                 kind, history = HELD_PAIR, noted.history
     if has_gear_element(m) and state.slip != 0.0 and _has_fallen(state.slip, w, fresh):
         kind = HELD_GEAR
-    hub = m.scene.friction.pinion_hub > 0.0 and state.pinion_slip != 0.0
-    if hub and _has_fallen(state.pinion_slip, turn, fresh):
+    rubs = m.scene.friction.pinion_rubs != 0 and state.pinion_slip != 0.0
+    if rubs and _has_fallen(state.pinion_slip, turn, fresh):
         kind = HELD_PINION
     if state.hold == AT_REST:
         list_elements(m, t, y)

@@ -1,4 +1,7 @@
-"""Losses by friction of flanks and hubs, integrated over every step from powers and their rates at both ends."""
+"""Losses by friction of flanks and joints, integrated over every step from powers and their rates at both ends.
+
+The sliding of a joint, its load times the way of its surfaces, is integrated with them.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +21,8 @@ from gearidae.engine.followers.exposures.rubbing import (
 )
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral, integral_with_middle
-from gearidae.engine.friction.forces import Shafts, has_hubs, solve_shafts
-from gearidae.engine.friction.hubs import Mesh
+from gearidae.engine.friction.forces import Shafts, solve_shafts
+from gearidae.engine.friction.hubs import Loads, Mesh, has_hubs, pin_rate, vector_sum
 from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
 from gearidae.engine.model.record_types import HELD_PAIR
 from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
@@ -27,7 +30,10 @@ from gearidae.engine.motion.pair_forces import follow_slopes, is_eliminated, set
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, static_error
 
-_POWERS: Final = 4
+_POWERS: Final = 8
+"""Of the drive and the coast flank, of both hubs and the pin; and load times sliding speed of hubs and pin."""
+_LOSSES: Final = 5
+"""How many of them are losses."""
 _AHEAD: Final = 1e-6
 """Over tau: how far ahead the rate of a load is found that has no closed form."""
 _OUTER: Final = 0.5 * math.sqrt(0.6)
@@ -37,7 +43,8 @@ _OUTER: Final = 0.5 * math.sqrt(0.6)
 @compiled_once(FRICTION)
 def note_rubbing(m: Model, t: float, y: Floats) -> None:
     """Note the powers of friction and their rates, with the present directions of slip."""
-    ahead = _load_ahead(m, t, y) if has_hubs(m) and m.state.hold == HELD_PAIR else 0.0
+    rolls = m.scene.friction.joints != 0 and m.state.hold == HELD_PAIR
+    ahead = _loads_ahead(m, t, y) if rolls else Loads(0.0, 0.0)
     turn, pinion, gear = forces_at_shafts(m, t, y)
     if m.scene.nodes > 0:
         follow_slopes(m, t, y, 0.0, y)
@@ -67,23 +74,57 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         else:
             drive += noted.force_rate
             drive_friction += rate
-    if found.hubs != 0.0:
-        if m.state.hold == HELD_PAIR:
-            load_rate = (ahead - found.hubs) / _AHEAD
+    if m.scene.friction.joints != 0:
+        force_rate = pin_rate(m, t, y, turn, found.pinion)
+        if rolls:
+            load_rate = Loads(
+                (ahead.pinion - found.loads.pinion) / _AHEAD, (ahead.gear - found.loads.gear) / _AHEAD
+            )
         else:
-            load_rate = _load_rate(m, found, Mesh(drive, coast, drive_friction, coast_friction))
-        own, slip = m.scene.friction, m.state.slip if m.scene.friction.gear_hub > 0.0 else 0.0
-        r.power[2] = own.pinion_hub * found.hubs * m.state.pinion_slip * turn
-        r.power_rate[2] = (
-            own.pinion_hub * m.state.pinion_slip * (load_rate * turn + found.hubs * found.pinion)
-        )
-        r.power[3] = own.gear_hub * found.hubs * slip * y[W]
-        r.power_rate[3] = own.gear_hub * slip * (load_rate * y[W] + found.hubs * found.gear)
+            load_rate = _load_rate(m, found, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
+        _note_joints(m, found, load_rate, force_rate, turn, y[W])
+
+
+@compiled
+def _note_joints(
+    m: Model, found: Shafts, load_rate: Loads, force_rate: tuple[float, float], turn: float, w: float
+) -> None:
+    """Note the powers of hubs and pin, for the rates of their loads and of the force of the pin."""
+    own, pin = m.scene.friction, math.hypot(found.pin[0], found.pin[1])
+    pin_load_rate = 0.0
+    if pin > 0.0:
+        pin_load_rate = (found.pin[0] * force_rate[0] + found.pin[1] * force_rate[1]) / pin
+    turns, gear_turns = math.copysign(1.0, turn), math.copysign(1.0, w)
+    slip, gear_slip = m.state.pinion_slip, m.state.slip if own.gear_rubs != 0 else 0.0
+    pinion, gear = own.pinion_hub * found.loads.pinion, own.gear_hub * found.loads.gear
+    _note(
+        m,
+        2,
+        slip * (pinion + own.pinion_constant),
+        slip * own.pinion_hub * load_rate.pinion,
+        turn,
+        found.pinion,
+    )
+    _note(
+        m, 3, gear_slip * (gear + own.gear_constant), gear_slip * own.gear_hub * load_rate.gear, w, found.gear
+    )
+    _note(m, 4, slip * own.pin * pin, slip * own.pin * pin_load_rate, turn, found.pinion)
+    arms = turns * own.pinion_arm, gear_turns * own.gear_arm, turns * own.pin_arm
+    _note(m, 5, arms[0] * found.loads.pinion, arms[0] * load_rate.pinion, turn, found.pinion)
+    _note(m, 6, arms[1] * found.loads.gear, arms[1] * load_rate.gear, w, found.gear)
+    _note(m, 7, arms[2] * pin, arms[2] * pin_load_rate, turn, found.pinion)
+
+
+@compiled(inline=True)
+def _note(m: Model, which: int, force: float, force_rate: float, speed: float, acceleration: float) -> None:
+    """Note a power and its rate."""
+    m.work.rubbing.power[which] = force * speed
+    m.work.rubbing.power_rate[which] = force_rate * speed + force * acceleration
 
 
 @compiled(makes_arrays=True)
-def _load_ahead(m: Model, t: float, y: Floats) -> float:
-    """Load of the hubs a short time later: the friction that holds a pair changes with all forces at both shafts."""
+def _loads_ahead(m: Model, t: float, y: Floats) -> Loads:
+    """Loads of the hubs a short time later: the friction that holds a pair changes with all forces at both shafts."""
     turn, pinion, gear = forces_at_shafts(m, t, y)
     found, later = solve_shafts(m, t, y, turn, pinion, gear), np.zeros(y.size)
     if m.scene.nodes > 0:
@@ -94,20 +135,19 @@ def _load_ahead(m: Model, t: float, y: Floats) -> float:
     later[PHASE] = y[PHASE] + _AHEAD * m.scene.phase_rate * y[W]
     later[W] = y[W] + _AHEAD * found.gear
     turn, pinion, gear = forces_at_shafts(m, t + _AHEAD, later)
-    return solve_shafts(m, t + _AHEAD, later, turn, pinion, gear).hubs
+    return solve_shafts(m, t + _AHEAD, later, turn, pinion, gear).loads
 
 
 @compiled(inline=True)
-def _load_rate(m: Model, found: Shafts, rate: Mesh) -> float:
-    """Rate of the hubs' load, for the rates of the forces that it is the vector sum of."""
-    own, now = m.scene.friction, found.mesh
-    half = now.drive * rate.drive + now.coast * rate.coast
-    half += now.drive_friction * rate.drive_friction + now.coast_friction * rate.coast_friction
-    half -= own.cosine * (rate.drive * now.coast + now.drive * rate.coast)
-    half -= own.cosine * (rate.drive_friction * now.coast_friction + now.drive_friction * rate.coast_friction)
-    half += own.sine * (rate.drive * now.coast_friction + now.drive * rate.coast_friction)
-    half -= own.sine * (rate.drive_friction * now.coast + now.drive_friction * rate.coast)
-    return half / found.hubs
+def _load_rate(m: Model, found: Shafts, rate: Mesh, force_rate: tuple[float, float]) -> Loads:
+    """Rates of the hubs' loads, for the rates of the forces that they are the moduli of vector sums of."""
+    along, over = vector_sum(m, found.mesh)
+    along_rate, over_rate = vector_sum(m, rate)
+    pinion = (along - found.pin[0]) * (along_rate - force_rate[0])
+    pinion += (over - found.pin[1]) * (over_rate - force_rate[1])
+    gear = along * along_rate + over * over_rate
+    by_pinion, by_gear = found.loads.pinion, found.loads.gear
+    return Loads(pinion / by_pinion if by_pinion != 0.0 else 0.0, gear / by_gear if by_gear != 0.0 else 0.0)
 
 
 @compiled_once(FRICTION)
@@ -133,7 +173,7 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     h, start = t - r.time, r.time
     if h == 0.0:
         return
-    first = _powers(m)
+    first, first_rate = _copied(m.work.rubbing.power), _copied(m.work.rubbing.power_rate)
     bends = root and (m.scene.population.flanks != 0 or has_hubs(m))
     if bends and a.order_used > 0:
         _book_inside(m, start, h, between, rates)
@@ -145,19 +185,18 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     if halved:
         _note_within(m, start + 0.5 * h, between, rates)
         add_rubbing(m, 16.0 / 30.0 * h, 0.0)
-        middle = _powers(m)
+        middle = _copied(m.work.rubbing.power)
     note_rubbing(m, t, y)
     add_rubbing(m, end, -bend)
     if keeps_rubbing(m):
         divide_rubbing(m, between if halved else y)
-    last = _powers(m)
     for i in range(_POWERS):
-        j = _POWERS + i
-        rate = 2.0 * (last[i] - first[i]) / h - first[j] if bends else last[j]  # of a parabola
-        loss = integral(h, first[i], last[i], first[j], rate)
-        error = error_estimate(h, first[i], last[i], first[j], rate)
+        last, last_rate = r.power[i], r.power_rate[i]
+        rate = 2.0 * (last - first[i]) / h - first_rate[i] if bends else last_rate  # of a parabola
+        loss = integral(h, first[i], last, first_rate[i], rate)
+        error = error_estimate(h, first[i], last, first_rate[i], rate)
         if halved:
-            rough, loss = loss, integral_with_middle(h, first[i], middle[i], last[i], first[j], last[j])
+            rough, loss = loss, integral_with_middle(h, first[i], middle[i], last, first_rate[i], last_rate)
             error = min(error, abs(loss - rough) / 16.0)
         _book(m, i, loss, error)
 
@@ -189,16 +228,20 @@ def _book_inside(m: Model, start: float, h: float, between: Floats, rates: Float
 def _book(m: Model, i: int, loss: float, error: float) -> None:
     """Add a loss of the i-th power, and its error."""
     e = m.state.energy
+    if i >= _LOSSES:
+        e.sliding[i - _LOSSES] += loss
+        return
     if i < 2:
         e.flank_loss[i] += loss
-    else:
+    elif i < 4:
         e.hub_loss[i - 2] += loss
+    else:
+        e.pin_loss += loss
     e.loss_error += error
     e.throughput += abs(loss)
 
 
 @compiled(inline=True)
-def _powers(m: Model) -> tuple[float, float, float, float, float, float, float, float]:
-    """Powers that have been noted last, then their rates."""
-    p, r = m.work.rubbing.power, m.work.rubbing.power_rate
-    return p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3]
+def _copied(p: Floats) -> tuple[float, float, float, float, float, float, float, float]:
+    """Numbers that have been noted last, which are written over."""
+    return p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]

@@ -5,13 +5,16 @@ the forces Q of both base circles:
 
 .. math::
 
-    |Q_1 - \sum p_i f_i| \le h_1 N, \qquad |Q_2 - \sum q_i f_i| \le D + h_2 N, \qquad N = |\sum \mathbf F|.
+    |Q_1 - \sum p_i f_i| \le D_1 + h_1 N_1, \qquad |Q_2 - \sum q_i f_i| \le D_2 + h_2 N_2,
 
-With N as a parameter the frictions that balance are a convex set that grows with it, and the modulus of a vector sum is
-convex in the frictions: if any f balances, a vertex of that set does. On a flank, levers and load are linear in
-:math:`\sum f_i` and :math:`\sum r_i f_i`, which make a zonotope in the plane. Its vertices and edges, of both flanks
-together, with no, one or both of the inequalities at their bounds, are all vertices there are; each is the solution of
-a quadratic equation in N.
+    N_1 = |\sum \mathbf F - \mathbf P|, \qquad N_2 = |\sum \mathbf F|
+
+with the force P of a pin. The modulus of a vector sum is convex in the frictions, so that each inequality keeps at its
+bound the whole half-space behind its tangent plane. The farthest point in any direction of all that balances
+therefore lies where as many bounds meet as frictions are free: if any f balances, such a vertex does. On a flank,
+levers and loads are linear in :math:`\sum f_i` and :math:`\sum r_i f_i`, which make a zonotope in the plane. Its
+vertices and edges, of both flanks together, with no, one or both of the inequalities at their bounds, are all vertices
+there are; each is a solution for the loads, see `gearidae.engine.friction.hubs.consistent_loads`.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.friction.hubs import across, consistent_loads
+from gearidae.engine.friction.hubs import Loads, across, consistent_loads
 from gearidae.engine.model.record_types import HELD_GEAR
 from gearidae.engine.model.state import Model
 
@@ -37,22 +40,27 @@ class _Left(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """What may hold the shafts: coefficients of the load of the hubs, and dry resistance."""
+    """What may hold the shafts: coefficients of the loads of the hubs, and what does not depend on them."""
 
     pinion: float
     gear: float
-    dry: float
+    pinion_dry: float
+    gear_dry: float
+    pin: tuple[float, float]
 
 
 @compiled
 def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
     """Largest reserve of force of all vertices; below zero if and only if nothing balances."""
     found = m.work.rubbing
-    dry = 0.0
+    pinion_dry = gear_dry = 0.0
     for i in range(found.pairs, found.count):
         if found.element[i].hold == HELD_GEAR:
-            dry = found.element[i].limit
-    limits = _Limits(m.scene.friction.pinion_hub, m.scene.friction.gear_hub, dry)
+            gear_dry = found.element[i].limit
+        else:
+            pinion_dry = found.element[i].limit
+    pin = (found.pin[0], found.pin[1])
+    limits = _Limits(m.scene.friction.pinion_hub, m.scene.friction.gear_hub, pinion_dry, gear_dry, pin)
     free = _Left(pinion, gear, found.load[0], found.load[1])
     if found.pairs == 0:
         return _at_vertex(free, limits)
@@ -117,8 +125,19 @@ def _less(m: Model, left: _Left, i: int, side: float, end: float) -> _Left:
 @compiled(inline=True)
 def _at_vertex(left: _Left, limits: _Limits) -> float:
     """Reserve of both shafts where all frictions of the pairs are known."""
-    load = math.hypot(left.along, left.over)
-    return min(limits.pinion * load - abs(left.pinion), limits.dry + limits.gear * load - abs(left.gear))
+    x, z = limits.pin
+    loads = Loads(math.hypot(left.along - x, left.over - z), math.hypot(left.along, left.over))
+    return min(_reserve_of_pinion(limits, loads, left.pinion), _reserve_of_gear(limits, loads, left.gear))
+
+
+@compiled(inline=True)
+def _reserve_of_pinion(limits: _Limits, loads: Loads, force: float) -> float:
+    return limits.pinion_dry + limits.pinion * loads.pinion - abs(force)
+
+
+@compiled(inline=True)
+def _reserve_of_gear(limits: _Limits, loads: Loads, force: float) -> float:
+    return limits.gear_dry + limits.gear * loads.gear - abs(force)
 
 
 @compiled
@@ -128,19 +147,23 @@ def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
     first, second = across(m, one.coast != 0)
     for which in range(4):
         sign = 1.0 - 2.0 * (which % 2)
+        falls = gear_falls = 0.0
         if which < 2:
-            constant, falls = left.pinion / one.pinion, sign * limits.pinion / one.pinion
+            constant = (left.pinion - sign * limits.pinion_dry) / one.pinion
+            falls = sign * limits.pinion / one.pinion
         else:
-            constant, falls = (left.gear - sign * limits.dry) / one.gear, sign * limits.gear / one.gear
+            constant = (left.gear - sign * limits.gear_dry) / one.gear
+            gear_falls = sign * limits.gear / one.gear
         u = (left.along + constant * first, left.over + constant * second)
-        near, far, room = consistent_loads(u, (-falls * first, -falls * second))
+        by_pinion, by_gear = (-falls * first, -falls * second), (-gear_falls * first, -gear_falls * second)
+        near, far, room = consistent_loads(u, by_pinion, by_gear, limits.pin)
         for end in range(2):
-            load = far if end else near
-            friction = constant - falls * load
+            loads = far if end else near
+            friction = constant - falls * loads.pinion - gear_falls * loads.gear
             if which < 2:
-                other = limits.dry + limits.gear * load - abs(left.gear - friction * one.gear)
+                other = _reserve_of_gear(limits, loads, left.gear - friction * one.gear)
             else:
-                other = limits.pinion * load - abs(left.pinion - friction * one.pinion)
+                other = _reserve_of_pinion(limits, loads, left.pinion - friction * one.pinion)
             best = max(best, min(room, other, one.limit - abs(friction)))
     return best
 
@@ -160,17 +183,22 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
     two_first, two_second = across(m, two.coast != 0)
     for which in range(4):
         on_pinion, on_gear = 1.0 - 2.0 * (which % 2), 1.0 - 2.0 * (which // 2)
-        b, c, d = left.gear - on_gear * limits.dry, on_pinion * limits.pinion, on_gear * limits.gear
-        f, g = (left.pinion * two.gear - two.pinion * b), (one.pinion * b - left.pinion * one.gear)
-        f, g = f / determinant, g / determinant
-        f_falls = (c * two.gear - two.pinion * d) / determinant
-        g_falls = (one.pinion * d - c * one.gear) / determinant
+        a, b = left.pinion - on_pinion * limits.pinion_dry, left.gear - on_gear * limits.gear_dry
+        c, d = on_pinion * limits.pinion / determinant, on_gear * limits.gear / determinant
+        f, g = (a * two.gear - two.pinion * b) / determinant, (one.pinion * b - a * one.gear) / determinant
         u = (left.along + f * one_first + g * two_first, left.over + f * one_second + g * two_second)
-        v = (-f_falls * one_first - g_falls * two_first, -f_falls * one_second - g_falls * two_second)
-        near, far, room = consistent_loads(u, v)
+        x, z = two.gear * one_first - one.gear * two_first, two.gear * one_second - one.gear * two_second
+        by_pinion = (-c * x, -c * z)
+        x, z = (
+            one.pinion * two_first - two.pinion * one_first,
+            one.pinion * two_second - two.pinion * one_second,
+        )
+        by_gear = (-d * x, -d * z)
+        near, far, room = consistent_loads(u, by_pinion, by_gear, limits.pin)
         for end in range(2):
-            load = far if end else near
-            p, q = f - f_falls * load, g - g_falls * load
+            loads = far if end else near
+            p = f - c * two.gear * loads.pinion + d * two.pinion * loads.gear
+            q = g + c * one.gear * loads.pinion - d * one.pinion * loads.gear
             if one.coast != two.coast:
                 inside = min(one.limit - abs(p), two.limit - abs(q))
             else:

@@ -13,7 +13,16 @@ from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.friction.hubs import Mesh, across, consistent_loads, turning_load, vector_sum
+from gearidae.engine.friction.hubs import (
+    Loads,
+    Mesh,
+    across,
+    consistent_loads,
+    has_hubs,
+    pin_force,
+    turning_loads,
+    vector_sum,
+)
 from gearidae.engine.friction.pairs import (
     RUBS,
     direction,
@@ -35,8 +44,8 @@ NO_FORCE: Final = 1e-12
 
 @compiled(inline=True)
 def has_gear_element(m: Model) -> bool:
-    """Whether dry resistance or a hub may hold the gear."""
-    return bool(m.scene.dry != 0 or m.scene.friction.gear_hub > 0.0)
+    """Whether dry resistance or a joint may hold the gear."""
+    return bool(m.scene.dry != 0 or m.scene.friction.gear_rubs != 0)
 
 
 @compiled
@@ -45,6 +54,19 @@ def dry_force(m: Model, t: float, y: Floats) -> float:
     if m.scene.dry == 0:
         return 0.0
     return max(torque_force(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W]), 0.0)
+
+
+@compiled(inline=True)
+def gear_limit(m: Model, t: float, y: Floats) -> float:
+    """Limit of what resists the gear, over its base radius, without what grows with the load of its hub."""
+    return dry_force(m, t, y) + m.scene.friction.gear_constant
+
+
+@compiled(inline=True)
+def pinion_limit(m: Model, pin: tuple[float, float]) -> float:
+    """Limit of what resists the pinion under the force of a pin, without what grows with the load of its hub."""
+    own = m.scene.friction
+    return own.pinion_constant + own.pin * math.hypot(pin[0], pin[1])
 
 
 class Shafts(NamedTuple):
@@ -59,9 +81,11 @@ class Shafts(NamedTuple):
     margin : float
         How far that is below its limit; infinite if nothing is held, and of no use if both gears are.
     mesh : Mesh
-    hubs : float
-        Load of the hubs. Where the force turns round, the load goes on below zero until the event that follows, so
-        that it has no corner inside a step.
+    loads : Loads
+        Of the hubs. Where the force turns round, they go on below zero until the event that follows, so that they have
+        no corner inside a step.
+    pin : tuple of float
+        Force of the pin, as `pin_force` has it.
     corner : float
         Falls through zero where that happens; infinite where it cannot.
     """
@@ -71,14 +95,9 @@ class Shafts(NamedTuple):
     held: float
     margin: float
     mesh: Mesh
-    hubs: float
+    loads: Loads
+    pin: tuple[float, float]
     corner: float
-
-
-@compiled(inline=True)
-def has_hubs(m: Model) -> bool:
-    """Whether any hub has friction."""
-    return bool(m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0)
 
 
 @compiled(inline=True)
@@ -122,28 +141,33 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
             limit = noted.limit + own.blur * abs(noted.slope)
             bend = lever_rate(m, noted, turn, w) + RETURN * (first * turn - second * w)
     mesh = Mesh(drive, coast, drive_friction, coast_friction)
-    load, corner = 0.0, math.inf
-    if has_hubs(m):
-        load, along = turning_load(m, mesh)
-        if state.hold != AT_REST and state.hold != HELD_PAIR:
+    loads, pin, corner = Loads(0.0, 0.0), (0.0, 0.0), math.inf
+    if own.joints != 0:
+        pin = pin_force(m, t, y, turn)
+        loads, along = turning_loads(m, mesh, pin)
+        if has_hubs(m) and state.hold != AT_REST and state.hold != HELD_PAIR:
             corner = state.load_sign * along + RUBS
     if state.hold == AT_REST:
-        return Shafts(0.0, 0.0, 0.0, 0.0, mesh, load, corner)
-    a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, dry_force(m, t, y)
-    on_pinion = pinion
+        return Shafts(0.0, 0.0, 0.0, 0.0, mesh, loads, pin, corner)
+    a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, gear_limit(m, t, y)
+    on_pinion = pinion - state.pinion_slip * pinion_limit(m, pin)
     on_gear = gear - _gear_slip(m) * dry
     hub_on_pinion, hub_on_gear = state.pinion_slip * own.pinion_hub, _gear_slip(m) * own.gear_hub
     held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
         inertia = max(a1 * pinion_lever**2 + a2 * gear_lever**2, 1e-300)
         held = (a1 * pinion_lever * on_pinion - a2 * gear_lever * on_gear + bend) / inertia
-        if load != 0.0:
-            falls = (a1 * pinion_lever * hub_on_pinion - a2 * gear_lever * hub_on_gear) / inertia
+        if own.joints != 0:
+            by_pinion, by_gear = (
+                a1 * pinion_lever * hub_on_pinion / inertia,
+                a2 * gear_lever * hub_on_gear / inertia,
+            )
             x, z = across(m, coast_held)
             along, over = vector_sum(m, mesh)
-            loads = consistent_loads((along + held * x, over + held * z), (-falls * x, -falls * z))
-            load, margin = loads.near, loads.room
-            held -= falls * load
+            u = (along + held * x, over + held * z)
+            solved = consistent_loads(u, (-by_pinion * x, -by_pinion * z), (by_gear * x, by_gear * z), pin)
+            loads, margin = solved.near, solved.room
+            held -= by_pinion * loads.pinion - by_gear * loads.gear
             if coast_held:
                 mesh = Mesh(drive, coast, drive_friction, coast_friction + held)
             else:
@@ -151,13 +175,15 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
         margin = min(margin, limit - abs(held))
         on_pinion -= held * pinion_lever
         on_gear += held * gear_lever
-    on_pinion -= hub_on_pinion * load
-    on_gear -= hub_on_gear * load
+    on_pinion -= hub_on_pinion * loads.pinion
+    on_gear -= hub_on_gear * loads.gear
     if state.hold == HELD_GEAR:
-        return Shafts(a1 * on_pinion, 0.0, gear, dry + own.gear_hub * load - abs(gear), mesh, load, corner)
+        margin = dry + own.gear_hub * loads.gear - abs(gear)
+        return Shafts(a1 * on_pinion, 0.0, gear, margin, mesh, loads, pin, corner)
     if state.hold == HELD_PINION:
-        return Shafts(0.0, a2 * on_gear, pinion, own.pinion_hub * load - abs(pinion), mesh, load, corner)
-    return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, load, corner)
+        margin = pinion_limit(m, pin) + own.pinion_hub * loads.pinion - abs(pinion)
+        return Shafts(0.0, a2 * on_gear, pinion, margin, mesh, loads, pin, corner)
+    return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, loads, pin, corner)
 
 
 @compiled(inline=True)

@@ -1,20 +1,26 @@
-r"""Load of the hubs: the modulus of the vector sum of the mesh forces, on which the hubs' own friction depends.
+r"""Loads of the joints: of both hubs and of the pin that drives the pinion, on which their friction depends.
 
-Along and across the line of action of the drive flank the mesh forces add up to a vector that is linear in every
-friction. Where a friction is not known beforehand, because its pair is held or hubs and pairs hold the train together,
-it is linear in the load :math:`N` itself, so that :math:`N = |\mathbf u + N \mathbf v|`: a quadratic equation.
+Along and across the line of action of the drive flank the mesh forces add up to a vector S that is linear in every
+friction. The gear's hub carries :math:`N_2 = |S|`, the pinion's hub :math:`N_1 = |S - P|` with the force P of the pin.
+Where a friction is not known beforehand, because its pair is held or hubs and pairs hold the train together, it is
+linear in the loads themselves, so that :math:`S = u + N_1 v_1 + N_2 v_2`. Without a pin both loads are one, the
+solution of a quadratic equation; with one Newton's method finds them.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import Model
+from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U
+from gearidae.engine.pairs.shaft_angle import torque_angle
+from gearidae.engine.torques.law import law_force, law_force_rate
 
 _TINY = 1e-300
 _ROUNDING = 1e-12
+_NEWTON: Final = 40
+"""Steps of Newton's method: far from hubs that lock three are enough."""
 
 
 class Mesh(NamedTuple):
@@ -24,6 +30,19 @@ class Mesh(NamedTuple):
     coast: float
     drive_friction: float
     coast_friction: float
+
+
+class Loads(NamedTuple):
+    """Loads of the hubs of the pinion and of the gear."""
+
+    pinion: float
+    gear: float
+
+
+@compiled(inline=True)
+def has_hubs(m: Model) -> bool:
+    """Whether any hub has friction that grows with its load."""
+    return bool(m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0)
 
 
 @compiled(inline=True)
@@ -43,47 +62,135 @@ def vector_sum(m: Model, mesh: Mesh) -> tuple[float, float]:
 
 
 @compiled(inline=True)
-def turning_load(m: Model, mesh: Mesh) -> tuple[float, float]:
-    """Modulus of the vector sum, and the force along the line of action of the flank that has more of it.
+def pin_force(m: Model, t: float, y: Floats, turn: float) -> tuple[float, float]:
+    """Force of the pin on the pinion, in the components of `vector_sum`; zero for a drive that is a couple.
 
-    Where forces turn round together, the sum keeps to a line through zero and the modulus has a corner there: it goes
-    on below zero, from the direction ``load_sign`` on. Where they turn round one by one, the sum passes beside zero.
+    Parameters
+    ----------
+    t : float
+        Time over tau.
+    y : ndarray, shape (n,)
+        State.
+    turn : float
+        Surface velocity of the pinion.
+    """
+    if m.scene.friction.forced == 0:
+        return 0.0, 0.0
+    return _turned(m, law_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn))
+
+
+@compiled(inline=True)
+def pin_rate(m: Model, t: float, y: Floats, turn: float, acceleration: float) -> tuple[float, float]:
+    """Rate of `pin_force` along the motion."""
+    if m.scene.friction.forced == 0:
+        return 0.0, 0.0
+    angle = torque_angle(m, DRIVE, y[U], y[PHASE])
+    return _turned(m, law_force_rate(m, DRIVE, t, angle, turn, acceleration))
+
+
+@compiled(inline=True)
+def _turned(m: Model, force: tuple[float, float]) -> tuple[float, float]:
+    """Components of `vector_sum`, scaled, of a force [N] in the axes of the drive."""
+    own = m.scene.friction
+    x, y = force
+    return own.pin_sine * x + own.pin_cosine * y, own.pin_sine * y - own.pin_cosine * x
+
+
+@compiled(inline=True)
+def turning_loads(m: Model, mesh: Mesh, pin: tuple[float, float]) -> tuple[Loads, float]:
+    """Loads of both hubs, and the force along the line of action of the flank that has more of it.
+
+    Where the mesh forces turn round together, their sum keeps to a line through zero and its modulus has a corner
+    there: the load goes on below zero, from the direction ``load_sign`` on. Where they turn round one by one, the sum
+    passes beside zero. With the force of a pin the pinion's load has no corner.
     """
     own = m.scene.friction
     along, over = vector_sum(m, mesh)
     load = math.hypot(along, over)
+    pinion = math.hypot(along - pin[0], over - pin[1])
     if abs(mesh.coast) > abs(mesh.drive):
         along, over = -own.cosine * along - own.sine * over, own.sine * along - own.cosine * over
-    if m.state.load_sign * along < 0.0 and abs(over) <= (2.0 * own.even + _ROUNDING) * abs(along):
+    turned = m.state.load_sign * along < 0.0 and abs(over) <= (2.0 * own.even + _ROUNDING) * abs(along)
+    if turned and has_hubs(m):
         load = -load
-    return load, along
+    if pin[0] == 0.0 == pin[1]:
+        pinion = load
+    return Loads(pinion, load), along
 
 
-class Loads(NamedTuple):
-    """Loads N that solve ``N = |u + N v|``.
+class Solutions(NamedTuple):
+    """Loads that solve ``S = u + N1 v1 + N2 v2`` with ``N1 = |S - P|`` and ``N2 = |S|``.
 
     Attributes
     ----------
-    near, far : float
-        The smaller and the larger one; equal where there is only one.
+    near, far : Loads
+        The smaller and the larger ones; equal where there is one solution only.
     room : float
-        Below zero if there is none; the load then is the one nearest to a solution. Infinite where there always is one.
+        Below zero if there is none; the loads then are those nearest to a solution. Infinite where there always is one.
     """
 
-    near: float
-    far: float
+    near: Loads
+    far: Loads
     room: float
 
 
-@compiled(inline=True)
-def consistent_loads(u: tuple[float, float], v: tuple[float, float]) -> Loads:
-    """Solve ``N = |u + N v|``: one solution if v is shorter than 1, else two or none."""
+@compiled
+def consistent_loads(
+    u: tuple[float, float],
+    by_pinion: tuple[float, float],
+    by_gear: tuple[float, float],
+    pin: tuple[float, float],
+) -> Solutions:
+    """Solve for the loads of both hubs where a friction depends on them.
+
+    Parameters
+    ----------
+    u, by_pinion, by_gear, pin : tuple of float
+        Vectors u, v1, v2 and P of `Solutions`.
+    """
+    v = (by_pinion[0] + by_gear[0], by_pinion[1] + by_gear[1])
     square = v[0] * v[0] + v[1] * v[1] - 1.0
     half = u[0] * v[0] + u[1] * v[1]
     whole = u[0] * u[0] + u[1] * u[1]
     root = math.sqrt(max(half * half - square * whole, 0.0))
     if square <= 0.0:
         near = whole / max(root - half, _TINY) if half <= 0.0 else (half + root) / max(-square, _TINY)
-        return Loads(near, near, math.inf)
-    near, far = whole / max(root + abs(half), _TINY), (root + abs(half)) / square
-    return Loads(near, far, -half - math.sqrt(square * whole))
+        far, room = near, math.inf
+    else:
+        near, far = whole / max(root + abs(half), _TINY), (root + abs(half)) / square
+        room = -half - math.sqrt(square * whole)
+    if pin[0] == 0.0 == pin[1]:
+        return Solutions(Loads(near, near), Loads(far, far), room)
+    first, missed = _beside_pin(u, by_pinion, by_gear, pin, near)
+    if square <= 0.0:
+        return Solutions(first, first, -missed if missed > 0.0 else math.inf)
+    second, other = _beside_pin(u, by_pinion, by_gear, pin, far)
+    return Solutions(first, second, -max(missed, other) if max(missed, other) > 0.0 else math.inf)
+
+
+@compiled
+def _beside_pin(
+    u: tuple[float, float],
+    by_pinion: tuple[float, float],
+    by_gear: tuple[float, float],
+    pin: tuple[float, float],
+    load: float,
+) -> tuple[Loads, float]:
+    """Loads beside the force of a pin, by Newton's method from equal ones; and what they miss, 0 within rounding."""
+    n1, n2, missed = load, load, math.inf
+    for _ in range(_NEWTON):
+        x, z = u[0] + n1 * by_pinion[0] + n2 * by_gear[0], u[1] + n1 * by_pinion[1] + n2 * by_gear[1]
+        pinion, gear = math.hypot(x - pin[0], z - pin[1]), math.hypot(x, z)
+        f, g = pinion - n1, gear - n2
+        missed = max(abs(f), abs(g))
+        if missed <= _ROUNDING * (pinion + gear):
+            return Loads(pinion, gear), 0.0
+        p, q = (x - pin[0]) / max(pinion, _TINY), (z - pin[1]) / max(pinion, _TINY)
+        r, s = x / max(gear, _TINY), z / max(gear, _TINY)
+        a, b = p * by_pinion[0] + q * by_pinion[1] - 1.0, p * by_gear[0] + q * by_gear[1]
+        c, d = r * by_pinion[0] + s * by_pinion[1], r * by_gear[0] + s * by_gear[1] - 1.0
+        determinant = a * d - b * c
+        if determinant == 0.0:
+            break
+        n1, n2 = max(n1 - (f * d - b * g) / determinant, 0.0), max(n2 - (a * g - c * f) / determinant, 0.0)
+    return Loads(n1, n2), missed

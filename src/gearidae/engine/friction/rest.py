@@ -15,8 +15,16 @@ from typing import NamedTuple
 
 from gearidae.compiled import compiled
 from gearidae.engine.friction.equilibrium import equilibrium_margin
-from gearidae.engine.friction.forces import dry_force, has_gear_element, has_hubs
-from gearidae.engine.friction.hubs import Mesh, across, consistent_loads, vector_sum
+from gearidae.engine.friction.forces import gear_limit, has_gear_element, pinion_limit
+from gearidae.engine.friction.hubs import (
+    Loads,
+    Mesh,
+    across,
+    consistent_loads,
+    has_hubs,
+    pin_force,
+    vector_sum,
+)
 from gearidae.engine.friction.pairs import levers
 from gearidae.engine.model.record_types import HELD_GEAR, HELD_PAIR, HELD_PINION
 from gearidae.engine.model.state import COAST, Floats, Model, Record
@@ -25,7 +33,7 @@ from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 @compiled
 def list_elements(m: Model, t: float, y: Floats) -> None:
-    """List the elements of gears at rest: the pairs that rub, the gear's resistance and hub, and the pinion's hub."""
+    """List the elements of gears at rest: the pairs that rub, and what resists the gear and the pinion, with joints."""
     own, found, count = m.scene.friction, m.work.rubbing, 0
     drive = coast = 0.0
     for i in range(m.work.notes.count):
@@ -43,12 +51,14 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
             count += 1
     found.pairs = count
     found.load[0], found.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
+    pin = pin_force(m, t, y, 0.0)
+    found.pin[0], found.pin[1] = pin
     if has_gear_element(m):
-        _set(found.element[count], 0.0, 1.0, dry_force(m, t, y), HELD_GEAR)
+        _set(found.element[count], 0.0, 1.0, gear_limit(m, t, y), HELD_GEAR)
         found.element[count].hub = own.gear_hub
         count += 1
-    if own.pinion_hub > 0.0:
-        _set(found.element[count], 1.0, 0.0, 0.0, HELD_PINION)
+    if own.pinion_rubs != 0:
+        _set(found.element[count], 1.0, 0.0, pinion_limit(m, pin), HELD_PINION)
         found.element[count].hub = own.pinion_hub
         count += 1
     found.count = count
@@ -132,7 +142,7 @@ def _better(one: Way, other: Way) -> Way:
 
 
 class _Slipping(NamedTuple):
-    """Forces that the elements that slip leave, what the hubs take of them by their load, and the mesh forces' sum."""
+    """Forces that the elements that slip leave, what the hubs take of them by their loads, and the mesh forces' sum."""
 
     pinion: float
     gear: float
@@ -168,6 +178,13 @@ def _slipping(m: Model, pinion: float, gear: float, x: float, y: float, i: int, 
     return _Slipping(pinion, gear, by_pinion, by_gear, along, over)
 
 
+@compiled(inline=True)
+def _loads(m: Model, s: _Slipping) -> Loads:
+    """Loads of both hubs where all that rubs slips."""
+    pin = m.work.rubbing.pin
+    return Loads(math.hypot(s.along - pin[0], s.over - pin[1]), math.hypot(s.along, s.over))
+
+
 @compiled
 def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> Way:
     """Accelerations in a direction in which the i-th element holds."""
@@ -175,18 +192,22 @@ def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> 
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     easy = a1 * one.pinion**2 + a2 * one.gear**2
     held = (a1 * one.pinion * s.pinion + a2 * one.gear * s.gear) / easy
-    falls = (a1 * one.pinion * s.by_pinion + a2 * one.gear * s.by_gear) / easy
-    near = far = math.hypot(s.along, s.over)
+    falls, gear_falls = a1 * one.pinion * s.by_pinion / easy, a2 * one.gear * s.by_gear / easy
+    near = far = _loads(m, s)
     room = math.inf
     if one.hold == HELD_PAIR:
         first, second = across(m, one.coast != 0)
         u = (s.along + held * first, s.over + held * second)
-        near, far, room = consistent_loads(u, (-falls * first, -falls * second))
+        by_pinion, by_gear = (-falls * first, -falls * second), (-gear_falls * first, -gear_falls * second)
+        pin = m.work.rubbing.pin
+        near, far, room = consistent_loads(u, by_pinion, by_gear, (pin[0], pin[1]))
     best = Way(0.0, 0.0, -math.inf, i)
     for which in range(2):
-        load = far if which else near
-        slope = x * (s.pinion - s.by_pinion * load) + y * (s.gear - s.by_gear * load)
-        reserve = one.limit + one.hub * load - abs(held - falls * load)
+        loads = far if which else near
+        on_pinion, on_gear = s.pinion - s.by_pinion * loads.pinion, s.gear - s.by_gear * loads.gear
+        slope = x * on_pinion + y * on_gear
+        limit = one.limit + one.hub * (loads.pinion if one.hold == HELD_PINION else loads.gear)
+        reserve = limit - abs(held - falls * loads.pinion - gear_falls * loads.gear)
         reserve = min(reserve, room, slope / math.hypot(x, y))
         if reserve > best.reserve:
             go = max(slope / (x * x / a1 + y * y / a2), 0.0)
@@ -199,8 +220,8 @@ def _between(m: Model, pinion: float, gear: float, x: float, y: float, i: int, s
     """Accelerations with the directions of slip just beside that direction."""
     found, s = m.work.rubbing, _slipping(m, pinion, gear, x, y, i, side)
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    one, load = found.element[i], math.hypot(s.along, s.over)
-    a, b, reserve = a1 * (s.pinion - s.by_pinion * load), a2 * (s.gear - s.by_gear * load), math.inf
+    one, loads, reserve = found.element[i], _loads(m, s), math.inf
+    a, b = a1 * (s.pinion - s.by_pinion * loads.pinion), a2 * (s.gear - s.by_gear * loads.gear)
     for j in range(found.count):
         other = found.element[j]
         speed = other.pinion * x + other.gear * y

@@ -55,7 +55,7 @@ def is_at_rest(m: Model, t: float, y: Floats) -> bool:
 @compiled
 def _holds_gear(m: Model) -> bool:
     """Whether the gear is held at rest, and the pinion by nothing but its teeth, whose bodies are rigid."""
-    bare = m.scene.friction.flanks == 0 and m.scene.friction.pinion_hub == 0.0
+    bare = m.scene.friction.flanks == 0 and m.scene.friction.pinion_rubs == 0
     return bool(m.state.hold == HELD_GEAR and bare and m.scene.nodes == 0)
 
 

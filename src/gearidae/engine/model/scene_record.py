@@ -81,10 +81,15 @@ POPULATION: Final = record_type(
     ("digest", REAL, (4,)),  # of all asperities [1]
 )
 
-FRICTION: Final = record_type(  # of flanks and hubs
-    ("on", INT),  # 1 if anything dry resists: flanks, hubs or the load
-    ("rubs", INT),  # 1 if flanks or hubs do, whose friction depends on the forces of the pairs
+FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a drive
+    ("on", INT),  # 1 if anything dry resists: flanks, joints or the load
+    ("rubs", INT),  # 1 if flanks or joints do, or the loads of joints are followed
     ("flanks", INT),  # 1 if flanks have
+    ("joints", INT),  # 1 if a joint has a radius, so that loads are followed
+    ("pinion_rubs", INT),  # 1 if a joint of the pinion has friction
+    ("gear_rubs", INT),  # 1 if a joint of the gear has
+    ("forced", INT),  # 1 if the drive pushes with a pin
+    ("holding", INT),  # all that is dry, a sum of the values of `gearidae.records.standing.Holding`
     ("even", REAL),  # coefficient of all materials; 0 where they differ, or the law is another [1]
     ("scale", REAL, (MATERIALS,)),  # limits of the materials' friction, as `force_scale` [F]
     ("table_at", INT, (MATERIALS,)),  # laws of the limits among the tables [index]
@@ -97,6 +102,17 @@ FRICTION: Final = record_type(  # of flanks and hubs
     ("gear_bend", REAL),  # sigma over the gear's base radius [1]
     ("pinion_hub", REAL),  # coefficient times radius of the pinion's hub over its base radius [1]
     ("gear_hub", REAL),  # the same of the gear [1]
+    ("pin", REAL),  # the same of the pin, over the pinion's base radius [1]
+    ("pinion_constant", REAL),  # torque of adhesion and axial load of the pinion over its base radius [F]
+    ("gear_constant", REAL),  # the same of the gear [F]
+    ("pinion_arm", REAL),  # radius of the pinion's hub over its base radius [1]
+    ("gear_arm", REAL),  # the same of the gear [1]
+    ("pin_arm", REAL),  # radius of the pin joint over the pinion's base radius [1]
+    (
+        "pin_cosine",
+        REAL,
+    ),  # of the angle of the force's axes from the line of action's normal, per newton [F/N]
+    ("pin_sine", REAL),  # of that angle, per newton [F/N]
     ("cosine", REAL),  # of twice the pressure angle [1]
     ("sine", REAL),  # of twice the pressure angle [1]
     ("blur", REAL),  # error of the transmission error within which the force of a pair is known [sigma]

@@ -210,8 +210,8 @@ SETTLING: Final = record_type(  # deflections of a pair where nodes are eliminat
 ELEMENT: Final = record_type(  # that dry friction may hold at rest
     ("pinion", REAL),  # its speed per surface velocity of the pinion [1]
     ("gear", REAL),  # and of the gear [1]
-    ("limit", REAL),  # of its friction, without that of a hub [F]
-    ("hub", REAL),  # what its limit grows by with the load of the hubs [1]
+    ("limit", REAL),  # of its friction, without what grows with the load of a hub [F]
+    ("hub", REAL),  # what its limit grows by with the load of its hub [1]
     ("coast", INT),  # 1 for a pair of the coast flank
     ("hold", INT),  # `HELD_PAIR`, `HELD_GEAR` or `HELD_PINION`
     ("history", INT),  # of a pair [index]
@@ -226,12 +226,17 @@ RUBBING: Final = record_type(  # friction
         REAL,
         (2,),
     ),  # vector sum of the mesh forces without friction, along and across the line of action [F]
+    ("pin", REAL, (2,)),  # force of the pin in the same components [F]
     ("before_slip", REAL),  # the gear's direction of slip before the decisions of one time
     ("before_pair", INT, (2 * SLOTS_HIGH,)),  # pair of each history then
     ("before_slide", INT, (2 * SLOTS_HIGH,)),  # and its direction
     ("time", REAL),  # of the powers [tau]
-    ("power", REAL, (4,)),  # of the drive and the coast flank and of both hubs [F sigma/tau]
-    ("power_rate", REAL, (4,)),  # [F sigma/tau^2]
+    (
+        "power",
+        REAL,
+        (8,),
+    ),  # of both flanks, hubs and the pin; loads times sliding speeds of the joints [F sigma/tau]
+    ("power_rate", REAL, (8,)),  # [F sigma/tau^2]
 )
 
 CONTACT: Final = record_type(  # of a population: the candidates of a pair

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from gearidae.compiled import compiled_once
+from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
@@ -56,10 +56,11 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.gear_angle] = angle_of_shaft(m, LOAD, u, phase)
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
-    contact = force + mesh.relief
+    contact, width = force + mesh.relief, row.size
     if m.scene.friction.rubs != 0:
-        friction, resistance = friction_at_gear(m, t, y)
+        friction, resistance, loads = friction_at_gear(m, t, y)
         contact += friction
+        width -= _write_loads(m, loads, row)
     elif m.state.hold == FREE:
         resistance = resisting_force(m, t, y)
     else:
@@ -85,5 +86,16 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)
     if m.scene.population.flanks != 0:
         row[GEAR_POPULATION.asperities_in_contact], row[GEAR.pairs_in_contact] = asperities_joined(m)
-    elif row.size > GEAR.min_separation:
+    elif width > GEAR.min_separation:
         row[GEAR.min_separation] = separation(m, y) * length
+
+
+@compiled
+def _write_loads(m: Model, loads: tuple[float, float, float], row: Floats) -> int:
+    """Write the loads of the joints, which are a row's last columns; how many they are."""
+    if m.scene.friction.joints == 0:
+        return 0
+    count = 2 + m.scene.friction.forced
+    for i in range(count):
+        row[row.size - count + i] = abs(loads[i]) * m.scene.force_unit
+    return count

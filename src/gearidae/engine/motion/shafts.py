@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled, compiled_once, name_type
@@ -192,14 +193,15 @@ def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float
 
 
 @compiled_once(FRICTION)
-def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float]:
-    """Force of the flanks' friction on the gear, and what resists it besides its hub: drags and dry resistance.
+def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple[float, float, float]]:
+    """Force of the flanks' friction on the gear, what resists it besides its hub, and the loads of hubs and pin.
 
-    At rest, where the shares of several elements are not unique, the flanks' is zero and the dry resistance takes what
-    it can.
+    Drags and dry resistance resist it. At rest, where the shares of several elements are not unique, the flanks'
+    friction is zero and the dry resistance takes what it can.
     """
     turn, pinion, gear = forces_at_shafts(m, t, y)
     found = solve_shafts(m, t, y, turn, pinion, gear)
+    loads = found.loads.pinion, found.loads.gear, math.hypot(found.pin[0], found.pin[1])
     friction = 0.0
     for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
         noted = m.work.notes.pair[i]
@@ -209,5 +211,5 @@ def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float]:
             friction += found.held * second
     if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:  # without a speed, and so without drags
         dry = dry_force(m, t, y)
-        return friction, min(max(gear + friction, -dry), dry)
-    return friction, resisting_force(m, t, y)
+        return friction, min(max(gear + friction, -dry), dry), loads
+    return friction, resisting_force(m, t, y), loads

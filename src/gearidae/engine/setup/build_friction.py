@@ -14,8 +14,10 @@ from gearidae.contact.kernels.law import N_LOADING, Kernel, law_table
 from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.mesh.involute import Geometry
+from gearidae.records.standing import Holding
 from gearidae.scene import MATERIAL_NAMES, Gears, Scene, Surface
-from gearidae.scene.friction import friction_values, has_flank_friction, has_friction
+from gearidae.scene.friction import friction_values, has_flank_friction
+from gearidae.scene.joints import has_pin, joints
 
 
 def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> None:
@@ -27,18 +29,20 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
         ``SCENE``; changed.
     """
     own = s.friction
-    s.noting = int(scene.run.exposures > 0 or has_friction(scene))
-    own.rubs, own.flanks = int(has_friction(scene)), int(has_flank_friction(scene))
+    own.joints, own.flanks = int(bool(joints(scene))), int(has_flank_friction(scene))
+    own.rubs = int(own.joints != 0 or own.flanks != 0)
     own.on = int(own.rubs != 0 or s.dry != 0)
+    own.holding = Holding.DRY_RESISTANCE if s.dry != 0 else 0
+    own.holding |= Holding.FLANK_FRICTION if own.flanks != 0 else 0
+    s.noting = int(scene.run.exposures > 0 or own.rubs != 0)
     if own.rubs == 0:
         return
+    _add_joints(s, scene, geometry)
     own.pinion_lever = float(s.base_pitch) / float(s.pinion_radius)
     own.gear_lever = float(s.base_pitch) / float(s.gear_radius)
     own.radii = 1.0 / float(s.sum_curvature)
     own.pinion_bend = float(s.length_unit) / float(s.pinion_radius)
     own.gear_bend = float(s.length_unit) / float(s.gear_radius)
-    own.pinion_hub = gears.hub_friction * gears.pinion_hub_radius / geometry.base_radius_pinion
-    own.gear_hub = gears.hub_friction * gears.gear_hub_radius / geometry.base_radius_gear
     own.cosine, own.sine = math.cos(2.0 * gears.pressure_angle), math.sin(2.0 * gears.pressure_angle)
     if own.flanks == 0:
         return
@@ -46,6 +50,32 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
     values, shares = friction_values(scene), {one.name: one.share for one in scene.materials()}
     there = {values[name] for name in MATERIAL_NAMES if shares.get(name, 0.0) > 0.0}
     own.even = there.pop() if len(there) == 1 and own.shear == 0 else 0.0
+
+
+def _add_joints(s: Record, scene: Scene, geometry: Geometry) -> None:
+    """Set what friction of the joints depends on."""
+    own = s.friction
+    pinion, gear, force = geometry.base_radius_pinion, geometry.base_radius_gear, float(s.force_unit)
+    for joint in joints(scene):
+        by_load, constant = joint.torque(1.0) - joint.torque(0.0), joint.torque(0.0)
+        if joint.name == "pin":
+            own.pin, own.pin_arm = by_load / pinion, joint.radius / pinion
+        elif joint.name == "gear hub":
+            own.gear_hub, own.gear_arm, own.gear_constant = (
+                by_load / gear,
+                joint.radius / gear,
+                constant / gear / force,
+            )
+        else:
+            own.pinion_hub, own.pinion_arm = by_load / pinion, joint.radius / pinion
+            own.pinion_constant = constant / pinion / force
+        own.holding |= int(joint.holding)
+    own.pinion_rubs = int(own.pinion_hub > 0.0 or own.pinion_constant > 0.0 or own.pin > 0.0)
+    own.gear_rubs = int(own.gear_hub > 0.0 or own.gear_constant > 0.0)
+    if own.joints != 0 and has_pin(scene):
+        assert scene.drive is not None
+        angle = geometry.pressure_angle + scene.drive.orientation
+        own.forced, own.pin_cosine, own.pin_sine = 1, math.cos(angle) / force, math.sin(angle) / force
 
 
 class Limits:

@@ -38,7 +38,11 @@ _SIGNATURE = types.float64(
     types.float64,
     types.CPointer(types.float64),  # type: ignore[no-untyped-call]
     types.int64,
+    types.int64,
 )
+_TORQUE: Final = 0
+_FORCE: Final = (1, 2)
+"""Which number of a law is asked for: its torque, or a component of its force."""
 
 
 def law_address(name: str) -> int:
@@ -79,7 +83,7 @@ def largest_torque(name: str, parameters: Sequence[float], speed: float, duratio
         np.linspace(0.0, 2.0 * math.pi, ANGLES, endpoint=False) if torque_law(name).takes_angle else (0.0,)
     )
     values = [
-        abs(law(float(t), float(a), w, handed, numbers.size))
+        abs(law(float(t), float(a), w, handed, numbers.size, _TORQUE))
         for t in times
         for a in angles
         for w in (0.0, speed)
@@ -90,52 +94,59 @@ def largest_torque(name: str, parameters: Sequence[float], speed: float, duratio
 def _callback(name: str) -> Any:
     try:
         law = torque_law(name)
-        return _compile(law.function, law.takes_angle)
+        return _compile(law.function, law.takes_angle, law.has_force)
     except NumbaError as error:
         reason = str(error).strip().partition("\n")[0]
         raise SceneError("law.name", name, f"numba cannot compile this torque law: {reason}") from error
 
 
 @cache
-def _compile(function: Callable[..., Any], takes_angle: bool) -> Any:
+def _compile(function: Callable[..., Any], takes_angle: bool, has_force: bool) -> Any:
     """Compile a law; what has been compiled stays, as its address may be in use."""
     law: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
 
-    def torque(t: float, angle: float, speed: float, parameters: Any, count: int) -> float:
-        return law(t, angle, speed, carray(parameters, (count,)))
+    @numba.njit(error_model="numpy")
+    def value(t: float, angle: float, speed: float, parameters: Any) -> Any:
+        return law(t, angle, speed, parameters) if takes_angle else law(t, speed, parameters)
 
-    def torque_of_speed(t: float, angle: float, speed: float, parameters: Any, count: int) -> float:
-        return law(t, speed, carray(parameters, (count,)))
+    def torque(t: float, angle: float, speed: float, parameters: Any, count: int, _: int) -> float:
+        return value(t, angle, speed, carray(parameters, (count,)))
 
-    return numba.cfunc(_SIGNATURE)(torque if takes_angle else torque_of_speed)
+    def torque_or_force(
+        t: float, angle: float, speed: float, parameters: Any, count: int, which: int
+    ) -> float:
+        torque, x, y = value(t, angle, speed, carray(parameters, (count,)))
+        return torque if which == 0 else x if which == 1 else y
+
+    return numba.cfunc(_SIGNATURE)(torque_or_force if has_force else torque)
 
 
-def _typed(  # the arguments of the law, and where its parameters are
-    typing: Any, address: Any, t: Any, angle: Any, speed: Any, numbers: Any, at: Any, count: Any
+def _typed(  # the arguments of the law, where its parameters are, and which number of it is asked for
+    typing: Any, address: Any, t: Any, angle: Any, speed: Any, numbers: Any, at: Any, count: Any, which: Any
 ) -> Any:
     """Type of a call of the law at an address, and the code that makes it."""
     if numbers.layout != "C":
         raise TypingError(f"the array must be contiguous, and {numbers} may not be")
 
     def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        address, t, angle, speed, numbers, at, count = values
+        address, t, angle, speed, numbers, at, count, which = values
         array = context.make_array(signature.args[4])(context, builder, numbers)
-        handed = [t, angle, speed, builder.gep(array.data, [at]), count]
+        handed = [t, angle, speed, builder.gep(array.data, [at]), count, which]
         kind = ir.FunctionType(ir.DoubleType(), [value.type for value in handed])
         return builder.call(builder.inttoptr(address, kind.as_pointer()), handed)
 
     real, whole = types.float64, types.int64
-    return real(whole, real, real, real, numbers, whole, whole), call
+    return real(whole, real, real, real, numbers, whole, whole, whole), call
 
 
 _call: Any = intrinsic(_typed)
 
 
 @compiled
-def law_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> float:
-    """Torque of a shaft's law over base radius and reference load, at a scaled time and speed and an angle [rad]."""
+def _number(m: Model, shaft: int, which: int, t: float, angle: float, speed: float) -> float:
+    """Number of a shaft's law in SI units, at a scaled time and speed and an angle [rad]."""
     own = m.scene.torque[shaft]
-    torque = _call(
+    return _call(
         m.work.torque_law[shaft],
         t * m.scene.time_unit,
         angle,
@@ -143,8 +154,14 @@ def law_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> flo
         m.tables,
         own.law_at,
         own.law_count,
+        which,
     )
-    return torque / own.law_torque
+
+
+@compiled
+def law_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> float:
+    """Torque of a shaft's law over base radius and reference load, at a scaled time and speed and an angle [rad]."""
+    return _number(m, shaft, _TORQUE, t, angle, speed) / m.scene.torque[shaft].law_torque
 
 
 @compiled
@@ -155,3 +172,22 @@ def law_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acceler
     before = law_value(m, shaft, low, angle - (t - low) * turn, speed - (t - low) * acceleration)
     after = law_value(m, shaft, high, angle + (high - t) * turn, speed + (high - t) * acceleration)
     return (after - before) / (high - low)
+
+
+@compiled
+def law_force(m: Model, shaft: int, t: float, angle: float, speed: float) -> tuple[float, float]:
+    """Components of the force of a shaft's law [N], of a law that has one."""
+    first, second = _FORCE
+    return _number(m, shaft, first, t, angle, speed), _number(m, shaft, second, t, angle, speed)
+
+
+@compiled
+def law_force_rate(
+    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
+) -> tuple[float, float]:
+    """Rates of `law_force` along the motion [N/tau], as `law_rate`."""
+    low, high = max(t - STEP, 0.0), t + STEP
+    turn = speed * m.scene.torque[shaft].angle_unit
+    before = law_force(m, shaft, low, angle - (t - low) * turn, speed - (t - low) * acceleration)
+    after = law_force(m, shaft, high, angle + (high - t) * turn, speed + (high - t) * acceleration)
+    return (after[0] - before[0]) / (high - low), (after[1] - before[1]) / (high - low)

@@ -84,13 +84,8 @@ def _row(m: Model, one: Any) -> list[float]:
 
 def _holding(m: Model, at_rest: bool, held: float) -> Holding:
     """What holds a gear that stands: all that is dry, if it is at rest, and adhesion, if that is not enough."""
-    found, friction = Holding(0), m.scene.friction
-    if at_rest and m.scene.dry != 0:
-        found |= Holding.DRY_RESISTANCE
-    if at_rest and (friction.pinion_hub > 0.0 or friction.gear_hub > 0.0):
-        found |= Holding.HUB_FRICTION
-    if at_rest and friction.flanks != 0:
-        found |= Holding.FLANK_FRICTION
-    if not at_rest or (held > 0.0 and friction.rubs == 0):
+    dry = Holding(int(m.scene.friction.holding))
+    found = dry if at_rest else Holding(0)
+    if not at_rest or (held > 0.0 and not dry & ~Holding.DRY_RESISTANCE):
         found |= Holding.ADHESION
     return found
